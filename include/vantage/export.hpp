@@ -130,37 +130,30 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
 /// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `overlap_words`: name
 /// of `overlap` in the legend. Returns the files that it wrote.
-std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
-                                                  const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const StationLinks& links, const std::string& title,
-                                                  std::span<const std::string> names = {},
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
+                                                  std::span<const PlacedStation> stations, const StationLinks& links,
+                                                  const std::string& title, std::span<const std::string> names = {},
                                                   std::span<const StationError> errors = {});
 
 /// Writes a whole result folder and makes it if needed. Returns the index of the chosen entry, the `answer()`. Files:
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
-/// stations.dxf, and stations.geojson and stations.kml if `crs`, the `coordinate_system()` of the survey frame, is
-/// given;
+/// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put
+/// on WGS 84 (else `SiteOptions::warn` is told why);
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan and, with `field`, registration.ply, .png and .svg.
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
-/// The same for a plan of a site.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                        const VoxelField* field = nullptr);
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
-/// Every voxel of `ranks` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
+/// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY, survey frame.
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
-                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                      std::span<const std::uint32_t> points);
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);
 /// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
 /// one missed for want of a station shows first, then one beyond help, then a captured one.
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
                  std::span<const PlacedStation> stations, const std::string& title);
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
@@ -169,8 +162,8 @@ void draw_missed(const std::filesystem::path& file, const Simulator& simulator, 
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error);
 /// The same in plan view, .png or .svg, a map for each floor as by `draw_missed`, with unseen parts in grey.
-void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                       const VoxelField& field, const RegistrationError& error, std::span<const PlacedStation> stations,
+void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
+                       const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.

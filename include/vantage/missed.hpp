@@ -14,6 +14,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -39,15 +40,6 @@ struct MissedOptions {
 
 Settings settings(const MissedOptions& options);
 
-/// Returns why each voxel of `ranks` is not captured by a network that left `points` in them. `sparse` uses the points
-/// expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith) for each candidate with
-/// a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the spans differ in length,
-/// a voxel index is too large or there are no candidates.
-std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                  std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                  std::span<const std::uint32_t> points, const MissedOptions& options = {},
-                                  const Progress& progress = {});
-
 /// Number of a node's voxels with each status. A voxel belongs to the mesh with most surface in it.
 struct MissedShare {
   std::string node;  ///< `MeshInfo::name`; "" is the whole site.
@@ -57,22 +49,21 @@ struct MissedShare {
     return voxels > 0 ? static_cast<double>(count[static_cast<std::size_t>(why)]) / static_cast<double>(voxels) : 0;
   }
 };
-/// Returns the whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are
-/// one.
-std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                                        std::span<const WhyMissed> why);
 
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
   std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending.
   std::vector<std::uint32_t> points = {};  ///< Points of the network in each.
   std::vector<WhyMissed> why = {};
-  std::vector<MissedShare> shares = {};  ///< Their `missed_by_node()`.
-  std::size_t candidates = 0;            ///< Number of positions from which lines were drawn.
+  /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one.
+  std::vector<MissedShare> shares = {};
+  std::size_t candidates = 0;  ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.
-/// Empty if it was stopped, or if nothing is surveyed. Throws as `why_missed`.
-MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const VoxelField& field, const MissedOptions& options = {}, const Progress& progress = {});
+/// `sparse` uses the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith)
+/// for each candidate with a free line in range. Empty if it was stopped, or if nothing is surveyed. Throws Error
+/// invalid_argument if no position is allowed.
+MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOptions& options = {},
+                           const Progress& progress = {});
 
 }  // namespace vantage

@@ -54,15 +54,8 @@ const SettingTable<PlanConfig>& plan_settings();
 /// end at the site's entrance. Throws Error invalid_argument.
 SurveyProblem survey_problem(Site& site, const SurveyQuestion& question = {});
 
-/// Plans a survey of a site. The problem decides what `config` leaves open: sample, iterations, seed. The same site,
-/// problem and configuration give the same result except for seconds. Throws Error: invalid_argument (no objective,
-/// more than `max_stations` stations, min above max, a checkpoint of another run, …), malformed_file (a damaged
-/// checkpoint), and as the simulator and the objectives do. The checkpoint is written before an exception leaves.
-PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config = {}, const PlanWatch& watch = {});
+/// Plans a survey of a site: `plan()` of the question's problem. Throws as that does.
 PlanResult plan(Site& site, const SurveyQuestion& question = {}, const PlanConfig& config = {},
                 const PlanWatch& watch = {});
-
-/// `config` with all open settings decided, for a site of `voxels` surveyed voxels.
-PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::uint64_t voxels, std::uint64_t seed);
 
 }  // namespace vantage

@@ -10,6 +10,7 @@
 
 #include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -37,20 +38,14 @@ void write_stations_geojson(const std::filesystem::path& file, const NamedStatio
 /// stations, and those left out, have icons of another colour. Throws Error: io, as `to_wgs84`.
 void write_stations_kml(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
 
-/// DXF (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_KEPT and STATIONS_LEFT_OUT (a point and a
-/// circle below the tripod), STATION_NAMES (text), LINKS (lines between the grounds of linked stations), SEARCH_AREA
-/// (closed polylines: its outline and its holes). `links`: of these stations, or without values. Throws Error: io,
-/// invalid_argument (sizes that do not match).
-void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
-                        const SearchArea& area);
-
 /// Chooses the format by the file's extension: .geojson, .kml or .dxf. Throws Error as above, and invalid_argument for
 /// any other.
 void write_stations(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
-                    const SearchArea& area, const std::string& crs);
+                    Site& site);
 
-/// Writes stations.dxf and, if `crs` is given, stations.geojson and stations.kml.
+/// Writes stations.dxf and, if the site has a coordinate system, stations.geojson and stations.kml. If stations cannot
+/// be put on WGS 84 by it, these two are left out, and `SiteOptions::warn` is told why.
 void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,
-                         const SearchArea& area, const std::string& crs);
+                         Site& site);
 
 }  // namespace vantage

@@ -8,7 +8,6 @@
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/export.hpp"
-#include "vantage/ground.hpp"
 #include "vantage/image.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/missed.hpp"

@@ -108,7 +108,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
   ProgressLine line(program.console, "candidates");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
-  const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
+  const Candidates candidates = find_candidates(site, options.candidates, progress);
   const Estimate attainable = candidates.attainable();
   if (program.stop.stop_requested() || !(attainable.value > 0)) {
     spdlog::error(attainable.value > 0 ? "stopped before the end"
@@ -123,8 +123,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   StationGraph graph;
   if (options.link) {
     line.set_label("links");
-    Simulator surroundings = surroundings_of(simulator);
-    graph = overlap_graph(surroundings, candidates.stations(), 10'000, progress);
+    graph = overlap_graph(site.surroundings(), candidates.stations(), 10'000, progress);
   }
   line.set_label("bound");
   const SampledCoverage& sampled = candidates.coverage();

@@ -96,14 +96,19 @@ void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations) question.kept_setups.push_back(station.setup);
 }
 
+// Voxels that a start is chosen by.
+std::uint64_t start_sample(const PlanConfig& config) {
+  return config.exact ? every_voxel : std::min<std::uint64_t>(config.sample_voxels, kStartSample);
+}
+
 // Heads of a greedy choice for the largest network; empty where it was stopped.
 std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const PlanConfig& config, Program& program,
                                std::stop_token stop) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy =
-      greedy_network(site.simulator(), site.area(), site.clash(),
+      greedy_network(site,
                      {.stations = problem.stations_max,
-                      .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
+                      .sample_voxels = start_sample(config),
                       .existing = problem.kept,
                       .existing_setups = problem.kept_setups},
                      {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
@@ -122,9 +127,9 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
   };
   const double link = least(Objective::Kind::link);
   ProgressLine line(program.console, "exact");
-  const ExactResult exact = exact_network(site.simulator(), site.area(), site.clash(),
+  const ExactResult exact = exact_network(site,
                                           {.stations = problem.stations_max,
-                                           .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
+                                           .sample_voxels = start_sample(config),
                                            .link = link,
                                            .apart_m = least(Objective::Kind::distance),
                                            .max_seconds = seconds,
@@ -140,20 +145,6 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
     spdlog::info("exact: {} stations cover {:.4f}, within {:.1f} % of the best that any of the candidates can do",
                  heads.size(), exact.choice.coverage, 100 * exact.choice.gap());
   return heads;
-}
-
-// The site's coordinate system, where stations can be put on a map by it; else nothing, and a line that says why.
-std::string map_system(const Site& site) {
-  const std::string crs = crs_text(site);
-  if (crs.empty()) return crs;
-  try {
-    const Box box = site.scene().bounds();
-    to_wgs84(crs, std::vector<Vec3>{box.min, box.max, {box.min.x, box.max.y, 0}, {box.max.x, box.min.y, 0}});
-    return crs;
-  } catch (const Error& error) {
-    spdlog::warn("no stations.geojson and stations.kml: {}", error.what());
-    return "";
-  }
 }
 
 // Every voxel's count under the network that is shown; empty where it was stopped.
@@ -220,30 +211,26 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
 }
 
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
-                   const PlanResult& result, const std::string& crs, Program& program, const Deadline& all_by) {
-  Simulator& simulator = site.simulator();
+                   const PlanResult& result, Program& program, const Deadline& all_by) {
   const PlanEntry& chosen = result.front[answer(result)];
-  const auto field = cartography(simulator, chosen, program, all_by.stop());
+  const auto field = cartography(site.simulator(), chosen, program, all_by.stop());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  write_plan(folder, result, simulator, site.area(), field ? &*field : nullptr, crs);
+  write_plan(folder, result, site, field ? &*field : nullptr);
   std::optional<MissedVoxels> judged;
-  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, simulator, *field, program);
+  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, *field, program);
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
-        *judged, simulator, site.area(), chosen.stations);
+        *judged, site, chosen.stations);
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
   if (!options.no_report && why_no_report().empty())
-    write_reports(
-        std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
-        site.area(),
-        options.report_head.with(
-            {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}, site),
-        program, all_by.stop());
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, site,
+                  options.report_head.with({.field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}),
+                  program, all_by.stop());
   if (options.prove)
-    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(),
-          result.attainable.has_value(), program);
+    prove(folder / "bound.json", site, chosen.stations, result.problem.kept.size(), result.attainable.has_value(),
+          program);
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
@@ -286,7 +273,6 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
       spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
   }
 
-  const std::string crs = map_system(site);
   constexpr double kMoment_s = 1e-3;  // 0 would be no limit
   if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
   PlanResult result = run_plan(site, problem, config, program, all_by);
@@ -311,7 +297,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   make_folder(folder);  // it may have been removed meanwhile
   write_text(folder / "config.json", as_given.dump(2) + "\n");
-  write_results(folder, site, options, result, crs, program, all_by);
+  write_results(folder, site, options, result, program, all_by);
   return show();
 }
 

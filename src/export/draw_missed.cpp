@@ -11,9 +11,10 @@
 
 namespace vantage {
 
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
                  std::span<const PlacedStation> stations, const std::string& title) {
+  const std::vector<std::uint32_t>& ranks = missed.ranks;
+  const std::vector<WhyMissed>& why = missed.why;
   if (ranks.size() != why.size() || ranks.empty())
     throw Error(Errc::invalid_argument, "draw_missed: " + std::to_string(ranks.size()) + " voxels and " +
                                             std::to_string(why.size()) + " reasons");
@@ -36,7 +37,7 @@ void draw_missed(const std::filesystem::path& file, const Simulator& simulator, 
     }
     return at;
   };
-  draw_voxel_map(file, simulator, area, voxels, stations, title, "Surveyed surfaces from above", legend);
+  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above", legend);
 }
 
 }  // namespace vantage

@@ -210,13 +210,12 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
   return pages;
 }
 
-std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
-                                                  const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const StationLinks& links, const std::string& title,
-                                                  std::span<const std::string> names,
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
+                                                  std::span<const PlacedStation> stations, const StationLinks& links,
+                                                  const std::string& title, std::span<const std::string> names,
                                                   std::span<const StationError> errors) {
-  const PlanView view{.scene = scene,
-                      .area = area,
+  const PlanView view{.scene = site.scene(),
+                      .area = site.area(),
                       .stations = stations,
                       .names = station_names(stations, names),
                       .links = links,

@@ -22,9 +22,8 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
   write_atomically(file, text);
 }
 
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
-                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                      std::span<const std::uint32_t> points) {
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed) {
+  const auto& [ranks, points, why, shares, candidates] = missed;
   if (ranks.size() != why.size() || ranks.size() != points.size())
     throw Error(Errc::invalid_argument, "write_missed_ply: " + std::to_string(ranks.size()) + " voxels, " +
                                             std::to_string(why.size()) + " reasons and " +

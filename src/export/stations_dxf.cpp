@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // DXF of release 12, in ASCII (Autodesk: Drawing Interchange File Formats, Release 12, 1992): the release that every
 // program reads.
+#include "export/stations_dxf.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

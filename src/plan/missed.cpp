@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/missed.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
+#include "plan/why_missed.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -38,14 +37,13 @@ double entry(const Vec3& from, const Vec3& to, const Vec3& centre, double half) 
 
 class Judge {
  public:
-  Judge(const Simulator& simulator, const ClashChecker& clash, std::span<const PlacedStation> candidates,
-        const MissedOptions& options)
-      : simulator_(simulator),
-        clash_(clash),
+  Judge(Site& site, std::span<const PlacedStation> candidates, const MissedOptions& options)
+      : simulator_(site.simulator()),
+        clash_(site.clash()),
         candidates_(candidates),
         steepest_(std::cos(options.flat.in_radians())),
         per_steradian_(
-            1 / (simulator.scanner().azimuth_step.in_radians() * simulator.scanner().zenith_step.in_radians())) {}
+            1 / (simulator_.scanner().azimuth_step.in_radians() * simulator_.scanner().zenith_step.in_radians())) {}
 
   WhyMissed why(std::uint32_t rank, const VoxelPatch& patch) const {
     const Scanner& scanner = simulator_.scanner();
@@ -105,10 +103,10 @@ Settings settings(const MissedOptions& options) {
       .take();
 }
 
-std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                  std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                  std::span<const std::uint32_t> points, const MissedOptions& options,
-                                  const Progress& progress) {
+std::vector<WhyMissed> why_missed(Site& site, std::span<const PlacedStation> candidates,
+                                  std::span<const std::uint32_t> ranks, std::span<const std::uint32_t> points,
+                                  const MissedOptions& options, const Progress& progress) {
+  const Simulator& simulator = site.simulator();
   if (ranks.size() != points.size())
     throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(ranks.size()) + " voxels, but counts of " +
                                             std::to_string(points.size()));
@@ -118,7 +116,7 @@ std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker
     if (rank >= simulator.voxel_count())
       throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(rank) + " of " +
                                               std::to_string(simulator.voxel_count()));
-  const Judge judge(simulator, clash, candidates.first(std::min(candidates.size(), options.candidates)), options);
+  const Judge judge(site, candidates.first(std::min(candidates.size(), options.candidates)), options);
   std::vector<WhyMissed> why(ranks.size(), WhyMissed::captured);
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < ranks.size(); ++i)
@@ -161,14 +159,14 @@ std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<co
   return shares;
 }
 
-MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const VoxelField& field, const MissedOptions& options, const Progress& progress) {
+MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOptions& options,
+                           const Progress& progress) {
+  const Simulator& simulator = site.simulator();
   if (simulator.voxel_count() == 0) return {};
-  const std::vector<PlacedStation> candidates =
-      candidate_positions(area, clash, simulator.scanner(), options.candidates);
+  const std::vector<PlacedStation> candidates = candidate_positions(site, options.candidates);
   MissedVoxels judged{.ranks = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
   for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
-  judged.why = why_missed(simulator, clash, candidates, judged.ranks, judged.points, options, progress);
+  judged.why = why_missed(site, candidates, judged.ranks, judged.points, options, progress);
   if (judged.why.empty()) return {};
   judged.shares = missed_by_node(simulator, judged.ranks, judged.why);
   judged.candidates = candidates.size();

@@ -12,7 +12,6 @@
 #include "plan/trade_off.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
-#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {
@@ -59,10 +58,10 @@ constexpr std::uint64_t kLargerSample = 5;
 constexpr std::size_t kMostRounds = 16;
 
 // Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
-// with no more than twice as many all of them, since as many others are taken to confirm it. 0: all.
+// with no more than twice as many all of them, since as many others are taken to confirm it.
 std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, const Simulator& simulator) {
   const std::uint64_t sample = config.sample_voxels * (problem.fewest ? kLargerSample : 1);
-  return 2 * sample >= simulator.voxel_count() ? 0 : sample;
+  return config.exact || 2 * sample >= simulator.voxel_count() ? every_voxel : sample;
 }
 
 // Attainable counts by the candidates and the existing stations: on the voxels that networks are chosen by, and on as
@@ -148,20 +147,21 @@ PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadl
 
 }  // namespace
 
-PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
-                const PlanConfig& wanted, const PlanWatch& given) {
-  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
+PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted, const PlanWatch& given) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const Deadline search_by(kSearchTimeShare * config.max_seconds, given.stop), all_by(config.max_seconds, given.abort);
+  // Building the site's missing parts is part of the time.
+  const Deadline search_by(kSearchTimeShare * wanted.max_seconds, given.stop), all_by(wanted.max_seconds, given.abort);
   const PlanWatch watch = limited(given, search_by, all_by);
+  Simulator& simulator = site.simulator();
+  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
   SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
-  require_somewhere_to_stand(area, clash, heights);
+  require_somewhere_to_stand(site, heights);
   std::shared_ptr<const Candidates> candidates;
-  PlanContext context(simulator, area, clash, config);
+  PlanContext context(site, config);
   const bool limit_wanted = needs_attainable(problem);
   if (problem.fewest || limit_wanted) {
     const auto report = [&](double done) {
@@ -170,7 +170,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
       watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
     };
     candidates = std::make_shared<const Candidates>(
-        find_candidates(simulator, area, clash,
+        find_candidates(site,
                         {.most = kMostCandidates,
                          .sample_voxels = sample_of_choice(problem, config, simulator),
                          .scanner = finest(simulator, problem.scanners)},

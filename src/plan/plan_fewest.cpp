@@ -200,8 +200,7 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
 }
 
 // Time ran out before anything was traced: an allowed position, of which nothing is known.
-std::vector<PlanEntry> any_position(const PlanContext& context, const Candidates& candidates,
-                                    VerifiedNetworks& verified) {
+std::vector<PlanEntry> any_position(PlanContext& context, const Candidates& candidates, VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();
   if (one.empty())
     one = spread_positions(context.oracle(), context.area().mesh(), context.oracle().height_m, 1).stations;

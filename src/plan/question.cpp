@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "core/seconds_since.hpp"
 #include "core/setting_table.hpp"
 #include "vantage/error.hpp"
 
@@ -208,21 +206,6 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
     all.sample_voxels = usual_sample(problem, *all.renew_iterations > 0, voxels);
   all.sample_share.reset();
   return all;
-}
-
-PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch) {
-  // Building the site's missing parts is part of the time.
-  constexpr double kMoment_s = 1e-3;
-  const auto begun = std::chrono::steady_clock::now();
-  Simulator& simulator = site.simulator();
-  const SearchArea& area = site.area();
-  const ClashChecker& clash = site.clash();
-  PlanConfig limited = config;
-  if (config.max_seconds > 0) limited.max_seconds = std::max(kMoment_s, config.max_seconds - seconds_since(begun));
-  PlanResult result = plan(simulator, area, clash, problem, limited, watch);
-  result.config.max_seconds = config.max_seconds;
-  result.area = area;
-  return result;
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {

@@ -407,11 +407,11 @@ class SheetPanel {
 
 }  // namespace
 
-FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, const Scene& scene,
-                         const SearchArea& area) {
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, Site& site) {
+  const Scene& scene = site.scene();
   const Evaluation& network = report.shown();
   const std::vector<PlacedStation>& stations = network.stations;
-  const std::vector<PlanLevel> levels = cut_levels(scene, area.mesh(), stations);
+  const std::vector<PlanLevel> levels = cut_levels(scene, site.area().mesh(), stations);
   const std::vector<std::size_t> order = visiting_order(facts);
   const bool any_cut = std::ranges::any_of(levels, [](const PlanLevel& level) { return level.cut.has_value(); });
   const std::vector<std::uint32_t> surfaces = any_cut ? surfaces_of(scene.data()) : std::vector<std::uint32_t>();
@@ -422,7 +422,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
                         const std::vector<MapTile>* overview) {
     MapSheet map(layout, tile, level);
     map.clip();
-    map.site(scene, area, surfaces);
+    map.site(scene, site.area(), surfaces);
     if (!level.cut) map.walls(scene.data());
     std::vector<std::size_t> shown;
     if (overview) {
@@ -445,7 +445,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     }
     SheetPanel panel(map.sheet, layout);
     panel.head(report.options.title, name, report.options);
-    panel.scale_and_north(report.options.crs);
+    panel.scale_and_north(report.crs);
     if (level.cut) panel.cut_over(*level.cut - level.floor);
     const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
     if (!overview)
@@ -466,7 +466,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
                                                ", floor at z = " + fixed(level.floor, 2) + " m"
                                          : "Map of the stations";
     name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
-    const SheetLayout layout = layout_of(level, area.mesh(), spots);
+    const SheetLayout layout = layout_of(level, site.area().mesh(), spots);
     if (layout.tiles.size() > 1) {
       Box box;
       for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);

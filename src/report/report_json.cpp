@@ -208,7 +208,7 @@ ordered_json report_json(const Report& report) {
           {"version", version()},
           {"facts", std::move(facts)},
           {"date", report.options.date},
-          {"crs", report.options.crs},
+          {"crs", report.crs},
           {"logo", logo_json(report.options.logo)},
           {"answer", report.answer},
           {"axes", std::move(axes)},

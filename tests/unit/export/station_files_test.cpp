@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/station_files.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "export/stations_dxf.hpp"
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
@@ -41,6 +41,14 @@ SearchArea area() {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return SearchArea::from_mesh(mesh);
 }
+
+// A floor of 20 m × 20 m; only its coordinates matter.
+Site floor_at(const Vec3& origin, const std::string& crs, std::vector<std::string>* warnings = nullptr) {
+  SiteOptions options{.engine = Engine::embree, .crs = crs};
+  if (warnings) options.warn = [warnings](const std::string& line) { warnings->push_back(line); };
+  return Site(test::wall_and_floor(origin).scene(), options);
+}
+constexpr Vec3 kBavaria{500'000, 5'300'000, 100};
 
 // One entity of a DXF: its groups in order.
 using Groups = std::vector<std::pair<int, std::string>>;
@@ -104,9 +112,16 @@ TEST(StationFiles, GeoJsonAndKmlNeedACoordinateSystem) {
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, ""), Error);
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, "EPSG:99999999"), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
-  write_station_files(folder.path(), {stations, kNames}, {}, area(), "");
+  std::vector<std::string> warnings;
+  Site nowhere = floor_at(kBavaria, ""), off_the_map = floor_at({1e30, 0, 0}, kUtm32, &warnings),
+       site = floor_at(kBavaria, kUtm32);
+  write_station_files(folder.path(), {stations, kNames}, {}, nowhere);
   EXPECT_EQ(test::entries(folder.path()), 1u);  // the drawing
-  write_station_files(folder.path(), {stations, kNames}, {}, area(), kUtm32);
+  write_station_files(folder.path(), {stations, kNames}, {}, off_the_map);
+  EXPECT_EQ(test::entries(folder.path()), 1u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("no stations.geojson and stations.kml: ")) << warnings[0];
+  write_station_files(folder.path(), {stations, kNames}, {}, site);
   EXPECT_EQ(test::entries(folder.path()), 3u);
 }
 
@@ -165,7 +180,8 @@ TEST(StationFiles, RefusesWrongUse) {
   const std::vector<std::string> few{"S1"};
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, few}, {}, area()), Error);
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.values = OverlapMatrix(2)}, area()), Error);
-  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, area(), kUtm32), Error);
+  Site site = floor_at(kBavaria, kUtm32);
+  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, site), Error);
   EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, area()), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "placement/place_head.hpp"
+
 #include <gtest/gtest.h>
 
 #include "placement_scenes.hpp"
-#include "vantage/placement.hpp"
 
 namespace vantage {
 namespace {

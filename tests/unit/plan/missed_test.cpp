@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/missed.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "plan/why_missed.hpp"
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -36,26 +37,26 @@ struct Walls {
     config.engine = Engine::embree;
     config.user_size_m = 0.5;
     config.point_spacing_m = 0.1;
-    simulator = std::make_unique<Simulator>(quads.scene(), scanner, config);
-    clash = std::make_unique<ClashChecker>(simulator->scene());
-    ranks.resize(simulator->voxel_count());
+    site.emplace(test::site_of(Simulator(quads.scene(), scanner, config)));
+    ranks.resize(simulator().voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    patches = simulator->voxel_patches(ranks);
+    patches = simulator().voxel_patches(ranks);
   }
 
+  Simulator& simulator() { return site->simulator(); }
+
   Scanner scanner;
-  std::unique_ptr<Simulator> simulator;
-  std::unique_ptr<ClashChecker> clash;
+  std::optional<Site> site;
   std::vector<std::uint32_t> ranks;
   std::vector<VoxelPatch> patches;
   std::vector<PlacedStation> candidates{at({0, 0, 0}), at({0.2, 0.2, 0})};
 };
 
 TEST(VoxelPatches, LieOnTheirSurfaces) {
-  const Walls site;
+  Walls walls;
   const std::array<Vec3, 5> normals{{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}}};
   std::array<double, 5> area{};
-  for (const VoxelPatch& patch : site.patches) {
+  for (const VoxelPatch& patch : walls.patches) {
     ASSERT_LT(patch.mesh, 5u);
     area[patch.mesh] += patch.area_m2;
     if (patch.area_m2 == 0) continue;
@@ -69,18 +70,18 @@ TEST(VoxelPatches, LieOnTheirSurfaces) {
 }
 
 TEST(WhyMissed, TellsEachReason) {
-  const Walls site;
-  const std::vector<std::uint32_t> none(site.ranks.size());
-  const std::vector<WhyMissed> why = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
+  Walls walls;
+  const std::vector<std::uint32_t> none(walls.ranks.size());
+  const std::vector<WhyMissed> why = why_missed(*walls.site, walls.candidates, walls.ranks, none);
   const std::array<WhyMissed, 5> expected{WhyMissed::not_chosen, WhyMissed::hidden, WhyMissed::far, WhyMissed::flat,
                                           WhyMissed::sparse};
-  const double face = site.simulator->voxel_size_m() * site.simulator->voxel_size_m();
+  const double face = walls.simulator().voxel_size_m() * walls.simulator().voxel_size_m();
   std::array<std::size_t, 5> whole{};
   double points = 0, sparse = 0;
   VoxelField field;
-  site.simulator->evaluate(to_network(site.candidates), {.field = &field});
+  walls.simulator().evaluate(to_network(walls.candidates), {.field = &field});
   for (std::size_t i = 0; i < why.size(); ++i) {
-    const VoxelPatch& patch = site.patches[i];
+    const VoxelPatch& patch = walls.patches[i];
     if (patch.area_m2 < 0.95 * face) continue;  // a wall's rim
     ++whole[patch.mesh];
     EXPECT_EQ(why[i], expected[patch.mesh]) << i << " of wall " << patch.mesh;
@@ -93,7 +94,7 @@ TEST(WhyMissed, TellsEachReason) {
       ++sparse;
     }
     if (why[i] == WhyMissed::not_chosen) {
-      EXPECT_GE(field.count[i], site.simulator->goal_density());
+      EXPECT_GE(field.count[i], walls.simulator().goal_density());
     }
   }
   // A ray more or less falls into a voxel; in the mean they are as many as expected, 10.7 where 14.7 are wanted.
@@ -102,17 +103,17 @@ TEST(WhyMissed, TellsEachReason) {
 }
 
 TEST(WhyMissed, KnowsWhatIsCaptured) {
-  const Walls site;
-  const auto enough = static_cast<std::uint32_t>(std::ceil(site.simulator->goal_density()));
-  std::vector<std::uint32_t> points(site.ranks.size(), enough);
+  Walls walls;
+  const auto enough = static_cast<std::uint32_t>(std::ceil(walls.simulator().goal_density()));
+  std::vector<std::uint32_t> points(walls.ranks.size(), enough);
   points[0] = enough - 1;
-  const std::vector<WhyMissed> why = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
+  const std::vector<WhyMissed> why = why_missed(*walls.site, walls.candidates, walls.ranks, points);
   EXPECT_NE(why[0], WhyMissed::captured);
   EXPECT_TRUE(std::all_of(why.begin() + 1, why.end(), [](WhyMissed w) { return w == WhyMissed::captured; }));
-  const std::vector<MissedShare> shares = missed_by_node(*site.simulator, site.ranks, why);
+  const std::vector<MissedShare> shares = missed_by_node(walls.simulator(), walls.ranks, why);
   ASSERT_EQ(shares.size(), 6u);
-  EXPECT_EQ(shares[0].voxels, site.ranks.size());
-  EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - 1.0 / static_cast<double>(site.ranks.size()), 1e-12);
+  EXPECT_EQ(shares[0].voxels, walls.ranks.size());
+  EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - 1.0 / static_cast<double>(walls.ranks.size()), 1e-12);
   std::uint64_t sum = 0;
   for (std::size_t k = 1; k < 6; ++k) {
     EXPECT_EQ(shares[k].node, "quad " + std::to_string(k - 1));
@@ -122,11 +123,11 @@ TEST(WhyMissed, KnowsWhatIsCaptured) {
 }
 
 TEST(WhyMissed, RefusesWhatDoesNotFit) {
-  const Walls site;
-  const std::vector<std::uint32_t> none(site.ranks.size()), one(1), outside{0xFFFFFFF0u};
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, one), Error);
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, {}, site.ranks, none), Error);
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, site.candidates, outside, one), Error);
+  Walls walls;
+  const std::vector<std::uint32_t> none(walls.ranks.size()), one(1), outside{0xFFFFFFF0u};
+  EXPECT_THROW(why_missed(*walls.site, walls.candidates, walls.ranks, one), Error);
+  EXPECT_THROW(why_missed(*walls.site, {}, walls.ranks, none), Error);
+  EXPECT_THROW(why_missed(*walls.site, walls.candidates, outside, one), Error);
 }
 
 }  // namespace
