@@ -104,7 +104,7 @@ void add_stations(py::module_& m) {
       .def_property_readonly(
           "status", [](const PlacedStation& s) { return to_string(s.status); },
           "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
-      .def_readonly("kept", &PlacedStation::kept, "Whether it is an existing station.")
+      .def_readonly("existing", &PlacedStation::existing, "Whether it is an existing station.")
       .def_readonly("setup", &PlacedStation::setup, "Setup of the scanner.")
       .def_property_readonly("active", &active, "Whether it adds to the measures of its network.")
       .def("__repr__", [](const PlacedStation& s) {

@@ -73,12 +73,27 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
 /// Square matrix with a header line; row and column i are station i.
 void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
 
-/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,kept`. If a station is turned or does not
-/// have the first scanner, also `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of the
-/// head, ground_z of the ground. Numbers read back to the same bits. `scanners` are indexed by `StationSetup::scanner`;
-/// without them the last two columns are left out.
+/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,existing`. If a station is turned or does
+/// not have the first scanner, also `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of
+/// the head, ground_z of the ground. Numbers read back to the same bits. `scanners` are indexed by
+/// `StationSetup::scanner`; without them the last two columns are left out.
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
                         std::span<const Scanner> scanners = {});
+
+/// Writes stations for maps and drawings; the extension decides the format:
+/// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.
+///   Properties: name, status, existing, head_height_m, and in the survey frame x, y, z of the head and ground_z. A
+///   station without ground has no geometry.
+/// - .kml (2.2, OGC 07-147r2): a Placemark for each station with ground, with the same position and figures. Existing
+///   stations, and those left out, have icons of another colour.
+/// - .dxf (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point
+///   and a circle below the tripod), STATION_NAMES, LINKS (between the grounds of linked stations), SEARCH_AREA (closed
+///   polylines).
+/// `names`: from `station_names()`, one each. `links`: of these stations, or without values. Throws Error: io;
+/// invalid_argument (another extension, sizes that do not match, for .geojson and .kml a site without a coordinate
+/// system or stations outside of it).
+void write_stations(const std::filesystem::path& file, std::span<const PlacedStation> stations,
+                    std::span<const std::string> names, const StationLinks& links, Site& site);
 
 /// One line of a table, as `read_stations_csv` returns it. Survey frame, metres.
 struct StationRow {

@@ -134,7 +134,7 @@ struct PlacedStation {
   Vec3 position;     ///< Scanner's head, survey frame: the ground plus the height. (0, 0, 0) in a hole.
   Vec3 ground = {};  ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;
-  bool kept = false;  ///< Existing station, scanned before the plan.
+  bool existing = false;  ///< Existing station, scanned before the plan.
   StationSetup setup = {};
 };
 /// Whether the station adds to what its network measures: not in a hole, a solid or a clash. An existing station was

@@ -34,9 +34,9 @@ struct SurveyProblem {
   /// Number of stations to place. If the two differ, the number is searched too, by the decision variable α of equation
   /// 7.
   std::size_t stations_min = 4, stations_max = 4;
-  std::vector<Vec3> kept = {};  ///< Heads of existing stations: the first of every network, not counted above.
+  std::vector<Vec3> existing = {};  ///< Heads of existing stations: the first of every network, not counted above.
   /// Their setups, one each; empty: upright, with the first scanner.
-  std::vector<StationSetup> kept_setups = {};
+  std::vector<StationSetup> existing_setups = {};
   /// Indices into `Simulator::scanners()` that each station chooses from, in their order, e.g. one model with finer and
   /// finer steps. Empty: the first scanner.
   std::vector<std::uint32_t> scanners = {};
@@ -248,7 +248,7 @@ struct GreedyConfig {
   std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
   std::uint64_t sample_voxels = 20'000;            ///< May be `every_voxel`.
   std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
-  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::kept_setups`.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::existing_setups`.
 };
 
 /// Result of greedy_network().

@@ -28,8 +28,8 @@ struct SurveyQuestion {
   std::vector<std::string> objectives = {};                 ///< Names; replace the problem's own.
   std::vector<std::string> requirements = {};               ///< In the form of `make_requirement()`.
   std::optional<std::array<std::size_t, 2>> stations = {};  ///< Least and largest number; one number twice.
-  std::vector<Vec3> kept = {};                              ///< As `SurveyProblem::kept`.
-  std::vector<StationSetup> kept_setups = {};               ///< One each, or none.
+  std::vector<Vec3> existing = {};                          ///< As `SurveyProblem::existing`.
+  std::vector<StationSetup> existing_setups = {};           ///< One each, or none.
   /// Steps that each station chooses from: degrees ("0.1"), or settings of the site's preset ("6mm").
   std::vector<std::string> search_steps = {};
   std::optional<std::array<double, 2>> heights_m = {};  ///< Searched per station.
@@ -42,7 +42,7 @@ struct SurveyQuestion {
   bool asks_for_fewest() const;
 };
 
-/// One row for each setting. Existing stations (`kept`) have none: users give them in several ways.
+/// One row for each setting. `existing` has none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
 const SettingTable<RegistrationOptions>& registration_settings();
 const SettingTable<OnSiteOptions>& on_site_settings();

@@ -25,7 +25,6 @@
 #include "vantage/scene_builder.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
-#include "vantage/station_files.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"

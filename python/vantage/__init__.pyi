@@ -220,7 +220,7 @@ class PlacedStation:
     @property
     def status(self) -> Literal["ok", "hole", "clash", "inside", "off_ground", "outside"]: ...
     @property
-    def kept(self) -> bool: ...
+    def existing(self) -> bool: ...
     @property
     def setup(self) -> StationSetup: ...
     @property
@@ -939,7 +939,7 @@ class MeasuredNetwork:
     @property
     def heads(self) -> Floats: ...
     @property
-    def kept(self) -> int: ...
+    def existing(self) -> int: ...
     @property
     def visible_parts(self) -> int: ...
     @property
@@ -999,8 +999,8 @@ class SurveyProblem:
         name: str = "custom",
         stations_min: int = 4,
         stations_max: int = 4,
-        kept: Iterable[Sequence[float]] = (),
-        kept_setups: Iterable[StationSetup] = (),
+        existing: Iterable[Sequence[float]] = (),
+        existing_setups: Iterable[StationSetup] = (),
         scanners: Iterable[int] = (),
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
@@ -1014,8 +1014,8 @@ class SurveyProblem:
     name: str
     stations_min: int
     stations_max: int
-    kept: Tuple[Vec3, ...]
-    kept_setups: Tuple[StationSetup, ...]
+    existing: Tuple[Vec3, ...]
+    existing_setups: Tuple[StationSetup, ...]
     scanners: Tuple[int, ...]
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float

@@ -137,7 +137,8 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     refuse("--targets and --propose-targets: targets are for --registration, which was not asked for");
   for (const std::string& file : options.station_files) {
     must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
-    if (!file.ends_with(".dxf")) to_wgs84(crs_text(site), {});  // an error now, not behind the rays
+    if (!file.ends_with(".dxf") && site.crs().empty())
+      refuse("--write-stations: longitude and latitude need the coordinate system of the site: give --crs");
   }
   for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
   if (!options.reports.empty() && !why_no_report().empty()) refuse("--report: " + why_no_report());
@@ -203,7 +204,7 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
                                names.size() == 1 ? "" : "s", found.value("coverage"), found.value("overlap")),
                    names, errors);
   }
-  for (const std::string& file : options.station_files) write_stations(file, {found.stations, names}, links, site);
+  for (const std::string& file : options.station_files) write_stations(file, found.stations, names, links, site);
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
                   options.report_head.with({.missed = judged}), program, program.abort);

@@ -91,9 +91,9 @@ std::vector<PlacedStation> heads_of(Site& site, const std::vector<StationText>& 
 }
 
 void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
-  for (const PlacedStation& station : stations) question.kept.push_back(station.position);
+  for (const PlacedStation& station : stations) question.existing.push_back(station.position);
   if (std::ranges::all_of(stations, [](const PlacedStation& s) { return s.setup == StationSetup(); })) return;
-  for (const PlacedStation& station : stations) question.kept_setups.push_back(station.setup);
+  for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
 }
 
 // Voxels that a start is chosen by.
@@ -109,8 +109,8 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
       greedy_network(site,
                      {.stations = problem.stations_max,
                       .sample_voxels = start_sample(config),
-                      .existing = problem.kept,
-                      .existing_setups = problem.kept_setups},
+                      .existing = problem.existing,
+                      .existing_setups = problem.existing_setups},
                      {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
@@ -133,7 +133,7 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
                                            .link = link,
                                            .apart_m = least(Objective::Kind::distance),
                                            .max_seconds = seconds,
-                                           .existing = problem.kept},
+                                           .existing = problem.existing},
                                           {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (exact.cancelled) return heads;
@@ -229,8 +229,27 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
                   options.report_head.with({.field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}),
                   program, all_by.stop());
   if (options.prove)
-    prove(folder / "bound.json", site, chosen.stations, result.problem.kept.size(), result.attainable.has_value(),
+    prove(folder / "bound.json", site, chosen.stations, result.problem.existing.size(), result.attainable.has_value(),
           program);
+}
+
+// Makes a locked folder this run's, unless it holds the results of another one. Throws Error invalid_argument.
+EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::json& as_given, const PlanConfig& config,
+                         bool force) {
+  AtomicFile::remove_leftovers_in(folder);
+  const EarlierResults before = earlier_results(folder, as_given);
+  if (before.another_run && !config.resume && !force)
+    throw Error(Errc::invalid_argument, "plan: " + folder.string() +
+                                            " holds the results of another run; give another folder with -o, --resume "
+                                            "to go on with it, or --force to overwrite it");
+  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (config.resume) {
+    if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
+      spdlog::info("resuming from {}", config.checkpoint.string());
+    else
+      spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
+  }
+  return before;
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
@@ -259,20 +278,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const nlohmann::json as_given = plan_options(site, options.question, problem, config);
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   const FolderLock lock(folder);
-  AtomicFile::remove_leftovers_in(folder);
-  const EarlierResults before = earlier_results(folder, as_given);
-  if (before.another_run && !config.resume && !options.force)
-    throw Error(Errc::invalid_argument, "plan: " + folder.string() +
-                                            " holds the results of another run; give another folder with -o, --resume "
-                                            "to go on with it, or --force to overwrite it");
-  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
-  if (config.resume) {
-    if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
-      spdlog::info("resuming from {}", config.checkpoint.string());
-    else
-      spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
-  }
-
+  const EarlierResults before = take_over(folder, as_given, config, options.force);
   constexpr double kMoment_s = 1e-3;  // 0 would be no limit
   if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
   PlanResult result = run_plan(site, problem, config, program, all_by);

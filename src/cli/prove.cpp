@@ -57,7 +57,7 @@ void prove(const std::filesystem::path& file, Site& site, std::span<const Placed
     chosen.push_back({head.x, head.y, head.z});
   }
   write_text(file, nlohmann::json{{"stations", placed},
-                                  {"kept", kept},
+                                  {"existing", kept},
                                   {"measure", of_attainable ? "captured" : "coverage"},
                                   {"reached", reached.value},
                                   {"reached_se", reached.standard_error},

@@ -271,12 +271,12 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
 // Searches briefly from the present stations for more coverage, with links no weaker than now or than required.
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
-  std::vector<StationSetup> kept_setups;
+  std::vector<StationSetup> existing_setups;
   std::set<std::uint32_t> scanners;  // of the movable stations
   for (const EditStation& s : stations_) {
     (s.locked ? kept : start).push_back(s.placed.position);
     if (s.locked)
-      kept_setups.push_back(s.placed.setup);
+      existing_setups.push_back(s.placed.setup);
     else
       scanners.insert(s.placed.setup.scanner);
   }
@@ -287,8 +287,8 @@ void EditSession::improve(const Progress& progress) {
   const double before = evaluation_.value("coverage");
   const std::string names[] = {"coverage"};
   SurveyProblem problem = survey_problem(names, start.size(), start.size());
-  problem.kept = kept;
-  problem.kept_setups = kept_setups;
+  problem.existing = kept;
+  problem.existing_setups = existing_setups;
   if (scanners.size() == 1) problem.scanners = {*scanners.begin()};
   Requirement linked = make_requirement("link>=0", problem.settings());
   linked.limit = stations_.size() > 1 ? std::min(weakest, options_.link) : 0;

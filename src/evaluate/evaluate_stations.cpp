@@ -103,13 +103,13 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       made.back().counts.cancelled = true;
       continue;
     }
-    const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::kept));
+    const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::existing));
     std::optional<Visit> visit;
     if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
     MeasuredNetwork measured{
         .counts = counts[k],
         .stations = stations[k],
-        .kept = existing,
+        .existing = existing,
         .goal_density = site.simulator.goal_density(),
         .voxels = site.simulator.voxel_count(),
         .overlap = options.overlap ? overlap_matrix(counts[k]) : OverlapMatrix{},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/station_files.hpp"
+#include "export/station_files.hpp"
 
-#include "export/stations_dxf.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -16,8 +15,9 @@ std::vector<Vec3> corners(const Box& box) {
 
 }  // namespace
 
-void write_stations(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
-                    Site& site) {
+void write_stations(const std::filesystem::path& file, std::span<const PlacedStation> placed,
+                    std::span<const std::string> names, const StationLinks& links, Site& site) {
+  const NamedStations stations{placed, names};
   const std::string extension = file.extension().string();
   if (extension == ".geojson")
     write_stations_geojson(file, stations, crs_text(site));
@@ -32,7 +32,7 @@ void write_stations(const std::filesystem::path& file, const NamedStations& stat
 
 void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,
                          Site& site) {
-  write_stations(folder / "stations.dxf", stations, links, site);
+  write_stations_dxf(folder / "stations.dxf", stations, links, site.area());
   const std::string crs = crs_text(site);
   if (crs.empty()) return;
   try {

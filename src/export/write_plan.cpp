@@ -3,10 +3,10 @@
 
 #include "core/text.hpp"
 #include "export/pictures.hpp"
+#include "export/station_files.hpp"
 #include "export/tables.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
-#include "vantage/station_files.hpp"
 #include "vantage/summary.hpp"
 
 namespace vantage {

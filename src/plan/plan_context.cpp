@@ -34,7 +34,7 @@ void PlanContext::ask(const SurveyProblem& problem) {
   evaluator_.emplace(
       simulator_, measures_,
       SimulatorEvaluator::Options{
-          .existing = problem.kept.size(),
+          .existing = problem.existing.size(),
           .visible_parts =
               [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,

@@ -114,7 +114,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
-  std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.kept, problem.kept_setups);
+  std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.existing, problem.existing_setups);
   for (PlacedStation& station : existing)
     if (active(station)) station.status = StationStatus::ok;  // others are not traced
   look(choice.table, existing, candidates.stations(), make_table.by_goals(candidates.coverage().matrix()),

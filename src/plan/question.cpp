@@ -32,7 +32,7 @@ void require_at_least(SurveyProblem& problem, const char* name, double limit) {
 }
 
 std::array<std::size_t, 2> station_range(const SurveyQuestion& question) {
-  const std::size_t kept = question.kept.size();
+  const std::size_t kept = question.existing.size();
   if (!question.stations && !question.asks_for_fewest())
     throw Error(Errc::invalid_argument, "stations: how many? Give N, or A..B to search the number too");
   if (kept >= max_stations)
@@ -156,7 +156,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
-  asked.kept = question.kept, asked.kept_setups = question.kept_setups;
+  asked.existing = question.existing, asked.existing_setups = question.existing_setups;
   asked.heights_m = question.heights_m;
   asked.link_overlap = least;
   asked.registration = question.registration;

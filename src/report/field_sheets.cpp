@@ -331,12 +331,12 @@ class SheetPanel {
     draw_station(canvas, {x_ + 9, y_}, "S1", example, 6.5);
     words("station");
     if (kept) {
-      example.kept = true;
+      example.existing = true;
       draw_station(canvas, {x_ + 9, y_}, "K1", example, 6.5);
       words("station that is there already");
     }
     if (left_out) {
-      example.kept = false, example.status = StationStatus::clash;
+      example.existing = false, example.status = StationStatus::clash;
       draw_station(canvas, {x_ + 9, y_}, "S2", example, 6.5);
       words("left out: no place to stand");
     }
@@ -451,7 +451,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     if (!overview)
       panel.legend(level.cut.has_value(), network.visit && !overview,
                    any([&](std::size_t k) { return !facts[k].corners.empty(); }),
-                   any([&](std::size_t k) { return stations[k].kept; }),
+                   any([&](std::size_t k) { return stations[k].existing; }),
                    any([&](std::size_t k) { return !active(stations[k]); }));
     panel.list(shown, facts, stations);
     all.sheets.push_back(std::move(map.sheet));

@@ -25,7 +25,7 @@ std::string scanner_text(const Scanner& scanner) {
 }
 
 std::string stations_text(const Evaluation& network) {
-  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::kept);
+  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::existing);
   const auto left_out = std::ranges::count_if(network.stations, [](const PlacedStation& s) { return !active(s); });
   std::string text =
       std::to_string(network.stations.size()) + (network.stations.size() == 1 ? " station" : " stations");

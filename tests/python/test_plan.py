@@ -73,7 +73,7 @@ class Plans(unittest.TestCase):
 
     def test_requirements_and_kept_stations_hold(self):
         problem = vantage.SurveyProblem(
-            stations_min=3, stations_max=3, kept=[(0, 0, 1.5)], objectives=["overlap"],
+            stations_min=3, stations_max=3, existing=[(0, 0, 1.5)], objectives=["overlap"],
             requirements=["coverage >= 0.6"])
         problem.requirements += (vantage.Requirement(problem.objectives[0], "<=", 1.0),)
         self.assertEqual([str(each) for each in problem.requirements], ["coverage >= 0.6", "overlap <= 1"])
@@ -82,7 +82,7 @@ class Plans(unittest.TestCase):
         self.assertEqual(found.what_would_help, [])
         answer = found.answer
         self.assertGreaterEqual(answer.value("coverage"), 0.6)
-        self.assertEqual([station.kept for station in answer.stations], [True, False, False, False])
+        self.assertEqual([station.existing for station in answer.stations], [True, False, False, False])
         np.testing.assert_array_equal(answer.heads[0], [0, 0, 1.5])
         self.assertIn("captured", found.summary)
         with self.assertRaises(AttributeError):
@@ -92,9 +92,9 @@ class Plans(unittest.TestCase):
         steps = [vantage.Scanner(azimuth_step_deg=step, zenith_step_deg=step, height_m=1.5) for step in (0.2, 0.5)]
         site = vantage.Site(self.site.scene, scanners=steps, engine="embree", user_size=0.2, spacing=0.03, seed=SEED)
         lying = vantage.StationSetup(tilt_deg=90)
-        problem = vantage.SurveyProblem(stations_min=3, stations_max=3, kept=[(8, 0, 1.5)], kept_setups=[lying],
+        problem = vantage.SurveyProblem(stations_min=3, stations_max=3, existing=[(8, 0, 1.5)], existing_setups=[lying],
                                         scanners=[0, 1], objectives=["coverage", "time"])
-        self.assertEqual((problem.kept_setups, problem.scanners), ((lying,), (0, 1)))
+        self.assertEqual((problem.existing_setups, problem.scanners), ((lying,), (0, 1)))
         found = site.plan(problem, **SMALL)
         self.assertEqual([s.azimuth_step_deg for s in found.scanners], [0.2, 0.5])
         chosen = set()

@@ -15,7 +15,7 @@ struct Bench {
                                        {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
   Simulator &simulator = whole.simulator(), &surroundings = whole.surroundings();
   OnSite on_site = whole.on_site();
-  std::vector<PlacedStation> stations{{.position = {-2, 0, 1.5}, .kept = true},
+  std::vector<PlacedStation> stations{{.position = {-2, 0, 1.5}, .existing = true},
                                       {.position = {1, 1, 1.5}},
                                       {.position = {2, 0, 1.5}},
                                       {.position = {0, 0, 1.5}, .status = StationStatus::clash}};

@@ -290,7 +290,7 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   const test::TemporaryFolder folder;
   Site site = site_of(room(), floor_of_room());
   const auto station = [](double x, double y, StationStatus status, bool kept) {
-    return PlacedStation{.uv = {}, .position = {x, y, 1.8}, .ground = {x, y, 0}, .status = status, .kept = kept};
+    return PlacedStation{.uv = {}, .position = {x, y, 1.8}, .ground = {x, y, 0}, .status = status, .existing = kept};
   };
   const std::vector<PlacedStation> stations{
       station(-1, -1, StationStatus::ok, false),  station(-1, -1, StationStatus::ok, false),

@@ -159,11 +159,11 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"name", [](SurveyProblem& p) { p.name = "other"; }, false},
     {"stations_min", [](SurveyProblem& p) { p.stations_min = 2; }},
     {"stations_max", [](SurveyProblem& p) { p.stations_max = 5; }},
-    {"kept",
+    {"existing",
      [](SurveyProblem& p) {
-       p.kept = {{1, 2, 3}};
+       p.existing = {{1, 2, 3}};
      }},
-    {"kept_setups", [](SurveyProblem& p) { p.kept_setups = {{.tilt = Angle::degrees(90)}}; }},
+    {"existing_setups", [](SurveyProblem& p) { p.existing_setups = {{.tilt = Angle::degrees(90)}}; }},
     {"scanners",
      [](SurveyProblem& p) {
        p.scanners = {0, 1};

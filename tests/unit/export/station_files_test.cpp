@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "export/station_files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "export/stations_dxf.hpp"
 #include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
+#include "vantage/export.hpp"
 
 namespace vantage {
 namespace {
@@ -22,7 +24,7 @@ const std::string kUtm32 = "EPSG:25832";
 std::vector<PlacedStation> sample() {
   const auto at = [](double x, double y, StationStatus status, bool kept) {
     PlacedStation s{.uv = {}, .position = {x, y, 101.85}, .status = status};
-    s.ground = {x, y, 100}, s.kept = kept;
+    s.ground = {x, y, 100}, s.existing = kept;
     return s;
   };
   std::vector<PlacedStation> stations{at(500'000, 5'300'000, StationStatus::ok, true),
@@ -84,7 +86,7 @@ TEST(StationFiles, DxfHasStationsNamesLinksAndArea) {
   for (const Groups& e : entities_of(text)) by_type[group(e, 0)].push_back(e);
 
   ASSERT_EQ(by_type["POINT"].size(), 3u);  // the one in a hole has no place
-  EXPECT_EQ(group(by_type["POINT"][0], 8), "STATIONS_KEPT");
+  EXPECT_EQ(group(by_type["POINT"][0], 8), "STATIONS_EXISTING");
   EXPECT_EQ(group(by_type["POINT"][1], 8), "STATIONS");
   EXPECT_EQ(group(by_type["POINT"][2], 8), "STATIONS_LEFT_OUT");
   EXPECT_EQ(group(by_type["POINT"][1], 10), "500010.50000");
@@ -154,11 +156,11 @@ TEST(StationFiles, GeoJsonFollowsTheRfc) {
   EXPECT_GT(feature["geometry"]["coordinates"][0], 9.0);  // longitude first
   EXPECT_EQ(feature["geometry"]["coordinates"][2], 100);
   EXPECT_EQ(feature["properties"]["name"], kNames[1]);
-  EXPECT_EQ(feature["properties"]["kept"], false);
+  EXPECT_EQ(feature["properties"]["existing"], false);
   EXPECT_EQ(feature["properties"]["head_height_m"], 1.85);
   EXPECT_EQ(feature["properties"]["x"], 500'010.5);
   EXPECT_EQ(feature["properties"]["ground_z"], 100);
-  EXPECT_EQ(json["features"][0]["properties"]["kept"], true);
+  EXPECT_EQ(json["features"][0]["properties"]["existing"], true);
   EXPECT_EQ(json["features"][2]["properties"]["status"], "clash");
   EXPECT_TRUE(json["features"][3]["geometry"].is_null());
 }
@@ -171,7 +173,7 @@ TEST(StationFiles, KmlEscapesNamesAndLeavesOutWhatHasNoPlace) {
   EXPECT_NE(kml.find("<name>S1 &lt;north&gt; &amp; Tür</name>"), std::string::npos);
   EXPECT_EQ(kml.find("S3"), std::string::npos);
   EXPECT_NE(kml.find("#left_out"), std::string::npos);
-  EXPECT_NE(kml.find("#kept"), std::string::npos);
+  EXPECT_NE(kml.find("#existing"), std::string::npos);
 }
 
 TEST(StationFiles, RefusesWrongUse) {
@@ -181,7 +183,7 @@ TEST(StationFiles, RefusesWrongUse) {
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, few}, {}, area()), Error);
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.values = OverlapMatrix(2)}, area()), Error);
   Site site = floor_at(kBavaria, kUtm32);
-  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, site), Error);
+  EXPECT_THROW(write_stations(folder / "a.shp", stations, kNames, {}, site), Error);
   EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, area()), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }

@@ -209,12 +209,12 @@ TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
 TEST(Plan, KeepsStationsThatAreThere) {
   Survey survey;
   SurveyProblem problem = coverage_fix(1);
-  problem.kept = {kPlace + Vec3{-3, 0, 1.2}, kPlace + Vec3{3, 0, 1.2}};
+  problem.existing = {kPlace + Vec3{-3, 0, 1.2}, kPlace + Vec3{3, 0, 1.2}};
   const PlanResult result = plan(survey.site, problem, {.iterations = 3});
   ASSERT_EQ(result.front.size(), 1u);
   ASSERT_EQ(result.front[0].stations.size(), 3u);
-  EXPECT_EQ(result.front[0].stations[0].position, problem.kept[0]);
-  EXPECT_EQ(result.front[0].stations[1].position, problem.kept[1]);
+  EXPECT_EQ(result.front[0].stations[0].position, problem.existing[0]);
+  EXPECT_EQ(result.front[0].stations[1].position, problem.existing[1]);
   EXPECT_GT(result.front[0].counts.points_on_surveyed[0], 0u);
 }
 
