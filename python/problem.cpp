@@ -11,7 +11,7 @@ namespace {
 struct Measured {
   Evaluation evaluation;
   std::vector<PlacedStation> stations = {};
-  std::size_t kept = 0, visible_parts = 0;
+  std::size_t existing = 0, visible_parts = 0;
   double minutes_on_site = 0;
   std::optional<Evaluation> surroundings = std::nullopt;
 };

@@ -77,9 +77,10 @@ void add_sites(py::module_& m) {
       .def("__repr__", [](const SiteChoice& choice) {
         return "<vantage.SiteChoice " + choice.setting + "=" + choice.value + ": " + choice.why + ">";
       });
-  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(m, "Site",
-                                                             "Scene, scanner, ground, clash checks and simulator, with "
-                                                             "all defaults of the program. `Site.plan` plans a\nsurvey of it.");
+  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(
+      m, "Site",
+      "Scene, scanner, ground, clash checks and simulator, with "
+      "all defaults of the program. `Site.plan` plans a\nsurvey of it.");
   const SettingTable<SiteOptions> of_a_scene = settings_of_a_scene();
   type.def(py::init([of_a_scene](const Scene& scene, std::vector<Scanner> scanners, std::string name,
                                  const py::kwargs& given) {

@@ -87,8 +87,9 @@ struct Yard {
     scanner.points_per_second = 90'000;                                // one minute
   }
   Site site(const std::vector<Scanner>& scanners) const {
-    return test::site_of(Simulator(scene, scanners, {.engine = Engine::embree, .user_size_m = 1, .point_spacing_m = 0.5}),
-                         SearchArea::from_mesh(ground));
+    return test::site_of(
+        Simulator(scene, scanners, {.engine = Engine::embree, .user_size_m = 1, .point_spacing_m = 0.5}),
+        SearchArea::from_mesh(ground));
   }
   OnSite on_site(const OnSiteOptions& options = {}) const { return site({scanner}).on_site(options); }
 };
