@@ -4,6 +4,7 @@
 // No scan should stand alone. For every station take the neighbour that shares most with it, as a share of the smaller
 // scan; the least of these is to be as large as can be, and the coverage at least 0.5.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <vantage/vantage.hpp>
@@ -20,11 +21,8 @@ double loneliest(const MeasuredNetwork& network) {
 int main(int argc, char** argv) try {
   if (argc != 4) return std::fprintf(stderr, "usage: own_objective SCENE N FOLDER\n"), 2;
 
-  const Scene scene = Scene::load(argv[1]);
-  const Scanner scanner{.azimuth_step = Angle::degrees(0.2), .zenith_step = Angle::degrees(0.2), .height_m = 1.5};
-  Simulator simulator(scene, scanner, {.user_size_m = 0.2, .point_spacing_m = 0.05});
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
+  const std::array steps{Angle::degrees(0.2), Angle::degrees(0.2)};
+  Site site = Site::open(argv[1], {.steps = steps, .height_m = 1.5, .user_size_m = 0.2, .spacing_m = 0.05});
 
   const auto stations = static_cast<std::size_t>(std::atoi(argv[2]));
   SurveyProblem problem = coverage_fix(stations);
@@ -36,12 +34,12 @@ int main(int argc, char** argv) try {
                                 .value = loneliest});
   problem.requirements = {make_requirement("coverage >= 0.5")};
   const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
-  const PlanResult result = plan(simulator, area, clash, problem, config);
+  const PlanResult result = plan(site, problem, config);
 
   for (const PlanEntry& entry : result.front)
     std::printf("coverage %.3f, neighbour %.3f%s\n", entry.value("coverage"), entry.value("neighbour"),
                 entry.violation > 0 ? "  (misses what is required)" : "");
-  write_plan(argv[3], result, simulator, area);
+  write_plan(argv[3], result, site);
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

@@ -2,7 +2,7 @@
 #include "arrays.hpp"
 #include "module.hpp"
 #include "options.hpp"
-#include "simulator.hpp"
+#include "site.hpp"
 
 namespace vantage::python {
 namespace {
@@ -130,6 +130,11 @@ void add_graph(py::module_& m) {
       py::arg("progress") = py::none(), "Scan overlap of each pair over all surfaces, as a share of the smaller scan.");
 }
 
+template <class Config>
+std::optional<std::uint64_t> sample_of(const Config& config) {
+  return config.sample_voxels == every_voxel ? std::nullopt : std::optional(config.sample_voxels);
+}
+
 void add_finding(py::module_& m) {
   py::class_<Candidates>(m, "Candidates", "Evenly spread allowed positions, and the coverage of stations on them.")
       .def_property_readonly("stations", &Candidates::stations, "The positions, all 'ok'.")
@@ -150,18 +155,23 @@ void add_finding(py::module_& m) {
           .add("most", &CandidateConfig::most, "Largest number.")
           .add("change", &CandidateConfig::change,
                "Stops once doubling changes their common coverage by less than this share.")
-          .add("sample_voxels", &CandidateConfig::sample_voxels, "0: every voxel.")
+          .add<std::optional<std::uint64_t>>(
+              "sample_voxels", [](const CandidateConfig& c) { return sample_of(c); },
+              [](CandidateConfig& c, std::optional<std::uint64_t> voxels) {
+                c.sample_voxels = voxels.value_or(every_voxel);
+              },
+              "Size of the sample of voxels; None: every voxel.")
           .add("scanner", &CandidateConfig::scanner, "Scanner on each, an index into `Simulator.scanners`.")
           .add("max_seconds", &CandidateConfig::max_seconds, "Time limit for growing; 0: none.");
   m.def(
       "find_candidates",
-      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, py::object progress,
-                const py::kwargs& given) {
+      [options](GuardedSite& self, py::object progress, const py::kwargs& given) {
         const CandidateConfig config = options.read(given);
+        const auto lock = self.taken();
         LongCall call(std::move(progress));
-        return call.run([&] { return find_candidates(self.simulator, area, clash, config, call.progress()); });
+        return call.run([&] { return find_candidates(self.site, config, call.progress()); });
       },
-      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::kw_only(), py::arg("progress") = py::none(),
+      py::arg("site"), py::kw_only(), py::arg("progress") = py::none(),
       ("Allowed positions at the scanner's height, spread evenly. Their number doubles until their common "
        "coverage\nhardly changes. Raises Error invalid_argument if none is allowed." +
        options.doc())
@@ -278,23 +288,27 @@ void add_greedy(py::module_& m) {
   const auto options =
       Options<GreedyConfig>("greedy_network")
           .add("candidates", &GreedyConfig::candidates, "Positions to choose from, spread evenly over the ground.")
-          .add("sample_voxels", &GreedyConfig::sample_voxels, "0: every voxel.")
+          .add<std::optional<std::uint64_t>>(
+              "sample_voxels", [](const GreedyConfig& c) { return sample_of(c); },
+              [](GreedyConfig& c, std::optional<std::uint64_t> voxels) {
+                c.sample_voxels = voxels.value_or(every_voxel);
+              },
+              "Size of the sample of voxels; None: every voxel.")
           .add("existing", &GreedyConfig::existing, "Heads of existing stations.")
           .add("existing_setups", &GreedyConfig::existing_setups,
                "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
       "greedy_network",
-      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
-                py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, std::size_t stations, py::object progress, const py::kwargs& given) {
         GreedyConfig config = options.read(given);
         config.stations = stations;
+        const auto lock = self.taken();
         LongCall call(std::move(progress));
-        return call.run([&] { return greedy_network(self.simulator, area, clash, config, call.progress()); });
+        return call.run([&] { return greedy_network(self.site, config, call.progress()); });
       },
-      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
-      py::arg("progress") = py::none(),
+      py::arg("site"), py::arg("stations"), py::kw_only(), py::arg("progress") = py::none(),
       ("Adds the candidate with the largest gain in coverage, again and again: a baseline, and a first network "
-       "for\n`plan(start=...)`." +
+       "for\n`Site.plan(start=...)`." +
        options.doc())
           .c_str());
 }
@@ -307,22 +321,26 @@ void add_exact(py::module_& m) {
   const auto options =
       Options<ExactConfig>("exact_network")
           .add("candidates", &ExactConfig::candidates, "Positions to choose from, spread evenly over the ground.")
-          .add("sample_voxels", &ExactConfig::sample_voxels, "0: every voxel.")
+          .add<std::optional<std::uint64_t>>(
+              "sample_voxels", [](const ExactConfig& c) { return sample_of(c); },
+              [](ExactConfig& c, std::optional<std::uint64_t> voxels) {
+                c.sample_voxels = voxels.value_or(every_voxel);
+              },
+              "Size of the sample of voxels; None: every voxel.")
           .add("link", &ExactConfig::link, "Least scan overlap of the links that connect it; 0: none.")
           .add("apart_m", &ExactConfig::apart_m, "Least distance between heads.")
           .add("max_seconds", &ExactConfig::max_seconds, "Time for branch and bound.")
           .add("existing", &ExactConfig::existing, "Heads of existing stations.");
   m.def(
       "exact_network",
-      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
-                py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, std::size_t stations, py::object progress, const py::kwargs& given) {
         ExactConfig config = options.read(given);
         config.stations = stations;
+        const auto lock = self.taken();
         LongCall call(std::move(progress));
-        return call.run([&] { return exact_network(self.simulator, area, clash, config, call.progress()); });
+        return call.run([&] { return exact_network(self.site, config, call.progress()); });
       },
-      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
-      py::arg("progress") = py::none(),
+      py::arg("site"), py::arg("stations"), py::kw_only(), py::arg("progress") = py::none(),
       ("The best network among candidates, as an integer program; proven best among them if its gap is 0." +
        options.doc())
           .c_str());

@@ -4,7 +4,7 @@
 #include "module.hpp"
 #include "options.hpp"
 #include "pickle.hpp"
-#include "simulator.hpp"
+#include "site.hpp"
 
 namespace vantage::python {
 namespace {
@@ -68,18 +68,16 @@ void add_missed(py::module_& m) {
   const auto options = missed_options();
   m.def(
       "why_missed",
-      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, const Evaluation& evaluation,
-                py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, const Evaluation& evaluation, py::object progress, const py::kwargs& given) {
         const MissedOptions how = options.read(given);
-        if (evaluation.field.count.size() != self.simulator.voxel_count())
+        const auto lock = self.taken();
+        if (evaluation.field.count.empty() || evaluation.field.count.size() != self.site.simulator().voxel_count())
           throw Error(Errc::invalid_argument,
                       "why_missed: the evaluation has no points of each voxel; evaluate with field=True");
         LongCall call(std::move(progress));
-        return call.run(
-            [&] { return missed_voxels(self.simulator, area, clash, evaluation.field, how, call.progress()); });
+        return call.run([&] { return missed_voxels(self.site, evaluation.field, how, call.progress()); });
       },
-      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("evaluation"), py::kw_only(),
-      py::arg("progress") = py::none(),
+      py::arg("site"), py::arg("evaluation"), py::kw_only(), py::arg("progress") = py::none(),
       ("Why voxels are not captured: those beyond any allowed position, and those that other stations would "
        "have\ncaptured. Judges at most 50 000 voxels. evaluation: with field=True. Empty if it was stopped.\nRaises "
        "Error invalid_argument." +

@@ -42,11 +42,12 @@ PYBIND11_MODULE(_core, m) {
   add_scenes(m);
   add_scanners(m);
   add_placement(m);
-  add_on_site(m);
+  add_visits(m);
   add_evaluations(m);
   add_simulators(m);
-  add_missed(m);
   add_sites(m);
+  add_on_site(m);
+  add_missed(m);
   add_candidates(m);
   add_problems(m);
   add_plans(m);

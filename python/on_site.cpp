@@ -3,6 +3,7 @@
 #include "module.hpp"
 #include "options.hpp"
 #include "pickle.hpp"
+#include "site.hpp"
 
 namespace vantage::python {
 
@@ -21,7 +22,7 @@ Options<OnSiteOptions> on_site_options() {
 
 }  // namespace
 
-void add_on_site(py::module_& m) {
+void add_visits(py::module_& m) {
   const auto options = on_site_options();
   py::class_<OnSiteOptions> type(m, "OnSiteOptions", ("Times of a person with a tripod." + options.doc()).c_str());
   type.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
@@ -45,15 +46,17 @@ void add_on_site(py::module_& m) {
                std::string(py::str(py::float_(v.minutes))) + " minutes>";
       });
   add_pickle(visit);
+}
 
+void add_on_site(py::module_& m) {
   py::class_<OnSite>(m, "OnSite", "Paths over a site, and the time of a round.")
-      .def(py::init([](const SearchArea& area, const ClashChecker& clash, const std::vector<Scanner>& scanners,
-                       const OnSiteOptions& how) {
+      .def(py::init([](GuardedSite& site, const OnSiteOptions& how) {
+             const auto lock = site.taken();
              const py::gil_scoped_release unlocked;
-             return OnSite(area, clash, scanners, how);
+             return site.site.on_site(how);
            }),
-           py::arg("area"), py::arg("clash"), py::arg("scanners"), py::arg("options") = OnSiteOptions{},
-           "scanners: a list, in the order of `Simulator.scanners`. Raises Error invalid_argument.")
+           py::arg("site"), py::arg("options") = OnSiteOptions{},
+           "Rounds begin and end at the site's entrance if the options name none. Raises Error invalid_argument.")
       .def("way_m", &OnSite::way_m, py::arg("start"), py::arg("end"),
            "Metres from one ground point (x, y, z) to another; None if the search area does not connect them.")
       .def(

@@ -104,7 +104,7 @@ void add_stations(py::module_& m) {
       .def_property_readonly(
           "status", [](const PlacedStation& s) { return to_string(s.status); },
           "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
-      .def_readonly("kept", &PlacedStation::kept, "Whether it is an existing station.")
+      .def_readonly("existing", &PlacedStation::existing, "Whether it is an existing station.")
       .def_readonly("setup", &PlacedStation::setup, "Setup of the scanner.")
       .def_property_readonly("active", &active, "Whether it adds to the measures of its network.")
       .def("__repr__", [](const PlacedStation& s) {
@@ -215,31 +215,6 @@ void add_clash(py::module_& m) {
           },
           py::arg("points"), py::arg("limit_m"),
           "Distance of each point of (n, 3) from the nearest mesh, at most limit_m: (n,), metres.");
-  m.def(
-      "place_heads",
-      [](const SearchArea& area, const ClashChecker& clash, double height_m, const py::object& stations) {
-        std::vector<PlacedStation> placed;
-        for (const Station& station : network_of(stations)) {
-          placed.push_back(place_head(&area, clash, height_m, station.position).station);
-          placed.back().setup = station.setup;
-        }
-        return placed;
-      },
-      py::arg("area"), py::arg("clash"), py::arg("height_m"), py::arg("heads"),
-      "Stations by their heads (n, 3), survey frame, metres, or `Station`s, checked like those of a search.");
-}
-
-void add_ground(py::module_& m) {
-  m.def(
-      "weigh_ground",
-      [](const Scene& scene, const SearchArea& area) {
-        if (!ground_is_unmarked(scene, area)) return scene;
-        const GroundWeights found = ground_weights(scene, area);
-        return found.changes ? with_weights(scene, found.weights) : scene;
-      },
-      py::arg("scene"), py::arg("area"),
-      "The scene with the program's weights: if nothing marks the surveyed surface, ground to stand on weighs less, "
-      "so\nthat it has at most a third of coverage. Otherwise the same scene.");
 }
 
 }  // namespace
@@ -249,7 +224,6 @@ void add_placement(py::module_& m) {
   add_stations(m);
   add_search_area(m);
   add_clash(m);
-  add_ground(m);
 }
 
 }  // namespace vantage::python

@@ -3,20 +3,17 @@
 
 #include "evaluation.hpp"
 #include "module.hpp"
-#include "options.hpp"
 #include "pickle.hpp"
 #include "settings.hpp"
-#include "simulator.hpp"
 #include "site.hpp"
 
 namespace vantage::python {
 namespace {
 
-/// A result, and what its reports need: the site's parts, or given ones.
+/// A result, and the site that it was planned on.
 struct Plan {
   PlanResult result;
-  std::shared_ptr<GuardedSite> site = nullptr;
-  py::object simulator = py::none(), area = py::none(), clash = py::none();
+  std::shared_ptr<GuardedSite> site;
 };
 /// Known values of one measure of a network.
 struct MeasuredValue {
@@ -37,13 +34,6 @@ struct Watched : PlanProgress {
   std::vector<ParetoPoint> points;
 };
 
-Simulator& simulator_of(const Plan& plan) {
-  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<Simulators&>().simulator;
-}
-const SearchArea& area_of(const Plan& plan) {
-  return plan.site ? plan.site->site.area() : plan.area.cast<const SearchArea&>();
-}
-
 py::array_t<double> table_of(const std::vector<std::vector<double>>& rows) {
   const std::size_t width = rows.empty() ? 0 : rows.front().size();
   std::vector<double> flat;
@@ -57,50 +47,9 @@ py::array_t<double> scaled_front(const Watched& now) {
   return table_of(rows);
 }
 
-Options<PlanConfig> plan_options() {
-  return Options<PlanConfig>("plan")
-      .add("population", &PlanConfig::population, "0: 10 with one objective, 20 if the number is searched, else 100.")
-      .add("iterations", &PlanConfig::iterations, "Number of iterations, of `population` evaluations each; 0: 100.")
-      .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
-      .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
-      .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: depends on the engine.")
-      .add("exact", &PlanConfig::exact, "Search with every ray, the slowest way.")
-      .add("sample_voxels", &PlanConfig::sample_voxels, "Search with this many voxels; 0: depends on the problem.")
-      .add("renew_iterations", &PlanConfig::renew_iterations,
-           "Redraw the voxels every N iterations; 0: never; None: depends on the problem.")
-      .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
-      .add("redraws", &PlanConfig::redraws, "Attempts to redraw stations in holes or clashes.")
-      .add("max_seconds", &PlanConfig::max_seconds, "Time limit of the whole call; 0: none.")
-      .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop at this hypervolume; None: never.")
-      .add("stagnation_iterations", &PlanConfig::stagnation_iterations,
-           "Stop after this many iterations without growth; 0: never.")
-      .add("seed", &PlanConfig::seed, "Seed of all random numbers; None: the simulator's.")
-      .add<std::filesystem::path>(
-          "checkpoint", [](const PlanConfig& c) { return c.checkpoint.string(); },
-          [](PlanConfig& c, std::filesystem::path file) { c.checkpoint = std::move(file); },
-          "File to write regularly and when the search ends; '': none.")
-      .add("checkpoint_seconds", &PlanConfig::checkpoint_seconds, "Interval between checkpoints.")
-      .add("resume", &PlanConfig::resume, "Continue from the checkpoint; begin anew if there is none.");
-}
-
-std::shared_ptr<Plan> plan_survey(Simulators& simulators, const SearchArea& area, const ClashChecker& clash,
-                                  const SurveyProblem& problem, py::object progress, const Options<PlanConfig>& options,
-                                  const py::kwargs& given) {
-  const PlanConfig config = options.read(given);
-  LongCall call(std::move(progress));
-  PlanResult result = call.run([&] {
-    return plan(simulators.simulator, area, clash, problem, config,
-                {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
-                 .stop = call.stop(),
-                 .abort = call.abort()});
-  });
-  return std::make_shared<Plan>(
-      Plan{std::move(result), nullptr, py::cast(simulators, py::return_value_policy::reference),
-           py::cast(area, py::return_value_policy::reference), py::cast(clash, py::return_value_policy::reference)});
-}
-
 // Takes the settings of a question and of a search, or `problem` in place of the former.
 std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
+                                std::vector<Vec3> start, std::optional<std::filesystem::path> checkpoint,
                                 py::object progress, const py::kwargs& given) {
   refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
   SurveyQuestion question;
@@ -110,15 +59,16 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
   const bool named = py::isinstance<py::str>(problem);
   if (named) question.problem = problem.cast<std::string>(), ++asked;
   read_settings(plan_settings(), config, given);
+  config.start = std::move(start);
+  if (checkpoint) config.checkpoint = std::move(*checkpoint);
   const bool whole = !problem.is_none() && !named;
   if (whole && asked > 0)
     throw py::type_error(
         "Site.plan: a problem contains the whole question; give either a problem or settings of a question");
   const std::optional<SurveyProblem> own = whole ? std::optional(problem.cast<SurveyProblem>()) : std::nullopt;
+  const auto lock = guarded->taken();
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    const std::unique_lock lock(guarded->mutex, std::try_to_lock);
-    if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
     return plan(guarded->site, own ? *own : survey_problem(guarded->site, question), config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),
@@ -221,20 +171,20 @@ py::list history_of(const Plan& plan) {
   return lines;
 }
 
-void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::string& title,
+void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::optional<std::string>& title,
                        py::object progress) {
-  Simulator& simulator = simulator_of(plan);
-  const SearchArea& area = area_of(plan);
-  const ClashChecker& clash = plan.site ? plan.site->site.clash() : plan.clash.cast<const ClashChecker&>();
+  const auto lock = plan.site->taken();
+  Site& site = plan.site->site;
   const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
   LongCall call(std::move(progress));
   call.run([&] {
-    const Evaluation seen =
-        evaluate_stations({.simulator = simulator}, chosen.stations, {.field = true}, call.progress(0, 0.3));
+    VoxelField field;
+    const NetworkCounts seen =
+        site.simulator().evaluate(to_network(chosen.stations), {.field = &field}, call.progress(0, 0.3));
     MissedVoxels missed;
-    if (!seen.counts.cancelled) missed = missed_voxels(simulator, area, clash, seen.field, {}, call.progress(0.3, 0.6));
+    if (!seen.cancelled) missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
     if (!call.stop().stop_requested())
-      write_report(file, plan.result, simulator, area, {.title = title, .field = &seen.field, .missed = &missed},
+      write_report(file, plan.result, site, {.title = title.value_or(""), .field = &field, .missed = &missed},
                    call.progress(0.6, 1));
     return 0;
   });
@@ -290,28 +240,32 @@ void add_results(py::module_& m) {
           "summary", [](const Plan& plan) { return summary_text(plan.result); },
           "Summary of the answer in plain words.")
       .def(
-          "to_dict", [](const Plan& plan) { return from_json(front_json(plan.result, simulator_of(plan))); },
+          "to_dict",
+          [](const Plan& plan) {
+            const auto lock = plan.site->taken();
+            return from_json(front_json(plan.result, plan.site->site.simulator()));
+          },
           "Content of front.json: the front, every parameter, engine, seed and version. Entries count from 1.")
       .def(
           "write",
-          [](const Plan& plan, const std::filesystem::path& folder, const std::string& crs) {
-            const SearchArea& area = area_of(plan);
-            const Simulator& simulator = simulator_of(plan);
+          [](const Plan& plan, const std::filesystem::path& folder) {
+            const auto lock = plan.site->taken();
             const py::gil_scoped_release unlocked;
-            write_plan(folder, plan.result, simulator, area, nullptr, crs);
+            write_plan(folder, plan.result, plan.site->site);
           },
-          py::arg("folder"), py::arg("crs") = "",
-          "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
-          "coordinate\nsystem, such as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
-      .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = "Survey",
+          py::arg("folder"),
+          "Writes the result folder: front.csv, front.json, stations.csv, the pictures, and maps if the site has a "
+          "coordinate\nsystem (docs/files.md). Raises Error: io, invalid_argument.")
+      .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = py::none(),
            py::arg("progress") = py::none(),
            "Writes report.html or report.pdf by the file's extension, with the surfaces that the answer captures and "
-           "misses.\nRaises Error: io, invalid_argument (another extension, a build that writes no reports).")
+           "misses. title: None: the site's name.\nRaises Error: io, invalid_argument (another extension, a build that "
+           "writes no reports).")
       .def("__repr__", [](const Plan& plan) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
       });
-  refuse_pickle(type, "a PlanResult refers to its simulator, which owns a device, and is not pickled; take to_dict()");
+  refuse_pickle(type, "a PlanResult refers to its site, which owns a device, and is not pickled; take to_dict()");
 }
 
 }  // namespace
@@ -321,28 +275,19 @@ void add_plans(py::module_& m) {
   add_entries(m);
   add_results(m);
   const py::object site = m.attr("Site");
-  site.attr("plan") =
-      py::cpp_function(&plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(),
-                       py::kw_only(), py::arg("progress") = py::none(),
-                       ("Plans a survey like the program: by default, the fewest connected stations that capture "
-                        "enough.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
-                        "progress: as for `vantage.plan`.\nRaises Error: invalid_argument." +
-                        settings_doc("Site.plan", question_settings(), plan_settings()))
-                           .c_str());
-  const auto options = plan_options();
-  m.def(
-      "plan",
-      [options](Simulators& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
-                py::object progress, const py::kwargs& given) {
-        return plan_survey(simulator, area, clash, problem, std::move(progress), options, given);
-      },
-      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("problem"), py::kw_only(),
-      py::arg("progress") = py::none(),
-      ("Searches for networks. The same inputs and seed give the same result except for seconds.\n\nprogress: called "
-       "with a PlanProgress between evaluations. If it returns False, the search ends, and its results\nare confirmed "
-       "and returned. Ctrl-C, or an exception of progress or of an objective, ends the call with that\nexception; a "
-       "checkpoint is written before.\nRaises Error: invalid_argument, malformed_file (a damaged checkpoint)." +
-       options.doc())
+  site.attr("plan") = py::cpp_function(
+      &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
+      py::arg("start") = std::vector<Vec3>{}, py::arg("checkpoint") = py::none(), py::arg("progress") = py::none(),
+      ("Plans a survey like the program: by default, the fewest connected stations that capture "
+       "enough. The same site,\nproblem and settings give the same result except for "
+       "seconds.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
+       "start: heads (x, y, z) of an initial\nnetwork; empty: chosen. checkpoint: a file to write "
+       "regularly and when the search ends; `resume=True` goes on\nfrom it. progress: called with a "
+       "PlanProgress between evaluations. If it returns False, the search ends, and its\nresults are "
+       "confirmed and returned. Ctrl-C, or an exception of progress or of an objective, ends the call "
+       "with\nthat exception; a checkpoint is written before.\nRaises Error: invalid_argument, "
+       "malformed_file (a damaged checkpoint)." +
+       settings_doc("Site.plan", question_settings(), plan_settings()))
           .c_str());
 }
 

@@ -11,7 +11,7 @@ namespace {
 struct Measured {
   Evaluation evaluation;
   std::vector<PlacedStation> stations = {};
-  std::size_t kept = 0, visible_parts = 0;
+  std::size_t existing = 0, visible_parts = 0;
   double minutes_on_site = 0;
   std::optional<Evaluation> surroundings = std::nullopt;
 };
@@ -26,7 +26,7 @@ Evaluation figures_of(const MeasuredNetwork& network, const std::optional<Regist
 Measured copy_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
   MeasuredNetwork seen{.counts = network.counts,
                        .stations = network.stations,
-                       .kept = network.kept,
+                       .existing = network.existing,
                        .goal_density = network.goal_density,
                        .voxels = network.voxels,
                        .overlap = overlap_matrix(network.counts),
@@ -34,7 +34,7 @@ Measured copy_of(const MeasuredNetwork& network, const std::optional<Registratio
                        .surroundings_voxels = network.surroundings_voxels};
   Measured copy{.evaluation = figures_of(seen, registration),
                 .stations = {network.stations.begin(), network.stations.end()},
-                .kept = network.kept,
+                .existing = network.existing,
                 .visible_parts = network.visible_parts,
                 .minutes_on_site = network.minutes_on_site};
   if (network.surroundings)
@@ -95,7 +95,7 @@ void add_objectives(py::module_& m) {
       .def_property_readonly(
           "heads", [](const Measured& network) { return heads_of(network.stations); },
           "Their heads, survey frame: (n, 3), metres.")
-      .def_readonly("kept", &Measured::kept, "Number of existing stations.")
+      .def_readonly("existing", &Measured::existing, "Number of existing stations.")
       .def_readonly("visible_parts", &Measured::visible_parts,
                     "Connected components of the stations that see each other; 0 unless needed.")
       .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Time without existing stations; 0 unless needed.")
@@ -173,13 +173,13 @@ Options<SurveyProblem> problem_options() {
       .add("stations_min", &SurveyProblem::stations_min, "Fewest stations to place.")
       .add("stations_max", &SurveyProblem::stations_max, "Most; if it differs from the fewest, the number is searched.")
       .add<py::iterable>(
-          "kept", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept)); },
-          [](SurveyProblem& p, const py::iterable& given) { p.kept = py::list(given).cast<std::vector<Vec3>>(); },
+          "existing", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing)); },
+          [](SurveyProblem& p, const py::iterable& given) { p.existing = py::list(given).cast<std::vector<Vec3>>(); },
           "Heads (x, y, z) of existing stations, survey frame, metres.")
       .add<py::iterable>(
-          "kept_setups", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept_setups)); },
+          "existing_setups", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing_setups)); },
           [](SurveyProblem& p, const py::iterable& given) {
-            p.kept_setups = py::list(given).cast<std::vector<StationSetup>>();
+            p.existing_setups = py::list(given).cast<std::vector<StationSetup>>();
           },
           "Their StationSetups, one each; none: upright, with the first scanner.")
       .add<py::iterable>(

@@ -146,8 +146,8 @@ void add_simulators(py::module_& m) {
              const SimulatorConfig config = options.read(given);
              const py::gil_scoped_release unlocked;
              const auto* several = std::get_if<std::vector<Scanner>>(&scanner);
-             return new Simulators{several ? Simulator(scene, *several, config)
-                                           : Simulator(scene, std::get<Scanner>(scanner), config)};
+             return new Simulators(several ? Simulator(scene, *several, config)
+                                           : Simulator(scene, std::get<Scanner>(scanner), config));
            }),
            py::arg("scene"), py::arg("scanner"))
       .def_property_readonly(

@@ -3,14 +3,20 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "long_call.hpp"
 
 namespace vantage::python {
 
-/// A simulator, and its companion over all surfaces.
+/// A simulator, of its own or of a site, and its companion over all surfaces.
 struct Simulators {
-  Simulator simulator;
+  explicit Simulators(Simulator own) : owned(std::move(own)), simulator(*owned) {}
+  /// Borrows the site's.
+  explicit Simulators(Site& site) : simulator(site.simulator()) {}
+
+  std::optional<Simulator> owned;
+  Simulator& simulator;
   std::once_flag made = {};
   std::optional<Simulator> of_all_surfaces = std::nullopt;
 

@@ -10,18 +10,25 @@
 namespace vantage::python {
 namespace {
 
-SiteOptions site_options(const py::kwargs& given, const std::string& call) {
-  refuse_unknown(given, call, site_settings());
+SiteOptions site_options(const py::kwargs& given, const std::string& call, const SettingTable<SiteOptions>& table) {
+  refuse_unknown(given, call, table);
   SiteOptions options;
-  read_settings(site_settings(), options, given);
+  read_settings(table, options, given);
   return options;
 }
 
-// One call at a time, since a site makes its parts at first use.
-std::unique_lock<std::mutex> taken(GuardedSite& guarded) {
-  std::unique_lock lock(guarded.mutex, std::try_to_lock);
-  if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
-  return lock;
+// The rows of `site_settings()` that say nothing of how a file is read.
+SettingTable<SiteOptions> settings_of_a_scene() {
+  SettingTable<SiteOptions> rows = site_settings();
+  std::erase_if(rows, [](const SettingRow<SiteOptions>& row) {
+    return row.group == "Scene" || row.name == "doors" || row.name == "station-area";
+  });
+  return rows;
+}
+
+// In place, because of the mutex.
+std::shared_ptr<GuardedSite> guarded(Site site) {
+  return std::shared_ptr<GuardedSite>(new GuardedSite{std::move(site)});
 }
 
 // Places stations given by heads alone as the program does: on the ground below, with checks.
@@ -31,9 +38,7 @@ std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
     if (station.ground != station.position || station.status == StationStatus::hole) continue;
     const StationSetup setup = station.setup;
     const bool skipped = !active(station);
-    station =
-        place_head(site.has_area() ? &site.area() : nullptr, site.clash(), site.scanner().height_m, station.position)
-            .station;
+    station = site.place_head(station.position).station;
     station.setup = setup;
     if (skipped) station.status = StationStatus::clash;
   }
@@ -42,7 +47,7 @@ std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
 
 Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const EvaluationOptions& options,
                     py::object progress) {
-  const auto lock = taken(guarded);
+  const auto lock = guarded.taken();
   const std::vector<PlacedStation> placed = placed_on(guarded.site, stations);
   LongCall call(std::move(progress));
   return call.run([&] { return guarded.site.evaluate(placed, options, {}, call.progress()); });
@@ -50,16 +55,14 @@ Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const Eval
 
 void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, const Evaluation& evaluation,
                        const std::optional<std::string>& title, py::object progress) {
-  const auto lock = taken(guarded);
+  const auto lock = guarded.taken();
   LongCall call(std::move(progress));
   call.run([&] {
     Site& site = guarded.site;
     MissedVoxels missed;
-    if (!evaluation.field.count.empty())
-      missed = missed_voxels(site.simulator(), site.area(), site.clash(), evaluation.field, {}, call.progress(0, 0.3));
+    if (!evaluation.field.count.empty()) missed = missed_voxels(site, evaluation.field, {}, call.progress(0, 0.3));
     if (!call.stop().stop_requested())
-      write_report(file, evaluation, site.simulator(), site.area(),
-                   {.title = title.value_or(site.name()), .missed = &missed}, call.progress(0.3, 1));
+      write_report(file, evaluation, site, {.title = title.value_or(""), .missed = &missed}, call.progress(0.3, 1));
     return 0;
   });
 }
@@ -74,16 +77,29 @@ void add_sites(py::module_& m) {
       .def("__repr__", [](const SiteChoice& choice) {
         return "<vantage.SiteChoice " + choice.setting + "=" + choice.value + ": " + choice.why + ">";
       });
-  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(m, "Site",
-                                                             "Scene, scanner, ground, clash checks and simulator, with "
-                                                             "all defaults of the program. `vantage.plan`\ntakes one.");
-  type.def_static(
+  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(
+      m, "Site",
+      "Scene, scanner, ground, clash checks and simulator, with "
+      "all defaults of the program. `Site.plan` plans a\nsurvey of it.");
+  const SettingTable<SiteOptions> of_a_scene = settings_of_a_scene();
+  type.def(py::init([of_a_scene](const Scene& scene, std::vector<Scanner> scanners, std::string name,
+                                 const py::kwargs& given) {
+             SiteOptions options = site_options(given, "Site", of_a_scene);
+             options.scanners = std::move(scanners);
+             const py::gil_scoped_release unlocked;
+             return guarded(Site(scene, std::move(options), std::move(name)));
+           }),
+           py::arg("scene"), py::kw_only(), py::arg("scanners") = std::vector<Scanner>{}, py::arg("name") = "site",
+           ("Chooses the settings that are left open. scanners: those that stations choose from, complete, in place "
+            "of the\nsettings of one. name: for titles. Raises Error invalid_argument." +
+            settings_doc("Site", of_a_scene))
+               .c_str())
+      .def_static(
           "open",
           [](const std::filesystem::path& file, const py::kwargs& given) {
-            SiteOptions options = site_options(given, "Site.open");
+            SiteOptions options = site_options(given, "Site.open", site_settings());
             const py::gil_scoped_release unlocked;
-            return std::shared_ptr<GuardedSite>(
-                new GuardedSite{Site::open(file, std::move(options))});  // keeps the mutex in place
+            return guarded(Site::open(file, std::move(options)));
           },
           py::arg("file"),
           ("Reads a model and chooses the settings that are left open. Raises Error: io, "
@@ -101,6 +117,31 @@ void add_sites(py::module_& m) {
           },
           "Copies of its scanners, indexed by `StationSetup.scanner`.")
       .def_property_readonly(
+          "area",
+          [](GuardedSite& self) -> const SearchArea& {
+            const auto lock = self.taken();
+            const py::gil_scoped_release unlocked;
+            return self.site.area();
+          },
+          py::return_value_policy::reference_internal, "Its SearchArea. Raises Error invalid_argument if it has none.")
+      .def_property_readonly(
+          "clash",
+          [](GuardedSite& self) -> const ClashChecker& {
+            const auto lock = self.taken();
+            const py::gil_scoped_release unlocked;
+            return self.site.clash();
+          },
+          py::return_value_policy::reference_internal, "Its ClashChecker.")
+      .def_property_readonly(
+          "simulator",
+          [](GuardedSite& self) -> Simulators& {
+            const auto lock = self.taken();
+            const py::gil_scoped_release unlocked;
+            if (!self.simulators) self.simulators.emplace(self.site);
+            return *self.simulators;
+          },
+          py::return_value_policy::reference_internal, "Its Simulator, made when it is first asked for.")
+      .def_property_readonly(
           "choices",
           [](const GuardedSite& self) {
             return std::vector<SiteChoice>(self.site.choices().begin(), self.site.choices().end());
@@ -108,8 +149,9 @@ void add_sites(py::module_& m) {
           "Settings that the user left open and the site chose, with the reasons.")
       .def(
           "evaluate",
-          [](GuardedSite& self, const py::object& stations, std::uint64_t sample_voxels, bool overlap, bool skip,
-             bool field, double link, const std::optional<RegistrationOptions>& registration, py::object progress) {
+          [](GuardedSite& self, const py::object& stations, std::optional<std::uint64_t> sample_voxels, bool overlap,
+             bool skip, bool field, double link, const std::optional<RegistrationOptions>& registration,
+             py::object progress) {
             return evaluate(self, stations,
                             {.sample_voxels = sample_voxels,
                              .overlap = overlap,
@@ -119,12 +161,13 @@ void add_sites(py::module_& m) {
                              .link = link},
                             std::move(progress));
           },
-          py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 0, py::arg("overlap") = true,
+          py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = py::none(), py::arg("overlap") = true,
           py::arg("skip") = false, py::arg("field") = false, py::arg("link") = default_link,
           py::arg("registration") = py::none(), py::arg("progress") = py::none(),
           "Evaluates a network like `vantage evaluate`, with scan overlaps on all surfaces and the round on "
           "site.\n\nstations: in a form that `Simulator.evaluate` takes; heads are put on the ground below. "
-          "sample_voxels: 0: every ray.\nlink: least scan overlap of a link. The others: as for "
+          "sample_voxels: size of the sample of voxels; None: every ray.\nlink: least scan overlap of a link. The "
+          "others: as for "
           "`Simulator.evaluate`.\nRaises Error invalid_argument.")
       .def("write_report", &write_site_report, py::arg("file"), py::arg("evaluation"), py::kw_only(),
            py::arg("title") = py::none(), py::arg("progress") = py::none(),
@@ -132,6 +175,19 @@ void add_sites(py::module_& m) {
            "evaluated with\nfield=True, also why surfaces are not captured. title: None: the site's name.\nRaises "
            "Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const GuardedSite& self) { return "<vantage.Site " + self.site.name() + ">"; });
+  m.def(
+      "place_heads",
+      [](GuardedSite& site, const py::object& stations) {
+        const auto lock = site.taken();
+        std::vector<PlacedStation> placed;
+        for (const Station& station : network_of(stations)) {
+          placed.push_back(site.site.place_head(station.position).station);
+          placed.back().setup = station.setup;
+        }
+        return placed;
+      },
+      py::arg("site"), py::arg("heads"),
+      "Stations by their heads (n, 3), survey frame, metres, or `Station`s, checked like those of a search.");
   refuse_pickle(type, "a Site owns a device and is not pickled; open its file again with the same settings");
 }
 

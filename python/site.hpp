@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "casters.hpp"
+#include "simulator.hpp"
 
 namespace vantage::python {
 
@@ -12,6 +14,15 @@ namespace vantage::python {
 struct GuardedSite {
   Site site;
   std::mutex mutex = {};
+  std::optional<Simulators> simulators = std::nullopt;  ///< Made when it is first asked for.
+
+  /// For the time of one call, since a site makes its parts at first use. Throws Error invalid_argument if another call
+  /// uses it.
+  std::unique_lock<std::mutex> taken() {
+    std::unique_lock lock(mutex, std::try_to_lock);
+    if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
+    return lock;
+  }
 };
 
 }  // namespace vantage::python

@@ -47,20 +47,18 @@ options = options.parse_args()
 with tempfile.TemporaryDirectory() as folder:
     file = Path(folder, "four_walls.glb")
     vantage.write_built_in_scene("four-walls", file)
-    scene = vantage.Scene.load(file)
-scanner = vantage.Scanner(height_m=1.5)  # otherwise as the paper's: 360 by 300 degrees, steps of 0.1
-simulator = vantage.Simulator(scene, scanner, user_size_m=0.1, point_spacing_m=0.01)
-area, clash = vantage.SearchArea(scene), vantage.ClashChecker(scene)
-print(f"{scanner.rays} rays a station, goal density {simulator.goal_density:.1f}")
+    # The scanner is otherwise the paper's: 360 by 300 degrees, steps of 0.1.
+    site = vantage.Site.open(file, height=1.5, user_size=0.1, spacing=0.01, seed=options.seed)
+simulator = site.simulator
+print(f"{simulator.scanner.rays} rays a station, goal density {simulator.goal_density:.1f}")
 
 # Coverage of four stations: 200 iterations of 10 candidates.
-four = vantage.plan(simulator, area, clash, vantage.coverage_fix(4), population=10, iterations=200,
-                    sample_voxels=options.sample, seed=options.seed).answer
+four = site.plan(vantage.coverage_fix(4), population=10, iterations=200, sample=options.sample).answer
 print(f"4 stations: coverage {four.value('coverage'):.3f} (paper: 0.89)")
 
 # Coverage against overlap of eight.
-eight = vantage.plan(simulator, area, clash, vantage.coverage_overlap_fix(8), population=options.population,
-                     iterations=options.iterations, sample_voxels=options.sample, seed=options.seed)
+eight = site.plan(vantage.coverage_overlap_fix(8), population=options.population, iterations=options.iterations,
+                  sample=options.sample)
 print(f"8 stations: hypervolume {eight.exact_hypervolume:.3f} (paper: 0.97)")
 front = [entry for entry in eight.front if not entry.dominated]
 coverage, overlap = (np.array([entry.value(name) for entry in front]) for name in ("coverage", "overlap"))

@@ -19,10 +19,7 @@ def report(now):
 
 if len(sys.argv) != 4:
     sys.exit(__doc__)
-scene = vantage.Scene.load(sys.argv[1])
-scanner = vantage.Scanner(azimuth_step_deg=0.2, zenith_step_deg=0.2, height_m=1.5)
-simulator = vantage.Simulator(scene, scanner, user_size_m=0.2, point_spacing_m=0.05)
-area, clash = vantage.SearchArea(scene), vantage.ClashChecker(scene)
+site = vantage.Site.open(sys.argv[1], step=0.2, height=1.5, user_size=0.2, spacing=0.05, seed=42)
 
 stations = int(sys.argv[2])
 neighbour = vantage.Objective(
@@ -30,8 +27,7 @@ neighbour = vantage.Objective(
     surroundings=True)
 problem = vantage.SurveyProblem(
     stations_min=stations, stations_max=stations, objectives=["coverage", neighbour], requirements=["coverage >= 0.5"])
-result = vantage.plan(
-    simulator, area, clash, problem, population=20, iterations=10, sample_voxels=5000, seed=42, progress=report)
+result = site.plan(problem, population=20, iterations=10, sample=5000, progress=report)
 print(file=sys.stderr)
 
 for entry in result.front:

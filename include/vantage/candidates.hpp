@@ -17,6 +17,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -74,18 +75,17 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
 StationGraph overlap_graph(Simulator& surroundings, std::span<const PlacedStation> stations,
                            std::uint64_t sample_voxels = 10'000, const Progress& progress = {});
 
-/// Allowed positions (`StationStatus::ok`) at the scanner's height, at most `most`, spread evenly over the ground in
-/// square metres. The first n are spread evenly too, for every n. There may be fewer if most of the ground is
+/// Allowed positions (`StationStatus::ok`) at the first scanner's height, at most `most`, spread evenly over the ground
+/// in square metres. The first n are spread evenly too, for every n. There may be fewer if most of the ground is
 /// forbidden. Uses no random numbers. Throws Error invalid_argument if no position is allowed.
-std::vector<PlacedStation> candidate_positions(const SearchArea& area, const ClashChecker& clash,
-                                               const Scanner& scanner, std::size_t most);
+std::vector<PlacedStation> candidate_positions(Site& site, std::size_t most);
 
 /// How candidates are found.
 struct CandidateConfig {
   std::size_t first = 128;               ///< Initial number; it is doubled until a limit holds.
   std::size_t most = 4096;               ///< Largest number.
   double change = 0.01;                  ///< Stops once doubling raises attainable coverage by less than this share.
-  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  std::uint64_t sample_voxels = 20'000;  ///< May be `every_voxel`.
   std::uint32_t scanner = 0;             ///< Scanner on each, an index into `Simulator::scanners()`.
   double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
 };
@@ -112,8 +112,7 @@ class Candidates {
   double spacing_m() const noexcept { return spacing_m_; }
 
  private:
-  friend Candidates find_candidates(Simulator&, const SearchArea&, const ClashChecker&, const CandidateConfig&,
-                                    const Progress&);
+  friend Candidates find_candidates(Site&, const CandidateConfig&, const Progress&);
   std::vector<PlacedStation> stations_;
   SampledCoverage coverage_;
   AttainableCounts attainable_counts_;
@@ -124,8 +123,7 @@ class Candidates {
 
 /// Finds allowed positions (`StationStatus::ok`) at the scanner's height, spread evenly over the ground in square
 /// metres. Doubles their number until attainable coverage hardly rises. The first n are spread evenly too, for every n.
-/// Uses no random numbers. Throws Error invalid_argument if no position is allowed.
-Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const CandidateConfig& config = {}, const Progress& progress = {});
+/// Uses no random numbers. Throws Error invalid_argument if no position is allowed, or a setting is out of its range.
+Candidates find_candidates(Site& site, const CandidateConfig& config = {}, const Progress& progress = {});
 
 }  // namespace vantage

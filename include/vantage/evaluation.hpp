@@ -108,10 +108,10 @@ struct EvaluationSite {
 };
 
 struct EvaluationOptions {
-  std::uint64_t sample_voxels = 0;  ///< 0: every ray.
-  bool overlap = true;              ///< Count pairs of stations; without them only coverage is measured.
-  bool skip = true;    ///< Leave out rays that cannot reach a surveyed voxel; `NetworkCounts::points` is empty then.
-  bool field = false;  ///< Keep the points of every voxel. Takes every ray.
+  std::optional<std::uint64_t> sample_voxels = {};  ///< Size of the sample of voxels; empty: every ray.
+  bool overlap = true;  ///< Count pairs of stations; without them only coverage is measured.
+  bool skip = true;     ///< Leave out rays that cannot reach a surveyed voxel; `NetworkCounts::points` is empty then.
+  bool field = false;   ///< Keep the points of every voxel. Takes every ray.
   std::vector<Objective> measures = {};                            ///< Measures besides coverage and overlap.
   std::vector<Requirement> requirements = {};                      ///< Their objectives are measured too.
   std::optional<RegistrationOptions> registration = std::nullopt;  ///< Predict the error of the registered scans.

@@ -73,12 +73,27 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
 /// Square matrix with a header line; row and column i are station i.
 void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
 
-/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,kept`. If a station is turned or does not
-/// have the first scanner, also `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of the
-/// head, ground_z of the ground. Numbers read back to the same bits. `scanners` are indexed by `StationSetup::scanner`;
-/// without them the last two columns are left out.
+/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,existing`. If a station is turned or does
+/// not have the first scanner, also `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of
+/// the head, ground_z of the ground. Numbers read back to the same bits. `scanners` are indexed by
+/// `StationSetup::scanner`; without them the last two columns are left out.
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
                         std::span<const Scanner> scanners = {});
+
+/// Writes stations for maps and drawings; the extension decides the format:
+/// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.
+///   Properties: name, status, existing, head_height_m, and in the survey frame x, y, z of the head and ground_z. A
+///   station without ground has no geometry.
+/// - .kml (2.2, OGC 07-147r2): a Placemark for each station with ground, with the same position and figures. Existing
+///   stations, and those left out, have icons of another colour.
+/// - .dxf (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point
+///   and a circle below the tripod), STATION_NAMES, LINKS (between the grounds of linked stations), SEARCH_AREA (closed
+///   polylines).
+/// `names`: from `station_names()`, one each. `links`: of these stations, or without values. Throws Error: io;
+/// invalid_argument (another extension, sizes that do not match, for .geojson and .kml a site without a coordinate
+/// system or stations outside of it).
+void write_stations(const std::filesystem::path& file, std::span<const PlacedStation> stations,
+                    std::span<const std::string> names, const StationLinks& links, Site& site);
 
 /// One line of a table, as `read_stations_csv` returns it. Survey frame, metres.
 struct StationRow {
@@ -130,36 +145,32 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
 /// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `overlap_words`: name
 /// of `overlap` in the legend. Returns the files that it wrote.
-std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
-                                                  const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const StationLinks& links, const std::string& title,
-                                                  std::span<const std::string> names = {},
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
+                                                  std::span<const PlacedStation> stations, const StationLinks& links,
+                                                  const std::string& title, std::span<const std::string> names = {},
                                                   std::span<const StationError> errors = {});
 
 /// Writes a whole result folder and makes it if needed. Returns the index of the chosen entry, the `answer()`. Files:
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
-/// stations.dxf, and stations.geojson and stations.kml if `crs`, the `coordinate_system()` of the survey frame, is
-/// given;
+/// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put
+/// on WGS 84 (else `SiteOptions::warn` is told why);
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan and, with `field`, registration.ply, .png and .svg.
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
-/// The same for a plan of a site.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                        const VoxelField* field = nullptr);
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
-/// Every judged voxel as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
+/// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY, survey frame.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);
 /// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
 /// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of
 /// these are undersides.
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 const MissedVoxels& missed, std::span<const PlacedStation> stations, const std::string& title);
+void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
+                 std::span<const PlacedStation> stations, const std::string& title);
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
 /// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the
@@ -167,8 +178,8 @@ void draw_missed(const std::filesystem::path& file, const Simulator& simulator, 
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error);
 /// The same in plan view, .png or .svg, a map for each floor as by `draw_missed`, with unseen parts in grey.
-void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                       const VoxelField& field, const RegistrationError& error, std::span<const PlacedStation> stations,
+void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
+                       const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.

@@ -14,6 +14,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -46,15 +47,6 @@ struct VoxelStatus {
   float attainable = 0;  ///< What the best single candidate would leave, or `captured` if that is more.
 };
 
-/// Returns the status of each voxel of `ranks` under a network that left `points` in them. `attainable` and `sparse`
-/// use the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith), the most
-/// over candidates with a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the
-/// spans differ in length, a voxel index is too large or there are no candidates.
-std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                    std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                    std::span<const std::uint32_t> points, const MissedOptions& options = {},
-                                    const Progress& progress = {});
-
 /// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other
 /// stations would add to it, and the other reasons share what is beyond every station. A voxel belongs to the mesh with
 /// most surface in it, and counts by its weight, as in coverage.
@@ -64,24 +56,22 @@ struct MissedShare {
   std::array<double, why_missed_count> shares{};  ///< Indexed by `WhyMissed`.
   double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }
 };
-/// Returns the whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are
-/// one.
-std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                                        std::span<const VoxelStatus> status);
 
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
   std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending.
   std::vector<std::uint32_t> points = {};  ///< Points of the network in each.
   std::vector<VoxelStatus> status = {};
-  /// Their `missed_by_node()`. The whole site's captured share is its coverage, from all voxels; the sample splits the
-  /// rest.
+  /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one. The
+  /// whole site's captured share is its coverage, from all voxels; the sample splits the rest.
   std::vector<MissedShare> shares = {};
   std::size_t candidates = 0;  ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.
-/// Empty if it was stopped, or if nothing is surveyed. Throws as `why_missed`.
-MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const VoxelField& field, const MissedOptions& options = {}, const Progress& progress = {});
+/// `sparse` uses the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith)
+/// for each candidate with a free line in range. Empty if it was stopped, or if nothing is surveyed. Throws Error
+/// invalid_argument if no position is allowed.
+MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOptions& options = {},
+                           const Progress& progress = {});
 
 }  // namespace vantage

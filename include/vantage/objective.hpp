@@ -22,7 +22,7 @@ namespace vantage {
 struct MeasuredNetwork {
   const NetworkCounts& counts;              ///< Exact, or on a sample of the voxels.
   std::span<const PlacedStation> stations;  ///< N_stations of them, existing ones first, skipped ones included.
-  std::size_t kept = 0;                     ///< Number of existing stations.
+  std::size_t existing = 0;                 ///< Number of existing stations.
   double goal_density = 1;                  ///< Points wanted in a voxel.
   std::uint64_t voxels = 0;                 ///< N_v of the site; `counts.voxels` of them were counted.
   OverlapMatrix overlap = {};               ///< Equation 11, by `overlap_matrix()`; empty if no objective needs pairs.
@@ -33,7 +33,7 @@ struct MeasuredNetwork {
   /// objective needs them. `surroundings_voxels`: the number of its voxels.
   const NetworkCounts* surroundings = nullptr;
   std::uint64_t surroundings_voxels = 0;
-  double minutes_on_site = 0;  ///< By `OnSite`, without kept stations; 0 where no objective needs it.
+  double minutes_on_site = 0;  ///< By `OnSite`, without existing stations; 0 where no objective needs it.
   /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
   Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
 };

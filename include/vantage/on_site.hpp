@@ -40,17 +40,11 @@ struct Visit {
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
 };
 
-/// Paths over a site, and the time of a round. Safe to read from any thread; copies share storage.
+/// Paths over a site, and the time of a round; made by `Site::on_site()`. A graph of at most some 20 000 places lies
+/// over the search area, 0.25 m apart or more. Links connect neighbours that see each other at hip height. Safe to read
+/// from any thread; copies share storage.
 class OnSite {
  public:
-  /// Lays a graph of at most some 20 000 places over the search area, 0.25 m apart or more. Links connect neighbours
-  /// that see each other at hip height. Throws Error invalid_argument (an option out of its range).
-  OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options = {});
-  /// Takes several scanners, from which stations choose by `StationSetup::scanner`. Throws as above, and Error
-  /// invalid_argument for none.
-  OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
-         const OnSiteOptions& options = {});
-
   /// Metres from one ground point to another along the search area; empty if it does not connect them.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
@@ -62,6 +56,10 @@ class OnSite {
   const OnSiteOptions& options() const noexcept;
 
  private:
+  friend class Site;
+  OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
+         const OnSiteOptions& options);
+
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };

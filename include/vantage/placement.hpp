@@ -134,7 +134,7 @@ struct PlacedStation {
   Vec3 position;     ///< Scanner's head, survey frame: the ground plus the height. (0, 0, 0) in a hole.
   Vec3 ground = {};  ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;
-  bool kept = false;  ///< Existing station, scanned before the plan.
+  bool existing = false;  ///< Existing station, scanned before the plan.
   StationSetup setup = {};
 };
 /// Whether the station adds to what its network measures: not in a hole, a solid or a clash. An existing station was
@@ -177,15 +177,10 @@ class ClashChecker {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Places a station by its head (survey frame) and checks it as a search checks its stations. `area` may be null.
-/// The ground is the search area at `uv` if that is given and lies below the head. Otherwise it is the search area, or
-/// any mesh, whose depth below the head is within half of `height_m` of it. If there is none, it is the point
-/// `height_m` below.
+/// A station placed by its head.
 struct PlacedHead {
   PlacedStation station;  ///< (u, v) as given, or of the search area above or below the ground.
   bool has_uv = false;    ///< Whether (u, v) exists.
 };
-PlacedHead place_head(const SearchArea* area, const ClashChecker& clash, double height_m, const Vec3& head,
-                      std::optional<Uv> uv = {});
 
 }  // namespace vantage

@@ -24,6 +24,7 @@
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -33,9 +34,9 @@ struct SurveyProblem {
   /// Number of stations to place. If the two differ, the number is searched too, by the decision variable α of equation
   /// 7.
   std::size_t stations_min = 4, stations_max = 4;
-  std::vector<Vec3> kept = {};  ///< Heads of existing stations: the first of every network, not counted above.
+  std::vector<Vec3> existing = {};  ///< Heads of existing stations: the first of every network, not counted above.
   /// Their setups, one each; empty: upright, with the first scanner.
-  std::vector<StationSetup> kept_setups = {};
+  std::vector<StationSetup> existing_setups = {};
   /// Indices into `Simulator::scanners()` that each station chooses from, in their order, e.g. one model with finer and
   /// finer steps. Empty: the first scanner.
   std::vector<std::uint32_t> scanners = {};
@@ -159,7 +160,7 @@ struct PlanResult {
   PlanConfig config;
   std::size_t population = 0, batch = 0;  ///< In force, also if the configuration left them open.
   WalkableOptions walkable;               ///< Settings of the search area.
-  std::optional<SearchArea> area = {};    ///< Search area, if the plan was made of a `Site`.
+  std::optional<SearchArea> area = {};    ///< Search area.
   SecurityVolume security;                ///< Setting of the clash checker.
   std::vector<Scanner> scanners;          ///< Indexed by `StationSetup::scanner`.
   /// Measures of every network: the objectives, then those of requirements, then coverage and overlap.
@@ -212,12 +213,14 @@ struct PlanWatch {
   std::stop_token abort = {};  ///< Ends the confirmation too: entries not reached have `exact` false.
 };
 
-/// Runs the search. Borrows simulator, area and clash for the call. The same inputs and seed give the same result
-/// except for seconds. Throws Error: invalid_argument (no objective, more than `max_stations` stations, min above max,
-/// a checkpoint of another run, …), malformed_file (a damaged checkpoint), and as the simulator and the objectives do.
-/// The checkpoint is written before an exception leaves.
-PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
-                const PlanConfig& config = {}, const PlanWatch& watch = {});
+/// Plans a survey of a site. The problem decides what `config` leaves open: sample, iterations, seed. The same site,
+/// problem and configuration give the same result except for seconds. Throws Error: invalid_argument (no objective,
+/// more than `max_stations` stations, min above max, a checkpoint of another run, …), malformed_file (a damaged
+/// checkpoint), and as the simulator and the objectives do. The checkpoint is written before an exception leaves.
+PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config = {}, const PlanWatch& watch = {});
+
+/// `config` with all open settings decided, for a site of `voxels` surveyed voxels.
+PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::uint64_t voxels, std::uint64_t seed);
 
 /// Index of the network that is the answer. The criteria apply in this order:
 /// - the least violation of requirements;
@@ -243,9 +246,9 @@ std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<co
 struct GreedyConfig {
   std::size_t stations = 4;                        ///< Number of stations to choose.
   std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
-  std::uint64_t sample_voxels = 20'000;            ///< 0: every voxel.
+  std::uint64_t sample_voxels = 20'000;            ///< May be `every_voxel`.
   std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
-  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::kept_setups`.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::existing_setups`.
 };
 
 /// Result of greedy_network().
@@ -258,14 +261,13 @@ struct GreedyResult {
 /// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
 /// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
 /// than candidates, and if no candidate can stand.
-GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                            const GreedyConfig& config = {}, const Progress& progress = {});
+GreedyResult greedy_network(Site& site, const GreedyConfig& config = {}, const Progress& progress = {});
 
 /// How exact_network() chooses.
 struct ExactConfig {
   std::size_t stations = 4;              ///< Number of stations to choose.
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
-  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  std::uint64_t sample_voxels = 20'000;  ///< May be `every_voxel`.
   double link = 0;          ///< Least scan overlap of the links that connect the network; 0: it need not be connected.
   double apart_m = 0;       ///< Least distance between heads.
   double max_seconds = 60;  ///< Time for branch and bound. If it ends first, the result depends on the machine.
@@ -281,11 +283,10 @@ struct ExactResult {
 
 /// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A
 /// baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument if no candidate can stand.
-ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                          const ExactConfig& config = {}, const Progress& progress = {});
+ExactResult exact_network(Site& site, const ExactConfig& config = {}, const Progress& progress = {});
 
-/// Turns a decision vector into stations: finds the ground, raises heads by `height_m`, checks for clashes.
-std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
-                                          std::span<const double> uvs);
+/// Turns pairs u1, v1, u2, v2, … into stations: finds the ground, raises heads by the scanner's height, checks for
+/// clashes.
+std::vector<PlacedStation> place_stations(Site& site, std::span<const double> uvs);
 
 }  // namespace vantage

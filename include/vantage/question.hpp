@@ -28,8 +28,8 @@ struct SurveyQuestion {
   std::vector<std::string> objectives = {};                 ///< Names; replace the problem's own.
   std::vector<std::string> requirements = {};               ///< In the form of `make_requirement()`.
   std::optional<std::array<std::size_t, 2>> stations = {};  ///< Least and largest number; one number twice.
-  std::vector<Vec3> kept = {};                              ///< As `SurveyProblem::kept`.
-  std::vector<StationSetup> kept_setups = {};               ///< One each, or none.
+  std::vector<Vec3> existing = {};                          ///< As `SurveyProblem::existing`.
+  std::vector<StationSetup> existing_setups = {};           ///< One each, or none.
   /// Steps that each station chooses from: degrees ("0.1"), or settings of the site's preset ("6mm").
   std::vector<std::string> search_steps = {};
   std::optional<std::array<double, 2>> heights_m = {};  ///< Searched per station.
@@ -42,7 +42,7 @@ struct SurveyQuestion {
   bool asks_for_fewest() const;
 };
 
-/// One row for each setting. Existing stations (`kept`) have none: users give them in several ways.
+/// One row for each setting. `existing` has none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
 const SettingTable<RegistrationOptions>& registration_settings();
 const SettingTable<OnSiteOptions>& on_site_settings();
@@ -54,15 +54,8 @@ const SettingTable<PlanConfig>& plan_settings();
 /// end at the site's entrance. Throws Error invalid_argument.
 SurveyProblem survey_problem(Site& site, const SurveyQuestion& question = {});
 
-/// Plans a survey of a site. The problem decides what `config` leaves open: sample, iterations, seed. The same site,
-/// problem and configuration give the same result except for seconds. Throws Error: invalid_argument (no objective,
-/// more than `max_stations` stations, min above max, a checkpoint of another run, …), malformed_file (a damaged
-/// checkpoint), and as the simulator and the objectives do. The checkpoint is written before an exception leaves.
-PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config = {}, const PlanWatch& watch = {});
+/// Plans a survey of a site: `plan()` of the question's problem. Throws as that does.
 PlanResult plan(Site& site, const SurveyQuestion& question = {}, const PlanConfig& config = {},
                 const PlanWatch& watch = {});
-
-/// `config` with all open settings decided, for a site of `voxels` surveyed voxels.
-PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::uint64_t voxels, std::uint64_t seed);
 
 }  // namespace vantage

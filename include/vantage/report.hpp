@@ -8,10 +8,9 @@
 
 #include "vantage/evaluation.hpp"
 #include "vantage/missed.hpp"
-#include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"
-#include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -20,15 +19,14 @@ std::string why_no_report();
 
 /// Content of a report besides the networks.
 struct ReportOptions {
-  std::string title = "Survey";  ///< Name of the site.
-  std::string command = {};      ///< The command that made the report, as it was typed.
+  std::string title = {};    ///< Empty: the site's name.
+  std::string command = {};  ///< The command that made the report, as it was typed.
   /// Points of every voxel under the answer. Null: the answer's own, or from a sample.
   const VoxelField* field = nullptr;
   const MissedVoxels* missed = nullptr;  ///< Why voxels of the answer are not captured. Null: left out.
   bool pictures = true;                  ///< Show the views of the answer's stations in report.html.
-  std::string crs = {};             ///< Coordinate system of the survey frame, whose north is shown; empty: not known.
-  std::filesystem::path logo = {};  ///< Picture at the head, .png or .jpg; empty: none.
-  std::string date = {};            ///< Date at the head, as it is to be read; empty: none.
+  std::filesystem::path logo = {};       ///< Picture at the head, .png or .jpg; empty: none.
+  std::string date = {};                 ///< Date at the head, as it is to be read; empty: none.
 };
 
 /// Writes the front of a plan, its answer first, as a page (.html), or the answer as sheets A4 or A3 (.pdf): its
@@ -36,10 +34,10 @@ struct ReportOptions {
 /// stations, links, missed surface. A page loads nothing from anywhere. Borrows everything for the call. Throws Error:
 /// io; invalid_argument (an empty front, another extension, a build that writes no reports), malformed_file (a logo
 /// that is no picture); and as the simulator does.
-void write_report(const std::filesystem::path& file, const PlanResult& result, Simulator& simulator,
-                  const SearchArea& area, const ReportOptions& options = {}, const Progress& progress = {});
+void write_report(const std::filesystem::path& file, const PlanResult& result, Site& site,
+                  const ReportOptions& options = {}, const Progress& progress = {});
 /// Writes the report of a single network, without a plan. Throws as above.
-void write_report(const std::filesystem::path& file, const Evaluation& evaluation, Simulator& simulator,
-                  const SearchArea& area, const ReportOptions& options = {}, const Progress& progress = {});
+void write_report(const std::filesystem::path& file, const Evaluation& evaluation, Site& site,
+                  const ReportOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vantage

@@ -137,6 +137,9 @@ struct EvaluateOptions {
   std::optional<RegistrationModel> registration = std::nullopt;
 };
 
+/// As the size of a sample: all surveyed voxels.
+inline constexpr std::uint64_t every_voxel = std::numeric_limits<std::uint64_t>::max();
+
 /// Sample and outputs of a sampled evaluation.
 /// Points of a voxel that are counted. Fewer rays do for fewer.
 enum class CountTo {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A site: all that is fixed before a network of stations is chosen. Every call that plans or evaluates takes one.
+/// A site: all that is fixed before a network of stations is chosen. Every call that plans, evaluates or writes results
+/// takes one.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "vantage/evaluation.hpp"
+#include "vantage/on_site.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
@@ -42,7 +44,9 @@ struct SiteOptions {
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
   bool spacing_by_detail = false;          ///< As `SimulatorConfig::spacing_by_detail`.
   std::optional<Angle> max_incidence = {};
-  bool weigh_ground = true;  ///< Apply `ground_weights()` if nothing marks the surveyed surface. Scans do not need it.
+  /// If nothing marks the surveyed surface, weigh all but ground to stand on so that ground has a third of coverage at
+  /// most. Scans do not need it.
+  bool weigh_ground = true;
 
   std::optional<std::array<double, 3>> security_m = {};  ///< `SecurityVolume`: lower, upper, radius.
   std::optional<Angle> max_slope = {};
@@ -117,6 +121,12 @@ class Site {
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Made if needed.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
+
+  /// Places a station by its head (survey frame), at `uv` if that is given, and checks it as a search does.
+  PlacedHead place_head(const Vec3& head, std::optional<Uv> uv = {});
+  /// Paths over the ground and times of rounds; rounds begin and end at the site's entrance if `options` name none.
+  /// Throws Error invalid_argument (an option out of its range, no ground).
+  OnSite on_site(OnSiteOptions options = {});
 
   /// Evaluates a network on this site: `evaluate_stations()` with scan overlaps if pairs are counted, and with the
   /// round on site, from and to the entrance, if there is ground. Throws Error as that does.

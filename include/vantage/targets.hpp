@@ -55,14 +55,6 @@ Settings settings(const TargetOptions& options);
 /// Throws Error invalid_argument with the member and its value.
 void check(const TargetOptions& options);
 
-/// Fills `Target::stations`, and returns the targets as `registration_error()` takes them. A station measures a target
-/// if the line between them is free, it lies within the scanner's field and range, and enough points fall on it: the
-/// target's disc over range² · Δazimuth · Δzenith · sin zenith. The variance of a centre is sigma² + 3 σ²/N for N
-/// points of range noise σ. Throws Error invalid_argument.
-std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,
-                                              std::span<const PlacedStation> stations, std::vector<Target>& targets,
-                                              const TargetOptions& options = {});
-
 /// Largest distance at which a scanner measures a target of its own height.
 double target_reach_m(const Scanner& scanner, const TargetOptions& options = {});
 

@@ -220,7 +220,7 @@ class PlacedStation:
     @property
     def status(self) -> Literal["ok", "hole", "clash", "inside", "off_ground", "outside"]: ...
     @property
-    def kept(self) -> bool: ...
+    def existing(self) -> bool: ...
     @property
     def setup(self) -> StationSetup: ...
     @property
@@ -269,11 +269,7 @@ class ClashChecker:
     def sees(self, a: Sequence[float], b: Sequence[float]) -> bool: ...
     def distance(self, points: npt.ArrayLike, limit_m: float) -> Floats: ...
 
-def place_heads(
-    area: SearchArea, clash: ClashChecker, height_m: float, heads: Stations
-) -> List[PlacedStation]: ...
-
-def weigh_ground(scene: Scene, area: SearchArea) -> Scene: ...
+def place_heads(site: Site, heads: Stations) -> List[PlacedStation]: ...
 
 class RegistrationOptions:
     def __init__(
@@ -439,9 +435,7 @@ class Visit:
     def unconnected(self) -> int: ...
 
 class OnSite:
-    def __init__(
-        self, area: SearchArea, clash: ClashChecker, scanners: Sequence[Scanner], options: OnSiteOptions = ...
-    ) -> None: ...
+    def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...
     def way_m(self, start: Sequence[float], end: Sequence[float]) -> Optional[float]: ...
     def visit(self, stations: Stations) -> Visit: ...
 
@@ -460,9 +454,7 @@ class MissedVoxels:
     def candidates(self) -> int: ...
 
 def why_missed(
-    simulator: Simulator,
-    area: SearchArea,
-    clash: ClashChecker,
+    site: Site,
     evaluation: Evaluation,
     *,
     progress: Optional[Progress] = None,
@@ -646,6 +638,44 @@ class SiteChoice:
     def why(self) -> str: ...
 
 class Site:
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        scanners: Sequence[Scanner] = [],
+        name: str = "site",
+        scanner: Setting = None,
+        step: Setting = None,
+        heading: Setting = None,
+        horizontal: Setting = None,
+        vertical: Setting = None,
+        zenith_start: Setting = None,
+        height: Setting = None,
+        range: Setting = None,
+        noise: Setting = None,
+        beam: Setting = None,
+        rate: Setting = None,
+        user_size: Setting = None,
+        incidence: Setting = None,
+        spacing: Setting = None,
+        spacing_by_detail: Setting = None,
+        security: Setting = None,
+        slope: Setting = None,
+        headroom: Setting = None,
+        min_area: Setting = None,
+        passage: Setting = None,
+        climb: Setting = None,
+        enter: Setting = None,
+        levels: Setting = None,
+        within: Setting = None,
+        without: Setting = None,
+        engine: Setting = None,
+        device: Setting = None,
+        seed: Setting = None,
+        memory: Setting = None,
+        validation: Setting = None,
+        crs: Setting = None,
+    ) -> None: ...
     @staticmethod
     def open(
         file: Path,
@@ -703,12 +733,18 @@ class Site:
     @property
     def scanners(self) -> List[Scanner]: ...
     @property
+    def area(self) -> SearchArea: ...
+    @property
+    def clash(self) -> ClashChecker: ...
+    @property
+    def simulator(self) -> Simulator: ...
+    @property
     def choices(self) -> List[SiteChoice]: ...
     def evaluate(
         self,
         stations: Stations,
         *,
-        sample_voxels: int = 0,
+        sample_voxels: Optional[int] = None,
         overlap: bool = True,
         skip: bool = False,
         field: bool = False,
@@ -728,6 +764,8 @@ class Site:
         self,
         problem: Union[None, str, SurveyProblem] = None,
         *,
+        start: Sequence[Sequence[float]] = [],
+        checkpoint: Optional[Path] = None,
         progress: Optional[Callable[[PlanProgress], Any]] = None,
         set_up: Setting = None,
         photos: Setting = None,
@@ -767,15 +805,13 @@ class Site:
     ) -> PlanResult: ...
 
 def find_candidates(
-    simulator: Simulator,
-    area: SearchArea,
-    clash: ClashChecker,
+    site: Site,
     *,
     progress: Optional[Progress] = None,
     first: int = 128,
     most: int = 4096,
     change: float = 0.01,
-    sample_voxels: int = 20000,
+    sample_voxels: Optional[int] = 20000,
     scanner: int = 0,
     max_seconds: float = 0.0,
 ) -> Candidates: ...
@@ -864,14 +900,12 @@ class GreedyResult:
     def cancelled(self) -> bool: ...
 
 def greedy_network(
-    simulator: Simulator,
-    area: SearchArea,
-    clash: ClashChecker,
+    site: Site,
     stations: int,
     *,
     progress: Optional[Progress] = None,
     candidates: int = 300,
-    sample_voxels: int = 20000,
+    sample_voxels: Optional[int] = 20000,
     existing: Sequence[Sequence[float]] = [],
     existing_setups: Sequence[StationSetup] = [],
 ) -> GreedyResult: ...
@@ -885,14 +919,12 @@ class ExactResult:
     def cancelled(self) -> bool: ...
 
 def exact_network(
-    simulator: Simulator,
-    area: SearchArea,
-    clash: ClashChecker,
+    site: Site,
     stations: int,
     *,
     progress: Optional[Progress] = None,
     candidates: int = 256,
-    sample_voxels: int = 20000,
+    sample_voxels: Optional[int] = 20000,
     link: float = 0.0,
     apart_m: float = 0.0,
     max_seconds: float = 60.0,
@@ -907,7 +939,7 @@ class MeasuredNetwork:
     @property
     def heads(self) -> Floats: ...
     @property
-    def kept(self) -> int: ...
+    def existing(self) -> int: ...
     @property
     def visible_parts(self) -> int: ...
     @property
@@ -967,8 +999,8 @@ class SurveyProblem:
         name: str = "custom",
         stations_min: int = 4,
         stations_max: int = 4,
-        kept: Iterable[Sequence[float]] = (),
-        kept_setups: Iterable[StationSetup] = (),
+        existing: Iterable[Sequence[float]] = (),
+        existing_setups: Iterable[StationSetup] = (),
         scanners: Iterable[int] = (),
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
@@ -982,8 +1014,8 @@ class SurveyProblem:
     name: str
     stations_min: int
     stations_max: int
-    kept: Tuple[Vec3, ...]
-    kept_setups: Tuple[StationSetup, ...]
+    existing: Tuple[Vec3, ...]
+    existing_setups: Tuple[StationSetup, ...]
     scanners: Tuple[int, ...]
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
@@ -1097,31 +1129,7 @@ class PlanResult:
     @property
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
-    def write(self, folder: Path, crs: str = "") -> None: ...
-    def write_report(self, file: Path, *, title: str = "Survey", progress: Optional[Progress] = None) -> None: ...
-
-def plan(
-    simulator: Simulator,
-    area: SearchArea,
-    clash: ClashChecker,
-    problem: SurveyProblem,
-    *,
-    progress: Optional[Callable[[PlanProgress], Any]] = None,
-    population: int = 0,
-    iterations: int = 0,
-    sigma0: float = 0.2,
-    scheme: Literal["steady-state", "generational"] = "steady-state",
-    batch: int = 0,
-    exact: bool = False,
-    sample_voxels: int = 0,
-    renew_iterations: Optional[int] = None,
-    start: Sequence[Sequence[float]] = [],
-    redraws: int = 8,
-    max_seconds: float = 0.0,
-    target_hypervolume: Optional[float] = None,
-    stagnation_iterations: int = 0,
-    seed: Optional[int] = None,
-    checkpoint: Path = "",
-    checkpoint_seconds: float = 60.0,
-    resume: bool = False,
-) -> PlanResult: ...
+    def write(self, folder: Path) -> None: ...
+    def write_report(
+        self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None
+    ) -> None: ...

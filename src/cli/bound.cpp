@@ -97,6 +97,51 @@ std::string text_of(const StationsBound& bound, double capture) {
                      bound.chosen.empty() ? "" : fmt::format("; {} are enough", bound.chosen.size()));
 }
 
+// Lines for the terminal, and the same as JSON.
+struct BoundLines {
+  std::string text;
+  nlohmann::json by_number = nlohmann::json::array(), by_capture = nlohmann::json::array();
+};
+
+void bound_numbers(BoundLines& bounds, const BoundOptions& options, const Candidates& candidates,
+                   const StationGraph* graph, const Progress& progress) {
+  const CoverageMatrix matrix = candidates.captured_matrix();
+  for (const std::size_t stations : options.stations) {
+    const CoverSolution found =
+        max_cover({.matrix = matrix, .graph = graph, .most = stations, .link = options.link.value_or(0)}, options.bound,
+                  progress);
+    const Estimate reached = captured_by(candidates.attainable_counts(), matrix, found.chosen);
+    bounds.text += text_of(found, stations, reached);
+    bounds.by_number.push_back({{"stations", stations},
+                                {"bound", found.bound},
+                                {"relaxation", found.relaxation},
+                                {"complete", found.complete},
+                                {"half_bound", found.half_bound},
+                                {"spacing_term", found.spacing_term},
+                                {"reached", reached.value},
+                                {"reached_se", reached.standard_error},
+                                {"gap", CoverSolution::relative_gap(found.bound, reached.value)},
+                                {"chosen", heads_json(candidates, found.chosen)}});
+    if (progress.stopped()) break;
+  }
+}
+
+void bound_captures(BoundLines& bounds, const BoundOptions& options, const Candidates& candidates,
+                    const Progress& progress) {
+  const CoverageMatrix matrix = candidates.captured_matrix();
+  for (const double capture : options.captures) {
+    if (progress.stopped()) break;
+    const StationsBound found = min_cover({.matrix = matrix, .coverage = capture}, options.bound, progress);
+    bounds.text += text_of(found, capture);
+    bounds.by_capture.push_back({{"capture", capture},
+                                 {"possible", found.possible},
+                                 {"at_least", found.at_least},
+                                 {"relaxation", found.possible ? nlohmann::json(found.relaxation) : nullptr},
+                                 {"complete", found.complete},
+                                 {"enough", heads_json(candidates, found.chosen)}});
+  }
+}
+
 int bound(CLI::App& command, BoundOptions& options, Program& program) {
   const Stopwatch watch;
   Site site = open_site(command, options.site);
@@ -108,60 +153,28 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
   ProgressLine line(program.console, "tracing candidates");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
-  const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
+  const Candidates candidates = find_candidates(site, options.candidates, progress);
   const Estimate attainable = candidates.attainable();
   if (program.stop.stop_requested() || !(attainable.value > 0)) {
     spdlog::error(attainable.value > 0 ? "stopped before the end"
                                        : "nothing that is surveyed can be captured from any candidate");
     return exit_failed;
   }
-  std::string text = fmt::format(
+  BoundLines bounds;
+  bounds.text = fmt::format(
       "attainable {:.4f} ± {:.4f} of what is surveyed, from {} candidates, no allowed position farther than "
       "{:.2f} m from one\n",
       attainable.value, attainable.standard_error, candidates.stations().size(), candidates.spacing_m());
-  nlohmann::json by_number = nlohmann::json::array(), by_capture = by_number;
   StationGraph graph;
   if (options.link) {
     line.set_label("links");
-    Simulator surroundings = surroundings_of(simulator);
-    graph = overlap_graph(surroundings, candidates.stations(), 10'000, progress);
+    graph = overlap_graph(site.surroundings(), candidates.stations(), 10'000, progress);
   }
   line.set_label("bound");
-  const SampledCoverage& sampled = candidates.coverage();
-  const CoverageMatrix matrix = candidates.captured_matrix();
-  for (const std::size_t stations : options.stations) {
-    const CoverSolution found = max_cover({.matrix = matrix,
-                                           .graph = options.link ? &graph : nullptr,
-                                           .most = stations,
-                                           .link = options.link.value_or(0)},
-                                          options.bound, progress);
-    const Estimate reached = captured_by(candidates.attainable_counts(), matrix, found.chosen);
-    text += text_of(found, stations, reached);
-    by_number.push_back({{"stations", stations},
-                         {"bound", found.bound},
-                         {"relaxation", found.relaxation},
-                         {"complete", found.complete},
-                         {"half_bound", found.half_bound},
-                         {"spacing_term", found.spacing_term},
-                         {"reached", reached.value},
-                         {"reached_se", reached.standard_error},
-                         {"gap", CoverSolution::relative_gap(found.bound, reached.value)},
-                         {"chosen", heads_json(candidates, found.chosen)}});
-    if (program.stop.stop_requested()) break;
-  }
-  for (const double capture : options.captures) {
-    if (program.stop.stop_requested()) break;
-    const StationsBound found = min_cover({.matrix = matrix, .coverage = capture}, options.bound, progress);
-    text += text_of(found, capture);
-    by_capture.push_back({{"capture", capture},
-                          {"possible", found.possible},
-                          {"at_least", found.at_least},
-                          {"relaxation", found.possible ? nlohmann::json(found.relaxation) : nullptr},
-                          {"complete", found.complete},
-                          {"enough", heads_json(candidates, found.chosen)}});
-  }
+  bound_numbers(bounds, options, candidates, options.link ? &graph : nullptr, progress);
+  bound_captures(bounds, options, candidates, progress);
   if (!options.json) {
-    program.console.print(text);
+    program.console.print(bounds.text);
     return exit_ok;
   }
   program.console.print(nlohmann::json{{"attainable", attainable.value},
@@ -170,9 +183,9 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
                                        {"candidates", candidates.stations().size()},
                                        {"candidates_ended", candidates.ended()},
                                        {"spacing", candidates.spacing_m()},
-                                       {"stations", std::move(by_number)},
-                                       {"captures", std::move(by_capture)},
-                                       {"sample", sampled.voxels().size()},
+                                       {"stations", std::move(bounds.by_number)},
+                                       {"captures", std::move(bounds.by_capture)},
+                                       {"sample", candidates.coverage().voxels().size()},
                                        {"voxels", simulator.voxel_count()},
                                        {"seconds", seconds_json(watch, 0)},
                                        {"engine", to_string(simulator.engine().engine)},

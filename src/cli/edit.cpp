@@ -121,8 +121,7 @@ class Browser {
 
 int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   Site site = open_site(command, options.site);
-  const std::string title = std::filesystem::path(options.site.scene).stem().string();
-  const std::filesystem::path folder = options.output ? *options.output : title + "-edit";
+  const std::filesystem::path folder = options.output ? *options.output : site.name() + "-edit";
   make_folder(folder);
   const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene().fingerprint())};
   std::vector<EditStation> stations;
@@ -143,19 +142,18 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
   const auto save = [&](const Evaluation& exact, const Progress& progress) {
     write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners());
-    const auto judged = judge_missed(site, simulator, exact.field, program);
+    const auto judged = judge_missed(site, exact.field, program);
     if (progress.stopped()) return;
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, simulator,
-                  site.area(), ReportHead().with({.title = title, .missed = judged ? &*judged : nullptr}, site),
-                  program, progress.stop);
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, site,
+                  {.missed = judged ? &*judged : nullptr}, program, progress.stop);
     spdlog::info("saved in {}", folder.string());
   };
   EditSession session(
-      simulator, site.area(), site.clash(), stations, options.edit,
+      site, stations, options.edit,
       [&](const std::vector<EditStation>& now) { keeper.keep(now, simulator.scanners()); }, save);
   std::optional<Browser> browser;
   serve_editor(
-      session, title,
+      session, site.name(),
       [&](const std::string& address) {
         program.console.print(address + "\n");
         spdlog::info("the editor is at this address until Ctrl-C; {} always has the present stations",

@@ -114,9 +114,9 @@ struct EvaluateCommandOptions {
 };
 
 // As `plan` looks at it before it searches.
-AttainableCounts attainable_counts(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
+AttainableCounts attainable_counts(Site& site, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "looking at what can be captured");
-  return find_candidates(simulator, site.area(), site.clash(), {.sample_voxels = sample},
+  return find_candidates(site, {.sample_voxels = sample},
                          {.report = [&](double done) { line.update(done); }, .stop = program.stop})
       .attainable_counts();
 }
@@ -137,7 +137,8 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     refuse("--targets and --propose-targets: targets are for --registration, which was not asked for");
   for (const std::string& file : options.station_files) {
     must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
-    if (!file.ends_with(".dxf")) to_wgs84(crs_text(site), {});  // an error now, not behind the rays
+    if (!file.ends_with(".dxf") && site.crs().empty())
+      refuse("--write-stations: longitude and latitude need the coordinate system of the site: give --crs");
   }
   for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
   if (!options.reports.empty() && !why_no_report().empty()) refuse("--report: " + why_no_report());
@@ -184,33 +185,29 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
-                 simulator, site.area(), found.stations);
+                 site, found.stations);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
   for (const std::string& file : options.registration_files) {
     if (file.ends_with(".ply"))
       write_registration_ply(file, simulator, found.field, *found.registration);
     else
-      draw_registration(file, simulator, site.area(), found.field, *found.registration, found.stations,
+      draw_registration(file, site, found.field, *found.registration, found.stations,
                         "Registration error on the surface (predicted)");
   }
   const StationLinks links = drawn_links(options, found);
   if (options.picture) {
     const std::vector<StationError> errors =
         found.registration ? found.registration->stations : std::vector<StationError>();
-    draw_plan_view(*options.picture, site.scene(), site.area(), found.stations, links,
+    draw_plan_view(*options.picture, site, found.stations, links,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", names.size(),
                                names.size() == 1 ? "" : "s", found.value("coverage"), found.value("overlap")),
                    names, errors);
   }
-  for (const std::string& file : options.station_files)
-    write_stations(file, {found.stations, names}, links, site.area(), crs_text(site));
+  for (const std::string& file : options.station_files) write_stations(file, found.stations, names, links, site);
   if (!options.reports.empty())
-    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, simulator,
-                  site.area(),
-                  options.report_head.with(
-                      {.title = std::filesystem::path(options.site.scene).stem().string(), .missed = judged}, site),
-                  program, program.abort);
+    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
+                  options.report_head.with({.missed = judged}), program, program.abort);
 }
 
 // `traced`: with every ray, also where a sample has all voxels.
@@ -311,10 +308,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   AttainableCounts attainable;
   if (options.attainable) {
-    attainable = attainable_counts(site, simulator,
-                                   options.sampled() ? std::min(chosen.sample_voxels, simulator.voxel_count())
-                                                     : std::min(kAttainableSample, simulator.voxel_count()),
-                                   program);
+    attainable = attainable_counts(
+        site, std::min(chosen.sample_voxels.value_or(kAttainableSample), simulator.voxel_count()), program);
     chosen.attainable = &attainable;
   }
   const Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
@@ -322,7 +317,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
 
   std::optional<MissedVoxels> judged;
   if (!options.missed.files.empty() || (!options.reports.empty() && !options.sampled())) {
-    judged = judge_missed(site, simulator, found.field, program);
+    judged = judge_missed(site, found.field, program);
     if (!judged && program.abort.stop_requested()) return exit_failed;
   }
   write_files(options, site, simulator, found, names, judged ? &*judged : nullptr, program);

@@ -30,11 +30,10 @@ void MissedFiles::check() const {
       throw Error(Errc::invalid_argument, "--missed: " + file + " is none of .csv, .ply, .png and .svg");
 }
 
-std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
-                                         Program& program) {
+std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program) {
   ProgressLine line(program.console, "finding why surface is missed");
-  MissedVoxels judged = missed_voxels(simulator, site.area(), site.clash(), field, {},
-                                      {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  MissedVoxels judged =
+      missed_voxels(site, field, {}, {.report = [&](double done) { line.update(done); }, .stop = program.abort});
   if (judged.shares.empty()) return std::nullopt;
   const MissedShare& all = judged.shares.front();
   const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
@@ -49,15 +48,15 @@ std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator,
   return judged;
 }
 
-void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
-                  const SearchArea& area, std::span<const PlacedStation> stations) {
+void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, Site& site,
+                  std::span<const PlacedStation> stations) {
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".csv")
       write_missed_csv(file, judged.shares);
     else if (file.extension() == ".ply")
-      write_missed_ply(file, simulator, judged);
+      write_missed_ply(file, site.simulator(), judged);
     else
-      draw_missed(file, simulator, area, judged, stations, "Why surfaces are not captured");
+      draw_missed(file, site, judged, stations, "Why surfaces are not captured");
   }
 }
 

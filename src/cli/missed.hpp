@@ -24,11 +24,10 @@ struct MissedFiles {
 };
 
 // `missed_voxels()` with progress and a line of results. Empty if stopped, or if nothing is surveyed.
-std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
-                                         Program& program);
+std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program);
 
 // Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view.
-void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
-                  const SearchArea& area, std::span<const PlacedStation> stations);
+void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, Site& site,
+                  std::span<const PlacedStation> stations);
 
 }  // namespace vantage::cli

@@ -91,9 +91,14 @@ std::vector<PlacedStation> heads_of(Site& site, const std::vector<StationText>& 
 }
 
 void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
-  for (const PlacedStation& station : stations) question.kept.push_back(station.position);
+  for (const PlacedStation& station : stations) question.existing.push_back(station.position);
   if (std::ranges::all_of(stations, [](const PlacedStation& s) { return s.setup == StationSetup(); })) return;
-  for (const PlacedStation& station : stations) question.kept_setups.push_back(station.setup);
+  for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
+}
+
+// Voxels that a start is chosen by.
+std::uint64_t start_sample(const PlanConfig& config) {
+  return config.exact ? every_voxel : std::min<std::uint64_t>(config.sample_voxels, kStartSample);
 }
 
 // Heads of a greedy choice for the largest network; empty where it was stopped.
@@ -101,11 +106,11 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
                                std::stop_token stop) {
   ProgressLine line(program.console, "choosing a start");
   const GreedyResult greedy =
-      greedy_network(site.simulator(), site.area(), site.clash(),
+      greedy_network(site,
                      {.stations = problem.stations_max,
-                      .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
-                      .existing = problem.kept,
-                      .existing_setups = problem.kept_setups},
+                      .sample_voxels = start_sample(config),
+                      .existing = problem.existing,
+                      .existing_setups = problem.existing_setups},
                      {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
@@ -122,13 +127,13 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
   };
   const double link = least(Objective::Kind::link);
   ProgressLine line(program.console, "choosing the best start");
-  const ExactResult exact = exact_network(site.simulator(), site.area(), site.clash(),
+  const ExactResult exact = exact_network(site,
                                           {.stations = problem.stations_max,
-                                           .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
+                                           .sample_voxels = start_sample(config),
                                            .link = link,
                                            .apart_m = least(Objective::Kind::distance),
                                            .max_seconds = seconds,
-                                           .existing = problem.kept},
+                                           .existing = problem.existing},
                                           {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (exact.cancelled) return heads;
@@ -140,20 +145,6 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
     spdlog::info("exact: {} stations cover {:.4f}, within {:.1f} % of the best that any of the candidates can do",
                  heads.size(), exact.choice.coverage, 100 * exact.choice.gap());
   return heads;
-}
-
-// The site's coordinate system, where stations can be put on a map by it; else nothing, and a line that says why.
-std::string map_system(const Site& site) {
-  const std::string crs = crs_text(site);
-  if (crs.empty()) return crs;
-  try {
-    const Box box = site.scene().bounds();
-    to_wgs84(crs, std::vector<Vec3>{box.min, box.max, {box.min.x, box.max.y, 0}, {box.max.x, box.min.y, 0}});
-    return crs;
-  } catch (const Error& error) {
-    spdlog::warn("no stations.geojson and stations.kml: {}", error.what());
-    return "";
-  }
 }
 
 // Every voxel's count under the network that is shown; empty where it was stopped.
@@ -231,30 +222,45 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
 }
 
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
-                   const PlanResult& result, const std::string& crs, Program& program, const Deadline& all_by) {
-  Simulator& simulator = site.simulator();
+                   const PlanResult& result, Program& program, const Deadline& all_by) {
   const PlanEntry& chosen = result.front[answer(result)];
-  const auto field = cartography(simulator, chosen, program, all_by.stop());
+  const auto field = cartography(site.simulator(), chosen, program, all_by.stop());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  write_plan(folder, result, simulator, site.area(), field ? &*field : nullptr, crs);
+  write_plan(folder, result, site, field ? &*field : nullptr);
   std::optional<MissedVoxels> judged;
-  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, simulator, *field, program);
+  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, *field, program);
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
-        *judged, simulator, site.area(), chosen.stations);
+        *judged, site, chosen.stations);
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
   if (!options.no_report && why_no_report().empty())
-    write_reports(
-        std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
-        site.area(),
-        options.report_head.with(
-            {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}, site),
-        program, all_by.stop());
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, site,
+                  options.report_head.with({.field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}),
+                  program, all_by.stop());
   if (options.prove)
-    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(),
-          result.attainable.has_value(), program);
+    prove(folder / "bound.json", site, chosen.stations, result.problem.existing.size(), result.attainable.has_value(),
+          program);
+}
+
+// Makes a locked folder this run's, unless it holds the results of another one. Throws Error invalid_argument.
+EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::json& as_given, const PlanConfig& config,
+                         bool force) {
+  AtomicFile::remove_leftovers_in(folder);
+  const EarlierResults before = earlier_results(folder, as_given);
+  if (before.another_run && !config.resume && !force)
+    throw Error(Errc::invalid_argument, "plan: " + folder.string() +
+                                            " holds the results of another run; give another folder with -o, --resume "
+                                            "to go on with it, or --force to overwrite it");
+  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (config.resume) {
+    if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
+      spdlog::info("resuming from {}", config.checkpoint.string());
+    else
+      spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
+  }
+  return before;
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
@@ -283,21 +289,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const nlohmann::json as_given = plan_options(site, options.question, problem, config);
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   const FolderLock lock(folder);
-  AtomicFile::remove_leftovers_in(folder);
-  const EarlierResults before = earlier_results(folder, as_given);
-  if (before.another_run && !config.resume && !options.force)
-    throw Error(Errc::invalid_argument, "plan: " + folder.string() +
-                                            " holds the results of another run; give another folder with -o, --resume "
-                                            "to go on with it, or --force to overwrite it");
-  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
-  if (config.resume) {
-    if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
-      spdlog::info("resuming from {}", config.checkpoint.string());
-    else
-      spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
-  }
-
-  const std::string crs = map_system(site);
+  const EarlierResults before = take_over(folder, as_given, config, options.force);
   constexpr double kMoment_s = 1e-3;  // 0 would be no limit
   if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
   PlanResult result = run_plan(site, problem, config, program, all_by);
@@ -322,7 +314,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   make_folder(folder);  // it may have been removed meanwhile
   write_text(folder / "config.json", as_given.dump(2) + "\n");
-  write_results(folder, site, options, result, crs, program, all_by);
+  write_results(folder, site, options, result, program, all_by);
   return show();
 }
 

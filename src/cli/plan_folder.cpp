@@ -39,11 +39,11 @@ void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
                             const PlanConfig& config) {
   nlohmann::json options = options_of(settings(problem));
-  if (!problem.kept_setups.empty()) {
+  if (!problem.existing_setups.empty()) {
     options["keep"] = nlohmann::json::array();
-    for (std::size_t k = 0; k < problem.kept.size(); ++k) {
-      const StationSetup& setup = problem.kept_setups[k];
-      options["keep"].push_back(typed(problem.kept[k], setup, site.scanners()[setup.scanner]));
+    for (std::size_t k = 0; k < problem.existing.size(); ++k) {
+      const StationSetup& setup = problem.existing_setups[k];
+      options["keep"].push_back(typed(problem.existing[k], setup, site.scanners()[setup.scanner]));
     }
   }
   if (!question.search_steps.empty()) options["search-step"] = fmt::format("{}", fmt::join(question.search_steps, ","));

@@ -17,16 +17,15 @@ Estimate captured_by(const AttainableCounts& attainable, const CoverageMatrix& m
   return attainable.captured(amounts);
 }
 
-void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
-           std::size_t kept, bool of_attainable, Program& program) {
+void prove(const std::filesystem::path& file, Site& site, std::span<const PlacedStation> stations, std::size_t kept,
+           bool of_attainable, Program& program) {
   if (stations.size() <= kept) return;
   ProgressLine line(program.console, "bound");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.abort};
-  const Candidates candidates =
-      find_candidates(simulator, site.area(), site.clash(), {.first = 1024, .most = 1024}, progress);
+  const Candidates candidates = find_candidates(site, {.first = 1024, .most = 1024}, progress);
   SampledCoverage sampled = candidates.coverage();
   const std::size_t first = sampled.size(), placed = stations.size() - kept;
-  sampled.append(sample_coverage(simulator, stations, sampled.sample_voxels(), progress));
+  sampled.append(sample_coverage(site.simulator(), stations, sampled.sample_voxels(), progress));
   if (sampled.cancelled()) {
     spdlog::warn("stopped: {} is not written", file.string());
     return;
@@ -58,7 +57,7 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
     chosen.push_back({head.x, head.y, head.z});
   }
   write_text(file, nlohmann::json{{"stations", placed},
-                                  {"kept", kept},
+                                  {"existing", kept},
                                   {"measure", of_attainable ? "captured" : "coverage"},
                                   {"reached", reached.value},
                                   {"reached_se", reached.standard_error},

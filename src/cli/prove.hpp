@@ -15,7 +15,7 @@ Estimate captured_by(const AttainableCounts& attainable, const CoverageMatrix& m
 
 // Bounds what any network of as many stations captures, the first `kept` of `stations` given, says how near these come,
 // and writes it to `file` as JSON. Of what is attainable, or else coverage.
-void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
-           std::size_t kept, bool of_attainable, Program& program);
+void prove(const std::filesystem::path& file, Site& site, std::span<const PlacedStation> stations, std::size_t kept,
+           bool of_attainable, Program& program);
 
 }  // namespace vantage::cli

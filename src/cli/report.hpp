@@ -32,8 +32,7 @@ struct ReportHead {
   void check() const {
     if (logo) read_image(*logo);
   }
-  ReportOptions with(ReportOptions options, const Site& site) const {
-    options.crs = site.crs();
+  ReportOptions with(ReportOptions options) const {
     if (logo) options.logo = *logo;
     if (date) options.date = *date;
     return options;
@@ -42,13 +41,12 @@ struct ReportHead {
 
 // Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation.
 template <class Shown>
-void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Simulator& simulator,
-                   const SearchArea& area, ReportOptions options, Program& program, std::stop_token stop) {
+void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Site& site, ReportOptions options,
+                   Program& program, std::stop_token stop) {
   options.command = program.command;
   ProgressLine line(program.console, "writing the report");
   for (const std::filesystem::path& file : files)
-    write_report(file, shown, simulator, area, options,
-                 {.report = [&](double done) { line.update(done); }, .stop = stop});
+    write_report(file, shown, site, options, {.report = [&](double done) { line.update(done); }, .stop = stop});
 }
 
 }  // namespace vantage::cli

@@ -57,6 +57,87 @@ struct ScanCommandOptions {
   }
 };
 
+// Stations and sums of all scans.
+struct Scans {
+  ScanSummary sum;  // cancelled: one was stopped
+  nlohmann::json rows = nlohmann::json::array();
+};
+
+Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std::string>& names,
+                const ScanCommandOptions& options, Site& site, PointCloudWriter* writer, Program& program) {
+  Simulator& simulator = site.simulator();
+  Scans all;
+  ProgressLine line(program.console, "scanning");
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    const Progress progress{
+        .report =
+            [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
+        .stop = program.stop};
+    ScanOptions what{.outputs = writer ? options.outputs : 0, .place = static_cast<std::uint32_t>(k)};
+    if (k < options.panoramas.size())
+      what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
+        return panorama.colour(zenith, azimuth);
+      };
+    const StationSetup& setup = stations[k].placed.setup;
+    if (writer)
+      writer->begin_station({.name = names[k],
+                             .head = stations[k].placed.position,
+                             .scanner = simulator.scanners()[setup.scanner],
+                             .setup = setup});
+    const ScanSummary one = simulator.scan(
+        {.position = stations[k].placed.position, .setup = setup}, what,
+        [&](const ScanChunk& chunk) {
+          if (writer) writer->write(chunk, static_cast<std::uint16_t>(k + 1));
+        },
+        progress);
+    if (one.cancelled) {
+      all.sum.cancelled = true;
+      break;
+    }
+    all.sum.rays += one.rays;
+    all.sum.points += one.points;
+    all.sum.points_on_surveyed += one.points_on_surveyed;
+    all.sum.trace_seconds += one.trace_seconds;
+    auto row = to_json(stations[k], names[k], site.scanners());
+    row["points"] = one.points;
+    row["points_on_surveyed"] = one.points_on_surveyed;
+    row["hits_on_surveyed"] = one.hits_on_surveyed;
+    all.rows.push_back(std::move(row));
+  }
+  return all;
+}
+
+nlohmann::json scans_json(Scans scans, const ScanCommandOptions& options, Site& site, const Stopwatch& watch) {
+  const Simulator& simulator = site.simulator();
+  nlohmann::json json{{"rays", scans.sum.rays},
+                      {"points", scans.sum.points},
+                      {"points_on_surveyed", scans.sum.points_on_surveyed},
+                      {"stations", std::move(scans.rows)},
+                      {"seconds", seconds_json(watch, scans.sum.trace_seconds)},
+                      {"engine", to_string(simulator.engine().engine)},
+                      {"device", simulator.engine().device},
+                      {"seed", site.simulator_config().seed},
+                      {"options", options_of(site.settings())},
+                      {"version", version()}};
+  if (options.output) json["file"] = *options.output;
+  return json;
+}
+
+std::string scans_text(const Scans& scans, const ScanCommandOptions& options, const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t k = 0; k < scans.rows.size(); ++k) {
+    const auto& row = scans.rows[k];
+    text += fmt::format("{} at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n", names[k],
+                        row["position"][0].get<double>(), row["position"][1].get<double>(),
+                        row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
+                        row["points_on_surveyed"].get<std::uint64_t>());
+  }
+  text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", scans.sum.rays, scans.sum.points,
+                      scans.sum.points_on_surveyed);
+  if (options.output) text += "written to " + *options.output + "\n";
+  return text;
+}
+
 int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
   options.site.given.weigh_ground = false;  // nothing here measures coverage
@@ -84,73 +165,17 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     options.outputs = point_cloud_outputs(*options.output, options.outputs);
     writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
   }
-  ScanSummary sum;
-  nlohmann::json rows = nlohmann::json::array();
-  ProgressLine line(program.console, "scanning");
-  for (std::size_t k = 0; k < stations.size(); ++k) {
-    const Progress progress{
-        .report =
-            [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
-        .stop = program.stop};
-    ScanOptions what{.outputs = writer ? options.outputs : 0, .place = static_cast<std::uint32_t>(k)};
-    if (k < options.panoramas.size())
-      what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
-        return panorama.colour(zenith, azimuth);
-      };
-    const StationSetup& setup = stations[k].placed.setup;
-    if (writer)
-      writer->begin_station({.name = names[k],
-                             .head = stations[k].placed.position,
-                             .scanner = simulator.scanners()[setup.scanner],
-                             .setup = setup});
-    const ScanSummary one = simulator.scan(
-        {.position = stations[k].placed.position, .setup = setup}, what,
-        [&](const ScanChunk& chunk) {
-          if (writer) writer->write(chunk, static_cast<std::uint16_t>(k + 1));
-        },
-        progress);
-    if (one.cancelled) {
-      spdlog::error("stopped; no file was written");
-      return exit_failed;
-    }
-    sum.rays += one.rays;
-    sum.points += one.points;
-    sum.points_on_surveyed += one.points_on_surveyed;
-    sum.trace_seconds += one.trace_seconds;
-    auto row = to_json(stations[k], names[k], site.scanners());
-    row["points"] = one.points;
-    row["points_on_surveyed"] = one.points_on_surveyed;
-    row["hits_on_surveyed"] = one.hits_on_surveyed;
-    rows.push_back(std::move(row));
+  Scans scans = scan_each(stations, names, options, site, writer ? &*writer : nullptr, program);
+  if (scans.sum.cancelled) {
+    spdlog::error("stopped; no file was written");
+    return exit_failed;
   }
   if (writer) writer->close();
 
-  if (options.json) {
-    nlohmann::json json{{"rays", sum.rays},
-                        {"points", sum.points},
-                        {"points_on_surveyed", sum.points_on_surveyed},
-                        {"stations", std::move(rows)},
-                        {"seconds", seconds_json(watch, sum.trace_seconds)},
-                        {"engine", to_string(simulator.engine().engine)},
-                        {"device", simulator.engine().device},
-                        {"seed", site.simulator_config().seed},
-                        {"options", options_of(site.settings())},
-                        {"version", version()}};
-    if (options.output) json["file"] = *options.output;
-    program.console.print(json);
-  } else {
-    std::string text;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const auto& row = rows[k];
-      text += fmt::format("{} at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n", names[k],
-                          row["position"][0].get<double>(), row["position"][1].get<double>(),
-                          row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
-                          row["points_on_surveyed"].get<std::uint64_t>());
-    }
-    text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", sum.rays, sum.points, sum.points_on_surveyed);
-    if (options.output) text += "written to " + *options.output + "\n";
-    program.console.print(text);
-  }
+  if (options.json)
+    program.console.print(scans_json(std::move(scans), options, site, watch));
+  else
+    program.console.print(scans_text(scans, options, names));
   return exit_ok;
 }
 

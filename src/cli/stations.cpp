@@ -136,17 +136,15 @@ StationText settled(Site& site, StationText station) {
 }  // namespace
 
 std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations) {
-  const double height = site.scanner().height_m;
   std::vector<SiteStation> placed;
   for (const auto& typed : stations) {
     const StationText station = settled(site, typed);
     if (station.position) {
-      const PlacedHead head =
-          place_head(site.has_area() ? &site.area() : nullptr, site.clash(), height, *station.position, station.uv);
+      const PlacedHead head = site.place_head(*station.position, station.uv);
       placed.push_back({head.station, head.has_uv, station.name});
     } else {
       const std::array<double, 2> uv{station.uv->u, station.uv->v};
-      placed.push_back({place_stations(site.area(), site.clash(), height, uv).front(), true, station.name});
+      placed.push_back({place_stations(site, uv).front(), true, station.name});
     }
     StationSetup& setup = placed.back().placed.setup = station.setup;
     setup.scanner = scanner_of(site, station.scanner, station.step);

@@ -39,19 +39,20 @@ bool flag_of(const json& request, const char* key) {
 
 }  // namespace
 
-EditSession::EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                         const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save)
-    : simulator_(simulator),
-      area_(area),
-      clash_(clash),
+EditSession::EditSession(Site& site, const std::vector<EditStation>& stations, const EditOptions& options, Keep keep,
+                         Save save)
+    : site_(site),
+      simulator_(site.simulator()),
+      surroundings_(site.surroundings()),
       options_(options),
       keep_(std::move(keep)),
       save_(std::move(save)),
-      cells_(coverage_cells(simulator, std::max(kCellVoxels, options.voxels), options.cells)),
-      surroundings_(surroundings_of(simulator)),
+      cells_(coverage_cells(simulator_, std::max(kCellVoxels, options.voxels), options.cells)),
       stations_(stations),
-      surveyed_(simulator, options.voxels),
+      surveyed_(simulator_, options.voxels),
       around_(surroundings_, options.link_voxels) {
+  // Made now, since the site's parts are read from several threads later.
+  site_.area(), site_.clash();
   for (EditStation& station : stations_) station.id = next_id_++;
   measure();
 }
@@ -64,8 +65,8 @@ ordered_json EditSession::site() const {
     const std::scoped_lock lock(mutex_);
     stations = placed();
   }
-  ordered_json json = site_json(simulator_, area_, stations, cells_);
-  const SearchMesh& ground = area_.mesh();
+  ordered_json json = site_json(site_, stations, cells_);
+  const SearchMesh& ground = site_.area().mesh();
   std::vector<float> positions;
   for (const Vec3& p : ground.positions) {
     const Vec3 local = p - simulator_.origin();
@@ -174,10 +175,10 @@ EditStation& EditSession::with_id(const json& request) {
 PlacedStation EditSession::on_ground(const json& to) const {
   if (!to.is_array() || to.size() != 3) throw Error(Errc::invalid_argument, "to: three numbers are wanted");
   const Vec3 at{number_of(to[0], "x"), number_of(to[1], "y"), number_of(to[2], "z")};
-  const auto uv = area_.project(at);
+  const auto uv = site_.area().project(at);
   if (!uv) throw Error(Errc::invalid_argument, "there is no ground to stand on");
   const double pair[] = {uv->u, uv->v};
-  return place_stations(area_, clash_, simulator_.scanner().height_m, pair).front();
+  return place_stations(site_, pair).front();
 }
 
 std::vector<PlacedStation> EditSession::placed() const {
@@ -270,12 +271,12 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
 // Searches briefly from the present stations for more coverage, with links no weaker than now or than required.
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
-  std::vector<StationSetup> kept_setups;
+  std::vector<StationSetup> existing_setups;
   std::set<std::uint32_t> scanners;  // of the movable stations
   for (const EditStation& s : stations_) {
     (s.locked ? kept : start).push_back(s.placed.position);
     if (s.locked)
-      kept_setups.push_back(s.placed.setup);
+      existing_setups.push_back(s.placed.setup);
     else
       scanners.insert(s.placed.setup.scanner);
   }
@@ -286,8 +287,8 @@ void EditSession::improve(const Progress& progress) {
   const double before = evaluation_.value("coverage");
   const std::string names[] = {"coverage"};
   SurveyProblem problem = survey_problem(names, start.size(), start.size());
-  problem.kept = kept;
-  problem.kept_setups = kept_setups;
+  problem.existing = kept;
+  problem.existing_setups = existing_setups;
   if (scanners.size() == 1) problem.scanners = {*scanners.begin()};
   Requirement linked = make_requirement("link>=0", problem.settings());
   linked.limit = stations_.size() > 1 ? std::min(weakest, options_.link) : 0;
@@ -302,8 +303,8 @@ void EditSession::improve(const Progress& progress) {
     if (now.phase == "confirm") abort.request_stop();
     if (progress.report && now.iterations > 0) progress.report(0);
   };
-  const PlanResult result = plan(simulator_, area_, clash_, problem, config,
-                                 {.report = watch, .stop = progress.stop, .abort = abort.get_token()});
+  const PlanResult result =
+      plan(site_, problem, config, {.report = watch, .stop = progress.stop, .abort = abort.get_token()});
   const std::scoped_lock lock(mutex_);
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
   const auto nothing_better = [&] {

@@ -14,8 +14,7 @@
 #include "edit/traced_stations.hpp"
 #include "report/coverage_cells.hpp"
 #include "vantage/evaluation.hpp"
-#include "vantage/placement.hpp"
-#include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -42,8 +41,7 @@ class EditSession {
   // Writes the results of an exact evaluation with its field; called on the session's own thread.
   using Save = std::function<void(const Evaluation&, const Progress&)>;
 
-  EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-              const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
+  EditSession(Site& site, const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
   ~EditSession();  // stops running work
   EditSession(const EditSession&) = delete;
   EditSession& operator=(const EditSession&) = delete;
@@ -72,14 +70,12 @@ class EditSession {
   void trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then);
   void improve(const Progress& progress);
 
-  Simulator& simulator_;
-  const SearchArea& area_;
-  const ClashChecker& clash_;
+  Site& site_;
+  Simulator &simulator_, &surroundings_;
   const EditOptions options_;
   const Keep keep_;
   const Save save_;
   CoverageCells cells_;
-  Simulator surroundings_;
 
   mutable std::mutex mutex_;  // guards all below
   Stations stations_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <string>
 
+#include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
@@ -44,15 +45,15 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("targets were given, but the registration error was not requested; request it too");
   if (!options.targets.empty() && !site.clash) refuse("targets were given without the clash checker; give it too");
   if (needs.time && !site.on_site) refuse("a measure needs the time on site; give the rounds on site too");
-  if (options.field && options.sample_voxels > 0)
+  if (options.field && options.sample_voxels)
     refuse("a sample has no points of every voxel; choose either the field or a sample");
 }
 
 std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const RequiredInputs& needs,
                                  const EvaluationOptions& options, VoxelField* field, const Progress& progress) {
-  if (options.sample_voxels > 0)
+  if (options.sample_voxels)
     return simulator.evaluate_sampled(
-        networks, {.voxels = options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
+        networks, {.voxels = *options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
         progress);
   const EvaluateOptions every_ray{
       .overlap = options.overlap, .skip = options.skip, .field = field, .registration = needs.registration};
@@ -102,13 +103,13 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       made.back().counts.cancelled = true;
       continue;
     }
-    const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::kept));
+    const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::existing));
     std::optional<Visit> visit;
     if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
     MeasuredNetwork measured{
         .counts = counts[k],
         .stations = stations[k],
-        .kept = existing,
+        .existing = existing,
         .goal_density = site.simulator.goal_density(),
         .voxels = site.simulator.voxel_count(),
         .overlap = options.overlap ? overlap_matrix(counts[k]) : OverlapMatrix{},

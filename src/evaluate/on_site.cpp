@@ -119,9 +119,6 @@ struct OnSite::Impl {
   Ways ways;
 };
 
-OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options)
-    : OnSite(area, clash, std::span(&scanner, 1), options) {}
-
 OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
                const OnSiteOptions& options) {
   check(options);

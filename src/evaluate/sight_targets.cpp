@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "evaluate/sight_targets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>

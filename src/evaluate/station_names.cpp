@@ -11,7 +11,7 @@ std::vector<std::string> station_names(std::span<const PlacedStation> stations, 
   std::set<std::string> taken;
   std::size_t placed = 0, kept = 0;
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    std::string name = stations[k].kept ? "K" + number(++kept) : "S" + number(++placed);
+    std::string name = stations[k].existing ? "K" + number(++kept) : "S" + number(++placed);
     if (k < given.size() && !given[k].empty()) name = given[k];
     if (!taken.insert(name).second) taken.insert(name += " (" + number(k + 1) + ")");
     names.push_back(std::move(name));

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 const MissedVoxels& missed, std::span<const PlacedStation> stations, const std::string& title) {
+void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
+                 std::span<const PlacedStation> stations, const std::string& title) {
   if (missed.ranks.empty()) throw Error(Errc::invalid_argument, "draw_missed: no voxel was judged");
   std::vector<ColouredVoxel> voxels;
   const auto add = [&](const MissedStyle& style) {
@@ -31,7 +31,7 @@ void draw_missed(const std::filesystem::path& file, const Simulator& simulator, 
     }
     return at;
   };
-  draw_voxel_map(file, simulator, area, voxels, stations, title, "Surveyed surfaces from above", legend);
+  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above", legend);
 }
 
 }  // namespace vantage

@@ -40,9 +40,43 @@ std::string link_words(const StationLinks& links) {
   return links.measure == LinkMeasure::scan_overlap ? "Scan overlap of two stations" : "Overlap of two stations";
 }
 
+// The part of links. Returns where it ends, as the whole legend does.
+double draw_link_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
+  constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
+  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };
+  if (content.largest > 0) {
+    at.y += 6;
+    canvas.text(at, link_words(view.links), {.size = 12.5, .bold = true});
+    at.y += 22;
+    for (const double overlap : kLinkSamples) {
+      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, overlap, false, false);
+      words(number(overlap) + (overlap == std::end(kLinkSamples)[-1] ? " and more" : ""));
+      at.y += 22;
+    }
+    if (content.bridge) {
+      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, 0.2, true, false);
+      words("the only link of two parts");
+      at.y += 22;
+    }
+    canvas.text(at, "largest " + fixed(content.largest, 3), faint);
+    canvas.text({at.x, at.y + 17}, "below " + number(view.links.least) + " not drawn", faint);
+    at.y += 34;
+    if (content.hidden_links > 0) {
+      canvas.text(at, "strongest tree, two of each station;", faint);
+      canvas.text({at.x, at.y + 17}, number(static_cast<double>(content.hidden_links)) + " further links not drawn",
+                  faint);
+      at.y += 34;
+    }
+  } else if (view.stations.size() > 1 && view.links.values.size() == view.stations.size()) {
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.links.least), faint);
+    at.y += 24;
+  }
+  return at.y;
+}
+
 // Draws what the marks mean below each other and returns where it ends.
 double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
-  constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
+  constexpr TextStyle text{.size = 12.5};
   const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };
   const auto swatch = [&](const Colour& colour, const std::string& what) {
     canvas.fill({at.x, at.y - 7, 24, 14}, colour);
@@ -75,12 +109,12 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   };
   PlacedStation example;
   station("S1", example, content.heights ? "station; z of its ground" : "station");
-  if (any([](const PlacedStation& s) { return s.kept; })) {
-    example.kept = true;
-    station("K1", example, "kept: there before");
+  if (any([](const PlacedStation& s) { return s.existing; })) {
+    example.existing = true;
+    station("K1", example, "existing: there before");
   }
   if (any([](const PlacedStation& s) { return s.status != StationStatus::hole && !active(s); })) {
-    example.kept = false, example.status = StationStatus::clash;
+    example.existing = false, example.status = StationStatus::clash;
     station("S2", example, "skipped: no place to stand");
   }
   if (content.elsewhere) {
@@ -106,34 +140,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
     canvas.text({at.x, at.y + 17}, "not shown", text);
     at.y += 45;
   }
-  if (content.largest > 0) {
-    at.y += 6;
-    canvas.text(at, link_words(view.links), {.size = 12.5, .bold = true});
-    at.y += 22;
-    for (const double overlap : kLinkSamples) {
-      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, overlap, false, false);
-      words(number(overlap) + (overlap == std::end(kLinkSamples)[-1] ? " and more" : ""));
-      at.y += 22;
-    }
-    if (content.bridge) {
-      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, 0.2, true, false);
-      words("the only link of two parts");
-      at.y += 22;
-    }
-    canvas.text(at, "largest " + fixed(content.largest, 3), faint);
-    canvas.text({at.x, at.y + 17}, "below " + number(view.links.least) + " not drawn", faint);
-    at.y += 34;
-    if (content.hidden_links > 0) {
-      canvas.text(at, "strongest tree, two of each station;", faint);
-      canvas.text({at.x, at.y + 17}, number(static_cast<double>(content.hidden_links)) + " further links not drawn",
-                  faint);
-      at.y += 34;
-    }
-  } else if (view.stations.size() > 1 && view.links.values.size() == view.stations.size()) {
-    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.links.least), faint);
-    at.y += 24;
-  }
-  return at.y;
+  return draw_link_legend(canvas, at, view, content);
 }
 
 std::string level_words(const std::vector<PlanLevel>& levels, std::size_t k) {
@@ -210,13 +217,12 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
   return pages;
 }
 
-std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
-                                                  const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const StationLinks& links, const std::string& title,
-                                                  std::span<const std::string> names,
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
+                                                  std::span<const PlacedStation> stations, const StationLinks& links,
+                                                  const std::string& title, std::span<const std::string> names,
                                                   std::span<const StationError> errors) {
-  const PlanView view{.scene = scene,
-                      .area = area,
+  const PlanView view{.scene = site.scene(),
+                      .area = site.area(),
                       .stations = stations,
                       .names = station_names(stations, names),
                       .links = links,

@@ -106,7 +106,8 @@ std::string FrontView::words(const PlanEntry& entry) const {
 }
 
 std::string problem_line(const SurveyProblem& problem) {
-  const std::size_t low = problem.kept.size() + problem.stations_min, high = problem.kept.size() + problem.stations_max;
+  const std::size_t low = problem.existing.size() + problem.stations_min,
+                    high = problem.existing.size() + problem.stations_max;
   std::string line = problem.name;
   if (line == "custom") {
     line.clear();
@@ -115,7 +116,7 @@ std::string problem_line(const SurveyProblem& problem) {
   line += ", " + std::to_string(low);
   if (high != low) line += " to " + std::to_string(high);
   line += high == 1 ? " station" : " stations";
-  if (!problem.kept.empty()) line += " (" + std::to_string(problem.kept.size()) + " kept)";
+  if (!problem.existing.empty()) line += " (" + std::to_string(problem.existing.size()) + " existing)";
   for (const Requirement& requirement : problem.requirements) line += ", " + in_words(requirement);
   return line;
 }

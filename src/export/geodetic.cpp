@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "core/text.hpp"
+#include "export/station_files.hpp"
 #include "vantage/error.hpp"
-#include "vantage/station_files.hpp"
 
 namespace vantage {
 namespace {

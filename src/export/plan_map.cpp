@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kLeastWidth = 0.8, kMostWidth = 9;  // of links without overlap, and at the end of the scale
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
-constexpr Colour kStation{0.10, 0.22, 0.45}, kKept{0.42, 0.16, 0.44}, kLink{0.16, 0.34, 0.66},
+constexpr Colour kStation{0.10, 0.22, 0.45}, kExisting{0.42, 0.16, 0.44}, kLink{0.16, 0.34, 0.66},
     kSkipped{0.72, 0.12, 0.12};
 SearchMesh mesh_of(const SearchMesh& mesh, const PlanLevel& level) {
   SearchMesh part{.positions = mesh.positions, .uvs = mesh.uvs, .triangles = {}};
@@ -148,7 +148,7 @@ class Stations {
   const std::string& name(std::size_t k) const { return view_.names[shown_[k]]; }
   bool on_level(std::size_t k) const { return level_.holds(station(k).ground.z); }
   bool moved(std::size_t k) const { return std::hypot(discs_[k].x - spots_[k].x, discs_[k].y - spots_[k].y) > 0.5; }
-  Colour colour(std::size_t k) const { return station(k).kept ? kKept : kStation; }
+  Colour colour(std::size_t k) const { return station(k).existing ? kExisting : kStation; }
 
   void draw_links(PlanMapContent& content) {
     if (view_.links.values.size() != view_.stations.size()) return;
@@ -333,7 +333,7 @@ bool fits_disc(const std::string& name) { return name.size() <= 4; }
 void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station, double radius) {
   const double square = 0.94 * radius;  // existing ones are square
   const auto mark = [&](double grow, const Colour& colour) {
-    if (station.kept)
+    if (station.existing)
       canvas.fill({at.x - square - grow, at.y - square - grow, 2 * (square + grow), 2 * (square + grow)}, colour);
     else
       canvas.disc(at, radius + grow, colour);
@@ -344,7 +344,7 @@ void draw_station(Canvas& canvas, Point at, const std::string& text, const Place
     for (const double side : {-1.0, 1.0})
       canvas.line({at.x - 1.25 * radius, at.y - side * 1.25 * radius},
                   {at.x + 1.25 * radius, at.y + side * 1.25 * radius}, {.colour = kSkipped, .width = 0.28 * radius});
-  mark(0, skipped ? Colour{0.93, 0.93, 0.94} : station.kept ? kKept : kStation);
+  mark(0, skipped ? Colour{0.93, 0.93, 0.94} : station.existing ? kExisting : kStation);
   if (!fits_disc(text)) return;
   const double size = text.size() <= 2 ? 11 : text.size() == 3 ? 9 : 7;  // as large as there is room for
   canvas.text(at, text,

@@ -71,9 +71,10 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
   });
 }
 
-void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                       const VoxelField& field, const RegistrationError& error, std::span<const PlacedStation> stations,
+void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
+                       const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title) {
+  const Simulator& simulator = site.simulator();
   check(simulator, field);
   const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
   const std::vector<float> errors = errors_of(simulator, field, error, ranks);
@@ -102,8 +103,7 @@ void draw_registration(const std::filesystem::path& file, const Simulator& simul
     canvas.text({at.x + 34, at.y}, "not seen", {.size = 12.5});
     return Point{at.x, at.y + 24};
   };
-  draw_voxel_map(file, simulator, area, voxels, stations, title,
-                 "Surveyed surfaces from above, the largest error on top", legend);
+  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above, the largest error on top", legend);
 }
 
 }  // namespace vantage

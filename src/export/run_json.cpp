@@ -122,7 +122,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     const PlacedStation& s = entry.stations[i];
     ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
-                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"kept", s.kept}};
+                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"existing", s.existing}};
     if (s.status != StationStatus::hole) {
       station["position"] = to_json(s.position);
       station["ground"] = to_json(s.ground);
@@ -156,7 +156,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   json["x"] = entry.x;
   if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
   if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
-  if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.kept.size());
+  if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.existing.size());
   return json;
 }
 

@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-inline constexpr const char* kStationColumns[] = {"name", "x", "y", "z", "ground_z", "u", "v", "status", "kept"};
+inline constexpr const char* kStationColumns[] = {"name", "x", "y", "z", "ground_z", "u", "v", "status", "existing"};
 
 // Columns of a station's setup, in tables that need them.
 inline constexpr const char* kSetupColumns[] = {"heading", "tilt", "scanner", "step"};
@@ -41,7 +41,7 @@ inline std::string station_cells(const PlacedStation& s, const std::string& name
   else
     cells += "," + number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z) + "," +
              number(s.ground.z) + ",";
-  return cells + number(s.uv.u) + "," + number(s.uv.v) + "," + to_string(s.status) + (s.kept ? ",1" : ",0");
+  return cells + number(s.uv.u) + "," + number(s.uv.v) + "," + to_string(s.status) + (s.existing ? ",1" : ",0");
 }
 
 }  // namespace vantage

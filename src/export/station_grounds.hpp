@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "export/station_files.hpp"
 #include "vantage/error.hpp"
-#include "vantage/station_files.hpp"
 
 namespace vantage {
 

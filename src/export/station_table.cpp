@@ -54,7 +54,7 @@ std::string station_table(std::span<const PlacedStation> stations, std::span<con
     name.cells.push_back(names[k]);
     x.cells.push_back(metres(s.ground.x)), y.cells.push_back(metres(s.ground.y));
     z.cells.push_back(metres(s.ground.z)), head.cells.push_back(metres(s.position.z));
-    status.cells.push_back(to_string(s.status) + (s.kept ? ", kept" : ""));
+    status.cells.push_back(to_string(s.status) + (s.existing ? ", existing" : ""));
     counted.cells.push_back(k < points.size() ? number(points[k]) : "");
   }
   std::vector<TableColumn> columns{name, x, y, z, head, status};

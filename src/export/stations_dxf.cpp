@@ -59,9 +59,9 @@ struct Layer {
   const char* name;
   int colour;  // AutoCAD colour index: 1 red, 3 green, 5 blue, 7 black or white, 8 grey
 };
-constexpr Layer kStations{"STATIONS", 5}, kKept{"STATIONS_KEPT", 3}, kLeftOut{"STATIONS_LEFT_OUT", 1},
+constexpr Layer kStations{"STATIONS", 5}, kExisting{"STATIONS_EXISTING", 3}, kLeftOut{"STATIONS_LEFT_OUT", 1},
     kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8};
-constexpr Layer kLayers[] = {kStations, kKept, kLeftOut, kNames, kLinks, kArea};
+constexpr Layer kLayers[] = {kStations, kExisting, kLeftOut, kNames, kLinks, kArea};
 
 void put_tables(Drawing& drawing) {
   drawing.begin("TABLES");
@@ -122,7 +122,7 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
   for (std::size_t i = 0; i < n; ++i) {
     const PlacedStation& station = stations.stations[i];
     if (!has_ground(station)) continue;
-    const Layer& layer = !active(station) ? kLeftOut : station.kept ? kKept : kStations;
+    const Layer& layer = !active(station) ? kLeftOut : station.existing ? kExisting : kStations;
     drawing.entity("POINT", layer.name), drawing.put(10, station.ground);
     drawing.entity("CIRCLE", layer.name), drawing.put(10, station.ground), drawing.put(40, 0.6 * letter);
     drawing.entity("TEXT", kNames.name);

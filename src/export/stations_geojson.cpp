@@ -19,7 +19,7 @@ void write_stations_geojson(const std::filesystem::path& file, const NamedStatio
   ordered_json features = ordered_json::array();
   for (std::size_t k = 0, placed = 0; k < stations.stations.size(); ++k) {
     const PlacedStation& s = stations.stations[k];
-    ordered_json properties{{"name", stations.names[k]}, {"status", to_string(s.status)}, {"kept", s.kept}};
+    ordered_json properties{{"name", stations.names[k]}, {"status", to_string(s.status)}, {"existing", s.existing}};
     ordered_json geometry;
     if (has_ground(s)) {
       const GeodeticPoint& at = places[placed++];

@@ -24,14 +24,14 @@ void write_stations_kml(const std::filesystem::path& file, const NamedStations& 
   std::string kml =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
       "<name>Scanner stations</name>\n";
-  kml += style("new", "ffb5681f") + style("kept", "ff4d9e2b") + style("left_out", "ff1f1fb8");
+  kml += style("new", "ffb5681f") + style("existing", "ff4d9e2b") + style("left_out", "ff1f1fb8");
   for (std::size_t k = 0, placed = 0; k < stations.stations.size(); ++k) {
     const PlacedStation& s = stations.stations[k];
     if (!has_ground(s)) continue;
     const GeodeticPoint& at = places[placed++];
     kml += "<Placemark>\n<name>" + xml_text(stations.names[k]) + "</name>\n";
-    kml += std::string("<styleUrl>#") + (!active(s) ? "left_out" : s.kept ? "kept" : "new") + "</styleUrl>\n";
-    kml += "<ExtendedData>\n" + datum("status", to_string(s.status)) + datum("kept", s.kept ? "true" : "false");
+    kml += std::string("<styleUrl>#") + (!active(s) ? "left_out" : s.existing ? "existing" : "new") + "</styleUrl>\n";
+    kml += "<ExtendedData>\n" + datum("status", to_string(s.status)) + datum("existing", s.existing ? "true" : "false");
     kml += datum("head_height_m", fixed(s.position.z - s.ground.z, 4));
     kml += datum("x", fixed(s.position.x, 4)) + datum("y", fixed(s.position.y, 4));
     kml += datum("z", fixed(s.position.z, 4)) + datum("ground_z", fixed(s.ground.z, 4));

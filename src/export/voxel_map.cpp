@@ -27,11 +27,11 @@ std::uint32_t opaque(const Colour& colour) {
 
 }  // namespace
 
-void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                    std::span<const ColouredVoxel> voxels, std::span<const PlacedStation> stations,
-                    const std::string& title, const std::string& subtitle,
+void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<const ColouredVoxel> voxels,
+                    std::span<const PlacedStation> stations, const std::string& title, const std::string& subtitle,
                     const std::function<Point(Canvas& canvas, Point at)>& legend) {
-  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), area.mesh(), stations);
+  const Simulator& simulator = site.simulator();
+  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), site.area().mesh(), stations);
   Box box;
   for (const ColouredVoxel& voxel : voxels) box.extend(simulator.voxel_centre(voxel.rank));
   for (const PlacedStation& station : stations)

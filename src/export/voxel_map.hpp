@@ -9,8 +9,7 @@
 #include <string>
 
 #include "export/canvas.hpp"
-#include "vantage/placement.hpp"
-#include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -23,9 +22,8 @@ struct ColouredVoxel {
 // lines, and surfaces below the floor are covered by all others. Otherwise later voxels cover earlier ones; each stands
 // for its neighbours too if there are fewer than the site has. `legend` draws below `at` and returns where it ends; the
 // mark of a station follows there. REQUIRES: voxels.
-void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                    std::span<const ColouredVoxel> voxels, std::span<const PlacedStation> stations,
-                    const std::string& title, const std::string& subtitle,
+void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<const ColouredVoxel> voxels,
+                    std::span<const PlacedStation> stations, const std::string& title, const std::string& subtitle,
                     const std::function<Point(Canvas& canvas, Point at)>& legend);
 
 }  // namespace vantage

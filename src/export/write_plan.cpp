@@ -3,10 +3,10 @@
 
 #include "core/text.hpp"
 #include "export/pictures.hpp"
+#include "export/station_files.hpp"
 #include "export/tables.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
-#include "vantage/station_files.hpp"
 #include "vantage/summary.hpp"
 
 namespace vantage {
@@ -22,14 +22,15 @@ std::string title_of(const PlanEntry& entry) {
 
 }  // namespace
 
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field, const std::string& crs) {
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                       const VoxelField* field) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
+  const Simulator& simulator = site.simulator();
   const std::size_t chosen = answer(result);
   const PlanEntry& entry = result.front[chosen];
 
@@ -51,28 +52,22 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
   if (field && entry.registration)
     for (const char* extension : {".png", ".svg"})
-      draw_registration(folder / (std::string("registration") + extension), simulator, area, *field,
-                        *entry.registration, entry.stations, "Registration error on the surface (predicted)");
+      draw_registration(folder / (std::string("registration") + extension), site, *field, *entry.registration,
+                        entry.stations, "Registration error on the surface (predicted)");
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
   const auto names = station_names(entry.stations, entry.names);
   const StationLinks links = entry.links().value_or(StationLinks{.least = entry.link_overlap});
   for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
-                              .area = area,
+                              .area = site.area(),
                               .stations = entry.stations,
                               .names = names,
                               .links = links,
                               .title = title_of(entry),
                               .errors = errors}))
     save("plan" + page.suffix, *page.canvas);
-  write_station_files(folder, {entry.stations, names}, links, area, crs);
+  write_station_files(folder, {entry.stations, names}, links, site);
   return chosen;
-}
-
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                       const VoxelField* field) {
-  const std::string crs = site.crs().empty() ? "" : coordinate_system(site.crs());
-  return write_plan(folder, result, site.simulator(), site.area(), field, crs);
 }
 
 }  // namespace vantage

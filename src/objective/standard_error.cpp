@@ -164,7 +164,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       const auto of = [&](const NetworkCounts& rest) {
         return objective.value({.counts = rest,
                                 .stations = measured.stations,
-                                .kept = measured.kept,
+                                .existing = measured.existing,
                                 .goal_density = measured.goal_density,
                                 .voxels = measured.voxels,
                                 .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
@@ -186,7 +186,8 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
     const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels);
     const auto of = [&](const NetworkCounts& rest) {
       MeasuredNetwork without{.counts = counts, .stations = measured.stations};
-      without.kept = measured.kept, without.goal_density = measured.goal_density, without.voxels = measured.voxels;
+      without.existing = measured.existing, without.goal_density = measured.goal_density,
+      without.voxels = measured.voxels;
       without.overlap = measured.overlap, without.visible_parts = measured.visible_parts;
       without.surroundings = &rest, without.surroundings_voxels = measured.surroundings_voxels;
       without.minutes_on_site = measured.minutes_on_site;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "placement/ground_weights.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -7,7 +9,6 @@
 #include "core/text.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
-#include "vantage/ground.hpp"
 
 namespace vantage {
 namespace {

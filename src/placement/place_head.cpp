@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include "placement/place_head.hpp"
 
-#include "vantage/placement.hpp"
+#include <cmath>
 
 namespace vantage {
 namespace {

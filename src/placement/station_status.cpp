@@ -46,7 +46,7 @@ bool active(const PlacedStation& station) {
     case StationStatus::ok:
     case StationStatus::off_ground:
     case StationStatus::outside: return true;
-    case StationStatus::clash: return station.kept;
+    case StationStatus::clash: return station.existing;
     case StationStatus::hole:
     case StationStatus::inside: return false;
   }

@@ -67,7 +67,7 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     if (!entry.exact) help.push_back("more time: no network was traced with every ray, so the figures are estimates");
     return help;
   }
-  const bool all_placed = entry.stations.size() - problem.kept.size() >= problem.stations_max;
+  const bool all_placed = entry.stations.size() - problem.existing.size() >= problem.stations_max;
   const auto minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most);
   for (const Requirement& requirement : problem.requirements) {
     const Objective& objective = requirement.objective;

@@ -18,10 +18,9 @@ namespace {
 constexpr std::size_t chunk = 64;
 constexpr std::size_t kExpected = 512;
 
-SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
-                                 std::size_t most) {
-  const PlacementOracle site = make_placement_oracle(area, clash, scanner);
-  SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, most);
+SpreadPositions spread_or_refuse(Site& site, std::size_t most) {
+  const PlacementOracle oracle = make_placement_oracle(site);
+  SpreadPositions spread = spread_positions(oracle, site.area().mesh(), oracle.height_m, most);
   if (spread.stations.empty())
     throw Error(Errc::invalid_argument,
                 "no position of the search area is allowed: the scanner would stand too near to something, or off the "
@@ -39,6 +38,7 @@ void check(const CandidateConfig& config, std::size_t scanners) {
                                             std::to_string(config.most) + " are asked for; at least 1 is needed");
   if (!(config.change >= 0 && std::isfinite(config.change)))
     throw Error(Errc::invalid_argument, "candidates: the change must not be negative");
+  if (config.sample_voxels == 0) throw Error(Errc::invalid_argument, "candidates: a sample has at least one voxel");
 }
 
 }  // namespace
@@ -54,9 +54,8 @@ Settings settings(const CandidateConfig& config) {
       .take();
 }
 
-std::vector<PlacedStation> candidate_positions(const SearchArea& area, const ClashChecker& clash,
-                                               const Scanner& scanner, std::size_t most) {
-  return spread_or_refuse(area, clash, scanner, most).stations;
+std::vector<PlacedStation> candidate_positions(Site& site, std::size_t most) {
+  return spread_or_refuse(site, most).stations;
 }
 
 CoverageMatrix Candidates::captured_matrix() const {
@@ -65,21 +64,22 @@ CoverageMatrix Candidates::captured_matrix() const {
   return matrix;
 }
 
-Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const CandidateConfig& config, const Progress& progress) {
+Candidates find_candidates(Site& site, const CandidateConfig& config, const Progress& progress) {
+  Simulator& simulator = site.simulator();
   check(config, simulator.scanners().size());
   const auto begun = std::chrono::steady_clock::now();
   const auto out_of_time = [&] {
     return config.max_seconds > 0 &&
            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >= config.max_seconds;
   };
-  SpreadPositions spread = spread_or_refuse(area, clash, simulator.scanner(), config.most);
+  SpreadPositions spread = spread_or_refuse(site, config.most);
   for (PlacedStation& station : spread.stations) station.setup.scanner = config.scanner;
 
-  const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
+  const std::uint64_t sample =
+      std::max<std::uint64_t>(config.sample_voxels == every_voxel ? simulator.voxel_count() : config.sample_voxels, 1);
   Candidates found;
-  found.coverage_ = SampledCoverage(simulator, std::max<std::uint64_t>(sample, 1));
-  found.attainable_counts_ = AttainableCounts(simulator, std::max<std::uint64_t>(sample, 1));
+  found.coverage_ = SampledCoverage(simulator, sample);
+  found.attainable_counts_ = AttainableCounts(simulator, sample);
   std::size_t goal = std::min(config.first, spread.stations.size());
   double before = -1;
   while (found.ended_.empty()) {

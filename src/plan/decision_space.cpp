@@ -15,9 +15,9 @@ void check(const SurveyProblem& problem) {
   if (problem.stations_min < 1) refuse("at least one station is needed");
   if (problem.stations_min > problem.stations_max)
     refuse("stations_min " + count(problem.stations_min) + " is above stations_max " + count(problem.stations_max));
-  if (problem.stations_max + problem.kept.size() > max_stations)
-    refuse("at most " + count(max_stations) + " stations in all, " + count(problem.stations_max + problem.kept.size()) +
-           " were asked for");
+  if (problem.stations_max + problem.existing.size() > max_stations)
+    refuse("at most " + count(max_stations) + " stations in all, " +
+           count(problem.stations_max + problem.existing.size()) + " were asked for");
   if (problem.heights_m) {
     const auto [low, high] = *problem.heights_m;
     if (!(low > 0 && low <= high && std::isfinite(high)))
@@ -37,7 +37,7 @@ DecisionSpace::DecisionSpace(const PlacementOracle& oracle, const SurveyProblem&
   check(problem);
   if (heights_) height_bounds_ = *problem.heights_m;
   // An existing station was scanned from its position, whatever the search area; its (u, v) is only for the reader.
-  existing_ = existing_stations(oracle, problem.kept, problem.kept_setups);
+  existing_ = existing_stations(oracle, problem.existing, problem.existing_setups);
 }
 
 std::size_t DecisionSpace::dimension() const {

@@ -34,7 +34,7 @@ void drop_networks(std::vector<PlanEntry>& front, const SurveyProblem& problem) 
   for (PlanEntry& entry : front)
     if (std::ranges::none_of(left, [&](const PlanEntry& other) { return same_places(entry, other); }))
       left.push_back(std::move(entry));
-  drop_unplaced(left, problem.kept.size());
+  drop_unplaced(left, problem.existing.size());
   for (const Requirement& requirement : problem.requirements)
     if (const Objective& objective = requirement.objective; objective.kind == Objective::Kind::distance)
       prefer(left, [&](const PlanEntry& entry) { return requirement.missed_by(entry.value(objective.name)) == 0; });

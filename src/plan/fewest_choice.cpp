@@ -42,7 +42,7 @@ FewestAsked fewest_asked(const SurveyProblem& problem) {
   const auto least = [&](Objective::Kind kind) {
     return std::max(0.0, limit_of(problem, kind, Requirement::Bound::at_least).value_or(0));
   };
-  FewestAsked asked{.existing = problem.kept.size(),
+  FewestAsked asked{.existing = problem.existing.size(),
                     .fewest = problem.stations_min,
                     .most = problem.stations_max,
                     .link = least(Objective::Kind::link),

@@ -45,7 +45,7 @@ std::vector<double> in_order(const DecisionSpace& space, const std::vector<doubl
 
 SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
   problem.stations_min = problem.stations_max = placed;
-  const auto all = static_cast<double>(problem.kept.size() + placed);
+  const auto all = static_cast<double>(problem.existing.size() + placed);
   for (Objective& objective : problem.objectives)
     if (objective.by_alpha) objective.scale = minimise(all, all);
   return problem;
@@ -95,7 +95,7 @@ std::vector<PlanEntry> VerifiedNetworks::front() const {
   std::vector<PlanEntry> left;
   for (const PlanEntry& entry : entries_)
     if (entry.exact || !any_exact) left.push_back(entry);
-  drop_unplaced(left, problem_.kept.size());
+  drop_unplaced(left, problem_.existing.size());
   const auto rank = [](const PlanEntry& entry) {
     return std::pair{entry.violation, entry.violation > 0 ? std::size_t{0} : entry.stations.size()};
   };

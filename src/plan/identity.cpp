@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/hash.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -60,9 +61,10 @@ Hash hash_of(const PlacementOracle& oracle) {
 
 }  // namespace
 
-std::string identity(const Simulator& simulator, const PlacementOracle& oracle, const SearchArea& area,
-                     const ClashChecker& clash, const SurveyProblem& problem, const PlanConfig& config,
-                     std::size_t population, std::size_t batch) {
+std::string identity(Site& site, const SurveyProblem& problem, const PlanConfig& config, std::size_t population,
+                     std::size_t batch) {
+  const Simulator& simulator = site.simulator();
+  const SearchArea& area = site.area();
   Lines lines;
   lines.add("version", version());
   Hash scene;
@@ -73,7 +75,7 @@ std::string identity(const Simulator& simulator, const PlacementOracle& oracle, 
   search.add_all(area.mesh().triangles);
   search.add(hash_of(area.mesh().positions).value());
   lines.add_hash("search area", search);
-  lines.add_hash("holes and clashes", hash_of(oracle));
+  lines.add_hash("holes and clashes", hash_of(make_placement_oracle(site)));
 
   lines.add("engine", to_string(simulator.engine().engine));
   lines.add("population", std::uint64_t{population});
@@ -81,7 +83,7 @@ std::string identity(const Simulator& simulator, const PlacementOracle& oracle, 
   for (const Scanner& scanner : simulator.scanners()) lines.add("scanner", settings(scanner));
   lines.add("simulation", settings(simulator.config()));
   lines.add("walkable", settings(area.options()));
-  lines.add("security", settings(clash.volume()));
+  lines.add("security", settings(site.clash().volume()));
   lines.add("problem", settings(problem));
   lines.add("plan", settings(config));
   return std::move(lines).text();

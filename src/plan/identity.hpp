@@ -3,14 +3,13 @@
 
 #include <string>
 
-#include "plan/placement_oracle.hpp"
+#include "vantage/planner.hpp"
 
 namespace vantage {
 
 // Lines "name = value" of everything that decides the bits of a search. Two runs with the same text may share a
 // checkpoint.
-std::string identity(const Simulator& simulator, const PlacementOracle& oracle, const SearchArea& area,
-                     const ClashChecker& clash, const SurveyProblem& problem, const PlanConfig& config,
-                     std::size_t population, std::size_t batch);
+std::string identity(Site& site, const SurveyProblem& problem, const PlanConfig& config, std::size_t population,
+                     std::size_t batch);
 
 }  // namespace vantage

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/missed.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
+#include "plan/why_missed.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -38,14 +37,13 @@ double entry(const Vec3& from, const Vec3& to, const Vec3& centre, double half) 
 
 class Judge {
  public:
-  Judge(const Simulator& simulator, const ClashChecker& clash, std::span<const PlacedStation> candidates,
-        const MissedOptions& options)
-      : simulator_(simulator),
-        clash_(clash),
+  Judge(Site& site, std::span<const PlacedStation> candidates, const MissedOptions& options)
+      : simulator_(site.simulator()),
+        clash_(site.clash()),
         candidates_(candidates),
         steepest_(std::cos(options.flat.in_radians())),
         per_steradian_(
-            1 / (simulator.scanner().azimuth_step.in_radians() * simulator.scanner().zenith_step.in_radians())) {}
+            1 / (simulator_.scanner().azimuth_step.in_radians() * simulator_.scanner().zenith_step.in_radians())) {}
 
   // `captured` is the share of the goal that the network has.
   VoxelStatus status(std::uint32_t rank, const VoxelPatch& patch, double captured) const {
@@ -112,10 +110,10 @@ Settings settings(const MissedOptions& options) {
       .take();
 }
 
-std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                    std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                    std::span<const std::uint32_t> points, const MissedOptions& options,
-                                    const Progress& progress) {
+std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> candidates,
+                                    std::span<const std::uint32_t> ranks, std::span<const std::uint32_t> points,
+                                    const MissedOptions& options, const Progress& progress) {
+  const Simulator& simulator = site.simulator();
   if (ranks.size() != points.size())
     throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(ranks.size()) + " voxels, but counts of " +
                                             std::to_string(points.size()));
@@ -125,7 +123,7 @@ std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashCheck
     if (rank >= simulator.voxel_count())
       throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(rank) + " of " +
                                               std::to_string(simulator.voxel_count()));
-  const Judge judge(simulator, clash, candidates.first(std::min(candidates.size(), options.candidates)), options);
+  const Judge judge(site, candidates.first(std::min(candidates.size(), options.candidates)), options);
   std::vector<VoxelStatus> status(ranks.size(), {WhyMissed::captured, 1, 1});
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < ranks.size(); ++i)
@@ -199,14 +197,14 @@ void take_whole_coverage(MissedShare& all, const Simulator& simulator, const Vox
 }
 }  // namespace
 
-MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                           const VoxelField& field, const MissedOptions& options, const Progress& progress) {
+MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOptions& options,
+                           const Progress& progress) {
+  const Simulator& simulator = site.simulator();
   if (simulator.voxel_count() == 0) return {};
-  const std::vector<PlacedStation> candidates =
-      candidate_positions(area, clash, simulator.scanner(), options.candidates);
+  const std::vector<PlacedStation> candidates = candidate_positions(site, options.candidates);
   MissedVoxels judged{.ranks = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
   for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
-  judged.status = why_missed(simulator, clash, candidates, judged.ranks, judged.points, options, progress);
+  judged.status = why_missed(site, candidates, judged.ranks, judged.points, options, progress);
   if (judged.status.empty()) return {};
   judged.shares = missed_by_node(simulator, judged.ranks, judged.status);
   take_whole_coverage(judged.shares.front(), simulator, field);

@@ -25,7 +25,7 @@ std::vector<PlacedStation> existing_stations(const PlacementOracle& oracle, std:
   std::vector<PlacedStation> existing;
   for (std::size_t k = 0; k < heads.size(); ++k) {
     existing.push_back(oracle.check_head(heads[k]));
-    existing.back().kept = true;
+    existing.back().existing = true;
     if (!setups.empty()) existing.back().setup = setups[k];
   }
   return existing;

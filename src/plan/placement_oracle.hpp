@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vantage/planner.hpp"
-#include "vantage/scanner.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -24,8 +24,8 @@ struct PlacementOracle {
   double range_m = 0;                                     // of a scanner
 };
 
-// Borrows both.
-PlacementOracle make_placement_oracle(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner);
+// Borrows the site. Heights and range are the first scanner's.
+PlacementOracle make_placement_oracle(Site& site);
 
 PlacedStation place_station(const PlacementOracle& oracle, Uv uv, double height_m);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/deadline.hpp"
+#include "core/seconds_since.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
@@ -12,7 +13,6 @@
 #include "plan/trade_off.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
-#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {
@@ -28,8 +28,8 @@ SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
     if (!objective.by_alpha) return;
-    objective.scale = {static_cast<double>(problem.kept.size() + problem.stations_min),
-                       static_cast<double>(problem.kept.size() + problem.stations_max)};
+    objective.scale = {static_cast<double>(problem.existing.size() + problem.stations_min),
+                       static_cast<double>(problem.existing.size() + problem.stations_max)};
   };
   for (Objective& objective : problem.objectives) settle(objective);
   if (problem.attainable)
@@ -59,17 +59,17 @@ constexpr std::uint64_t kLargerSample = 5;
 constexpr std::size_t kMostRounds = 16;
 
 // Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
-// with no more than twice as many all of them, since as many others are taken to confirm it. 0: all.
+// with no more than twice as many all of them, since as many others are taken to confirm it.
 std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, const Simulator& simulator) {
   const std::uint64_t sample = config.sample_voxels * (problem.fewest ? kLargerSample : 1);
-  return 2 * sample >= simulator.voxel_count() ? 0 : sample;
+  return config.exact || 2 * sample >= simulator.voxel_count() ? every_voxel : sample;
 }
 
 // Attainable counts by the candidates and the existing stations: on the voxels that networks are chosen by, and on as
 // many others, by which they are confirmed. Of a site of few voxels both are of all.
 void count_attainable(PlanContext& context, Simulator& simulator, const SurveyProblem& problem,
                       const Candidates& candidates, std::uint64_t searched, const Progress& progress) {
-  const Network existing = to_network(existing_stations(context.oracle(), problem.kept, problem.kept_setups));
+  const Network existing = to_network(existing_stations(context.oracle(), problem.existing, problem.existing_setups));
   context.chosen = candidates.attainable_counts();
   raise_attainable(context.chosen, simulator, existing, progress);
   const std::uint64_t sample = context.chosen.sample_voxels();
@@ -83,6 +83,35 @@ void count_attainable(PlanContext& context, Simulator& simulator, const SurveyPr
   all.insert(all.end(), existing.begin(), existing.end());
   // Without the time for it, networks are confirmed on the voxels that they were chosen by.
   if (!raise_attainable(context.confirmed, simulator, all, progress)) context.confirmed = context.chosen;
+}
+
+// Finds candidates, and if a measure needs it what is attainable: the problem learns it.
+std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyProblem& problem,
+                                       const PlanConfig& config, const PlanWatch& watch) {
+  Simulator& simulator = site.simulator();
+  const auto begun = std::chrono::steady_clock::now();
+  const auto report = [&](double done) {
+    if (!watch.report) return;
+    const double seconds = seconds_since(begun);
+    watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
+  };
+  const auto candidates =
+      std::make_shared<const Candidates>(find_candidates(site,
+                                                         {.most = kMostCandidates,
+                                                          .sample_voxels = sample_of_choice(problem, config, simulator),
+                                                          .scanner = finest(simulator, problem.scanners)},
+                                                         {.report = report, .stop = watch.stop}));
+  const bool limit_wanted = needs_attainable(problem);
+  if (limit_wanted)
+    count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
+                     {.report = {}, .stop = watch.stop});
+  const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
+  if (watch.report && candidates->ended() != "cancelled")
+    watch.report(
+        {.evaluations = candidates->stations().size(), .seconds_left = -1, .phase = "look", .attainable = attainable});
+  // Nothing is attainable: every network captures all of nothing.
+  if (limit_wanted) problem.attainable = attainable > 0 ? attainable : 1;
+  return candidates;
 }
 
 // A station of a confirmed network may see more of a voxel than any candidate did.
@@ -123,7 +152,7 @@ void put_answer_in_trade_off(PlanResult& result) {
 
 void work_out_rounds(PlanResult& result, PlanContext& context) {
   if (result.front.empty()) return;
-  const std::size_t chosen = answer(result), kept = result.problem.kept.size();
+  const std::size_t chosen = answer(result), kept = result.problem.existing.size();
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     PlanEntry& entry = result.front[k];
     if (k == chosen || result.front.size() <= kMostRounds)
@@ -148,51 +177,28 @@ PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadl
 
 }  // namespace
 
-PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
-                const PlanConfig& wanted, const PlanWatch& given) {
-  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
+PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted, const PlanWatch& given) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const Deadline search_by(kSearchTimeShare * config.max_seconds, given.stop), all_by(config.max_seconds, given.abort);
+  // Building the site's missing parts is part of the time.
+  const Deadline search_by(kSearchTimeShare * wanted.max_seconds, given.stop), all_by(wanted.max_seconds, given.abort);
   const PlanWatch watch = limited(given, search_by, all_by);
-  const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
+  Simulator& simulator = site.simulator();
+  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
-  require_somewhere_to_stand(area, clash, heights);
-  std::shared_ptr<const Candidates> candidates;
-  PlanContext context(simulator, area, clash, config);
+  require_somewhere_to_stand(site, heights);
+  PlanContext context(site, config);
   const bool limit_wanted = needs_attainable(problem);
-  if (problem.fewest || limit_wanted) {
-    const auto report = [&](double done) {
-      if (!watch.report) return;
-      const double seconds = since(start);
-      watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
-    };
-    candidates = std::make_shared<const Candidates>(
-        find_candidates(simulator, area, clash,
-                        {.most = kMostCandidates,
-                         .sample_voxels = sample_of_choice(problem, config, simulator),
-                         .scanner = finest(simulator, problem.scanners)},
-                        {.report = report, .stop = watch.stop}));
-    if (limit_wanted)
-      count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
-                       {.report = {}, .stop = watch.stop});
-    const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
-    if (watch.report && candidates->ended() != "cancelled")
-      watch.report({.evaluations = candidates->stations().size(),
-                    .seconds_left = -1,
-                    .phase = "look",
-                    .attainable = attainable});
-    // Nothing is attainable: every network captures all of nothing.
-    if (limit_wanted) problem.attainable = attainable > 0 ? attainable : 1;
-  }
+  std::shared_ptr<const Candidates> candidates;
+  if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, watch);
   problem = settled(std::move(problem));
   context.ask(problem);
   PlanResult result;
   if (problem.fewest) {
     result = plan_fewest(context, simulator, candidates, config, watch);
-    result.seconds = since(start);
+    result.seconds = seconds_since(start);
     result.trace_seconds = context.evaluator().trace_seconds();
   } else {
     const SearchOutcome found = context.search(problem, config, {}, watch);
@@ -204,7 +210,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     drop_networks(result.front, problem);
     result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
     if (config.renew_iterations.value_or(0) > 0) keep_undominated(result.front, problem, context.measures());
-    result.seconds = found.seconds + since(searched);
+    result.seconds = found.seconds + seconds_since(searched);
     result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }
   if (result.stop_reason == StopReason::cancelled && search_by.passed()) result.stop_reason = StopReason::max_time;

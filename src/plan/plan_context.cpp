@@ -24,13 +24,8 @@ std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   return cpu ? 4 : 32;
 }
 
-PlanContext::PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                         const PlanConfig& config)
-    : simulator_(simulator),
-      area_(area),
-      clash_(clash),
-      config_(config),
-      oracle_(make_placement_oracle(area, clash, simulator.scanner())) {}
+PlanContext::PlanContext(Site& site, const PlanConfig& config)
+    : site_(site), simulator_(site.simulator()), config_(config), oracle_(make_placement_oracle(site)) {}
 
 void PlanContext::ask(const SurveyProblem& problem) {
   problem_ = problem;
@@ -39,7 +34,7 @@ void PlanContext::ask(const SurveyProblem& problem) {
   evaluator_.emplace(
       simulator_, measures_,
       SimulatorEvaluator::Options{
-          .existing = problem.kept.size(),
+          .existing = problem.existing.size(),
           .visible_parts =
               [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
@@ -52,13 +47,8 @@ void PlanContext::ask(const SurveyProblem& problem) {
                                 : std::function<double(std::span<const PlacedStation>)>()});
 }
 
-Simulator& PlanContext::surroundings() {
-  if (!surroundings_) surroundings_ = std::make_unique<Simulator>(surroundings_of(simulator_));
-  return *surroundings_;
-}
-
 const OnSite& PlanContext::on_site() {
-  if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanners(), problem_.on_site);
+  if (!on_site_) on_site_ = site_.on_site(problem_.on_site);
   return *on_site_;
 }
 
@@ -75,8 +65,7 @@ SearchOutcome PlanContext::search(const SurveyProblem& narrowed, const PlanConfi
                           .config = config,
                           .evaluator = *searched,
                           .batch = batch,
-                          .identity = identity(simulator_, oracle_, area_, clash_, narrowed, config,
-                                               population_of(narrowed, config), batch),
+                          .identity = identity(site_, narrowed, config, population_of(narrowed, config), batch),
                           .start = start,
                           .watch = watch.report,
                           .warn = simulator_.config().warn,
@@ -88,11 +77,12 @@ ConfirmedFront PlanContext::confirm(const SearchOutcome& found, const SurveyProb
   return confirm_front(found, space, narrowed, measures_, config_.sample_voxels, *evaluator_, watch);
 }
 
-PlanResult PlanContext::result(const SearchOutcome& found) const {
+PlanResult PlanContext::result(const SearchOutcome& found) {
   PlanResult result;
   result.problem = problem_, result.config = config_;
   result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);
-  result.walkable = area_.options(), result.security = clash_.volume();
+  result.area = site_.area();
+  result.walkable = site_.area().options(), result.security = site_.clash().volume();
   result.scanners.assign(simulator_.scanners().begin(), simulator_.scanners().end());
   result.measures = measures_.all;
   result.history = found.history;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared parts of all searches of one plan: simulator of the surroundings, walking graph, evaluator.
+// Shared parts of all searches of one plan: site, walking graph, evaluator.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace vantage {
 class PlanContext {
  public:
   // Borrows all. The problem is settled: its `capture` knows what is attainable.
-  PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
+  PlanContext(Site& site, const PlanConfig& config);
 
   // What captured shares are told by, where a measure needs it: of choices among candidates, of searches, on part of
   // their voxels, and of confirmed networks, on others. To be filled in before ask().
@@ -27,11 +26,10 @@ class PlanContext {
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }
   const PlacementOracle& oracle() const { return oracle_; }
-  const SearchArea& area() const { return area_; }
+  const SearchArea& area() { return site_.area(); }
   SimulatorEvaluator& evaluator() { return *evaluator_; }
-  // Made at first use.
-  Simulator& surroundings();
-  const OnSite& on_site();
+  Simulator& surroundings() { return site_.surroundings(); }
+  const OnSite& on_site();  // made at first use
   std::uint64_t surroundings_voxels() const;
 
   // Searches the present problem, perhaps narrowed to a number of stations or with other limits.
@@ -39,17 +37,15 @@ class PlanContext {
                        const PlanWatch& watch);
   ConfirmedFront confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
   // The result except its front.
-  PlanResult result(const SearchOutcome& found) const;
+  PlanResult result(const SearchOutcome& found);
 
  private:
+  Site& site_;
   Simulator& simulator_;
-  const SearchArea& area_;
-  const ClashChecker& clash_;
   const PlanConfig& config_;
   PlacementOracle oracle_;
   SurveyProblem problem_;
   Measures measures_;
-  std::unique_ptr<Simulator> surroundings_;
   std::optional<OnSite> on_site_;
   std::optional<SimulatorEvaluator> evaluator_;
 };

@@ -115,7 +115,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
-  std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.kept, problem.kept_setups);
+  std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.existing, problem.existing_setups);
   for (PlacedStation& station : existing)
     if (active(station)) station.status = StationStatus::ok;  // others are not traced
   look(choice.table, existing, candidates.stations(), make_table.by_goals(candidates.coverage().matrix()),
@@ -205,8 +205,7 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
 }
 
 // Time ran out before anything was traced: an allowed position, of which nothing is known.
-std::vector<PlanEntry> any_position(const PlanContext& context, const Candidates& candidates,
-                                    VerifiedNetworks& verified) {
+std::vector<PlanEntry> any_position(PlanContext& context, const Candidates& candidates, VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();
   if (one.empty())
     one = spread_positions(context.oracle(), context.area().mesh(), context.oracle().height_m, 1).stations;

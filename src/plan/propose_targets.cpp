@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "evaluate/sight_targets.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
@@ -39,7 +40,7 @@ bool in_passage(const ClashChecker& clash, const Vec3& centre) {
 
 std::vector<Target> places_of(Site& site, std::span<const PlacedStation> stations, const TargetOptions& options) {
   std::vector<Target> places;
-  for (const PlacedStation& place : candidate_positions(site.area(), site.clash(), site.scanner(), kPlaces)) {
+  for (const PlacedStation& place : candidate_positions(site, kPlaces)) {
     const Vec3 centre = place.ground + Vec3{0, 0, options.height_m};
     const auto near = [&](const PlacedStation& station) {
       const Vec3 between = station.ground - place.ground;

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "core/seconds_since.hpp"
 #include "core/setting_table.hpp"
 #include "vantage/error.hpp"
 
@@ -34,7 +32,7 @@ void require_at_least(SurveyProblem& problem, const char* name, double limit) {
 }
 
 std::array<std::size_t, 2> station_range(const SurveyQuestion& question) {
-  const std::size_t kept = question.kept.size();
+  const std::size_t kept = question.existing.size();
   if (!question.stations && !question.asks_for_fewest())
     throw Error(Errc::invalid_argument, "stations: how many? Give N, or A..B to search the number too");
   if (kept >= max_stations)
@@ -158,7 +156,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
-  asked.kept = question.kept, asked.kept_setups = question.kept_setups;
+  asked.existing = question.existing, asked.existing_setups = question.existing_setups;
   asked.heights_m = question.heights_m;
   asked.link_overlap = least;
   asked.registration = question.registration;
@@ -208,21 +206,6 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
     all.sample_voxels = usual_sample(problem, *all.renew_iterations > 0, voxels);
   all.sample_share.reset();
   return all;
-}
-
-PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch) {
-  // Building the site's missing parts is part of the time.
-  constexpr double kMoment_s = 1e-3;
-  const auto begun = std::chrono::steady_clock::now();
-  Simulator& simulator = site.simulator();
-  const SearchArea& area = site.area();
-  const ClashChecker& clash = site.clash();
-  PlanConfig limited = config;
-  if (config.max_seconds > 0) limited.max_seconds = std::max(kMoment_s, config.max_seconds - seconds_since(begun));
-  PlanResult result = plan(simulator, area, clash, problem, limited, watch);
-  result.config.max_seconds = config.max_seconds;
-  result.area = area;
-  return result;
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {

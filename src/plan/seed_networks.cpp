@@ -21,43 +21,39 @@ struct Positions {
   std::vector<std::size_t> existing;    // their places
 };
 
-Positions positions_to_choose(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
-                              std::size_t candidates, std::span<const Vec3> existing,
+Positions positions_to_choose(Site& site, std::size_t candidates, std::span<const Vec3> existing,
                               std::span<const StationSetup> setups) {
-  Positions found{.stations = existing_stations(make_placement_oracle(area, clash, scanner), existing, setups),
-                  .existing = {}};
+  Positions found{.stations = existing_stations(make_placement_oracle(site), existing, setups), .existing = {}};
   for (PlacedStation& one : found.stations)
     if (active(one)) one.status = StationStatus::ok;  // others are not traced
   found.existing.resize(found.stations.size());
   std::iota(found.existing.begin(), found.existing.end(), std::size_t{0});
-  for (const PlacedStation& one : candidate_positions(area, clash, scanner, candidates)) found.stations.push_back(one);
+  for (const PlacedStation& one : candidate_positions(site, candidates)) found.stations.push_back(one);
   return found;
 }
 
-SampledCoverage coverage_of(Simulator& simulator, const Positions& positions, std::uint64_t sample_voxels,
+SampledCoverage coverage_of(Site& site, const Positions& positions, std::uint64_t sample_voxels,
                             const Progress& progress) {
-  return sample_coverage(simulator, positions.stations, sample_voxels > 0 ? sample_voxels : simulator.voxel_count(),
+  return sample_coverage(site.simulator(), positions.stations, std::min(sample_voxels, site.simulator().voxel_count()),
                          progress);
 }
 
 }  // namespace
 
-GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                            const GreedyConfig& config, const Progress& progress) {
+GreedyResult greedy_network(Site& site, const GreedyConfig& config, const Progress& progress) {
   if (config.stations < 1 || config.stations + config.existing.size() > max_stations)
     throw Error(Errc::invalid_argument, "greedy: 1 to " + std::to_string(max_stations) +
                                             " stations can be chosen, existing ones included, not " +
                                             std::to_string(config.stations + config.existing.size()));
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "greedy: at least one candidate is needed");
-  const Positions positions =
-      positions_to_choose(area, clash, simulator.scanner(), config.candidates, config.existing, config.existing_setups);
+  const Positions positions = positions_to_choose(site, config.candidates, config.existing, config.existing_setups);
   const std::size_t existing = positions.existing.size(), wanted = existing + config.stations;
   if (positions.stations.size() < wanted)
     throw Error(Errc::invalid_argument,
                 "greedy: " + std::to_string(config.stations) + " stations cannot be chosen from " +
                     std::to_string(positions.stations.size() - existing) + " candidates; ask for more candidates");
   GreedyResult result;
-  const SampledCoverage sampled = coverage_of(simulator, positions, config.sample_voxels, progress);
+  const SampledCoverage sampled = coverage_of(site, positions, config.sample_voxels, progress);
   result.cancelled = sampled.cancelled() || progress.stopped();
   if (result.cancelled) return result;
   std::vector<std::size_t> chosen =
@@ -71,8 +67,7 @@ GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const 
   return result;
 }
 
-ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                          const ExactConfig& config, const Progress& progress) {
+ExactResult exact_network(Site& site, const ExactConfig& config, const Progress& progress) {
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "exact: at least one candidate is needed");
   if (!(config.apart_m >= 0 && std::isfinite(config.apart_m)))
     throw Error(Errc::invalid_argument,
@@ -80,18 +75,14 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");
-  const Positions positions =
-      positions_to_choose(area, clash, simulator.scanner(), config.candidates, config.existing, {});
+  const Positions positions = positions_to_choose(site, config.candidates, config.existing, {});
   const std::vector<PlacedStation>& stations = positions.stations;
 
   ExactResult result;
-  const SampledCoverage sampled = coverage_of(simulator, positions, config.sample_voxels, part_of(progress, 0, 2));
+  const SampledCoverage sampled = coverage_of(site, positions, config.sample_voxels, part_of(progress, 0, 2));
   if (!sampled.cancelled()) {
     StationGraph graph(stations.size());
-    if (config.link > 0) {
-      Simulator surroundings = surroundings_of(simulator);
-      graph = overlap_graph(surroundings, stations, kOverlapVoxels, {{}, progress.stop});
-    }
+    if (config.link > 0) graph = overlap_graph(site.surroundings(), stations, kOverlapVoxels, {{}, progress.stop});
     std::vector<Vec3> heads;
     for (const PlacedStation& one : stations) heads.push_back(one.position);
     graph.exclude_nearer(heads, config.apart_m);

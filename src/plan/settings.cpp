@@ -42,7 +42,7 @@ Settings settings(const SurveyProblem& problem) {
   Settings list = SettingList()
                       .add("problem", problem.name, {.option = named ? "problem" : "", .decides = false})
                       .add("stations", low == high ? low : low + ".." + high, {"stations"})
-                      .add("kept", problem.kept, {"keep"})
+                      .add("existing", problem.existing, {"keep"})
                       .add("heights_m", problem.heights_m, {"heights"})
                       .add("objective_names", names, {.option = named ? "" : "objectives"})
                       .add("objectives", objectives)
@@ -58,7 +58,7 @@ Settings settings(const SurveyProblem& problem) {
                       .take();
   // Setups of the existing stations, if any differs from the usual one.
   SettingList setups;
-  if (!problem.kept_setups.empty()) setups.add("kept_setups", problem.kept_setups);
+  if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
   if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
   for (Setting& setting : setups.take()) list.push_back(std::move(setting));
   const Settings usual = settings(RegistrationOptions{});

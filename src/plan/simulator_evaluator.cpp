@@ -101,7 +101,7 @@ MeasuredNetwork SimulatorEvaluator::measured(const Counted& counted, std::size_t
   MeasuredNetwork made{
       .counts = counts,
       .stations = stations,
-      .kept = options_.existing,
+      .existing = options_.existing,
       .goal_density = simulator_.goal_density(),
       .voxels = simulator_.voxel_count(),
       .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},

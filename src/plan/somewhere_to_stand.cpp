@@ -19,7 +19,9 @@ double area_of(const SearchMesh& mesh, const std::array<std::uint32_t, 3>& t) {
 
 }  // namespace
 
-void require_somewhere_to_stand(const SearchArea& area, const ClashChecker& clash, std::span<const double> heights_m) {
+void require_somewhere_to_stand(Site& site, std::span<const double> heights_m) {
+  const SearchArea& area = site.area();
+  const ClashChecker& clash = site.clash();
   const SearchMesh& mesh = area.mesh();
   double total = 0;
   for (const auto& t : mesh.triangles) total += area_of(mesh, t);

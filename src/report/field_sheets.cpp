@@ -331,12 +331,12 @@ class SheetPanel {
     draw_station(canvas, {x_ + 9, y_}, "S1", example, 6.5);
     words("station");
     if (kept) {
-      example.kept = true;
+      example.existing = true;
       draw_station(canvas, {x_ + 9, y_}, "K1", example, 6.5);
       words("station that is there already");
     }
     if (left_out) {
-      example.kept = false, example.status = StationStatus::clash;
+      example.existing = false, example.status = StationStatus::clash;
       draw_station(canvas, {x_ + 9, y_}, "S2", example, 6.5);
       words("left out: no place to stand");
     }
@@ -407,11 +407,11 @@ class SheetPanel {
 
 }  // namespace
 
-FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, const Scene& scene,
-                         const SearchArea& area) {
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, Site& site) {
+  const Scene& scene = site.scene();
   const Evaluation& network = report.shown();
   const std::vector<PlacedStation>& stations = network.stations;
-  const std::vector<PlanLevel> levels = cut_levels(scene, area.mesh(), stations);
+  const std::vector<PlanLevel> levels = cut_levels(scene, site.area().mesh(), stations);
   const std::vector<std::size_t> order = visiting_order(facts);
   const bool any_cut = std::ranges::any_of(levels, [](const PlanLevel& level) { return level.cut.has_value(); });
   const std::vector<std::uint32_t> surfaces = any_cut ? surfaces_of(scene.data()) : std::vector<std::uint32_t>();
@@ -422,7 +422,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
                         const std::vector<MapTile>* overview) {
     MapSheet map(layout, tile, level);
     map.clip();
-    map.site(scene, area, surfaces);
+    map.site(scene, site.area(), surfaces);
     if (!level.cut) map.walls(scene.data());
     std::vector<std::size_t> shown;
     if (overview) {
@@ -445,13 +445,13 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     }
     SheetPanel panel(map.sheet, layout);
     panel.head(report.options.title, name, report.options);
-    panel.scale_and_north(report.options.crs);
+    panel.scale_and_north(report.crs);
     if (level.cut) panel.cut_over(*level.cut - level.floor);
     const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
     if (!overview)
       panel.legend(level.cut.has_value(), network.visit && !overview,
                    any([&](std::size_t k) { return !facts[k].corners.empty(); }),
-                   any([&](std::size_t k) { return stations[k].kept; }),
+                   any([&](std::size_t k) { return stations[k].existing; }),
                    any([&](std::size_t k) { return !active(stations[k]); }));
     panel.list(shown, facts, stations);
     all.sheets.push_back(std::move(map.sheet));
@@ -466,7 +466,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
                                                ", floor at z = " + fixed(level.floor, 2) + " m"
                                          : "Map of the stations";
     name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
-    const SheetLayout layout = layout_of(level, area.mesh(), spots);
+    const SheetLayout layout = layout_of(level, site.area().mesh(), spots);
     if (layout.tiles.size() > 1) {
       Box box;
       for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);

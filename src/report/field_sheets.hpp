@@ -18,7 +18,6 @@ struct FieldSheets {
 };
 
 // Each level with a station, from the lowest; an overview before those that take several sheets.
-FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, const Scene& scene,
-                         const SearchArea& area);
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, Site& site);
 
 }  // namespace vantage

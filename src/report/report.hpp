@@ -20,8 +20,9 @@ struct Report {
     const Evaluation& evaluation;
     bool dominated = false;
   };
-  ReportOptions options = {};
-  std::string question = {};  // question that the plan answers
+  ReportOptions options = {};  // with a title
+  std::string crs = {};        // coordinate system of the survey frame, whose north is shown; empty: not known
+  std::string question = {};   // question that the plan answers
   std::vector<Network> networks = {};
   std::size_t answer = 0;                      // index of the network
   std::vector<Requirement> requirements = {};  // on the networks
@@ -38,17 +39,15 @@ struct Report {
 };
 
 // Report of a plan: a network for each entry of the front, numbered as in front.json.
-Report report_of(const PlanResult& result, const Simulator& simulator, const ReportOptions& options);
+Report report_of(const PlanResult& result, Site& site, const ReportOptions& options);
 // Report of given stations.
-Report report_of(const Evaluation& evaluation, const Simulator& simulator, const ReportOptions& options);
+Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& options);
 
 // What a reader asks first besides what is captured: scanner, stations, time, what "captured" stands for. Heading and
 // sentence each.
 std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator);
 
-void write_report_html(const std::filesystem::path& file, const Report& report, Simulator& simulator,
-                       const SearchArea& area, const Progress& progress);
-void write_report_pdf(const std::filesystem::path& file, const Report& report, const Simulator& simulator,
-                      const SearchArea& area);
+void write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
+void write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site);
 
 }  // namespace vantage

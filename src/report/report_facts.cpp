@@ -25,7 +25,7 @@ std::string scanner_text(const Scanner& scanner) {
 }
 
 std::string stations_text(const Evaluation& network) {
-  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::kept);
+  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::existing);
   const auto left_out = std::ranges::count_if(network.stations, [](const PlacedStation& s) { return !active(s); });
   std::string text =
       std::to_string(network.stations.size()) + (network.stations.size() == 1 ? " station" : " stations");
@@ -78,9 +78,9 @@ std::vector<std::pair<std::string, std::string>> report_facts(const Report& repo
   if (simulator.max_incidence())
     checked += "; points that meet the surface at more than " + degrees(*simulator.max_incidence()) + " do not count";
   facts.emplace_back("captured is", checked);
-  facts.emplace_back("coordinates", (report.options.crs.empty() ? "survey frame of the model, metres"
-                                                                : report.options.crs + ", metres") +
-                                        std::string("; x, y, z of the ground under the tripod"));
+  facts.emplace_back("coordinates",
+                     (report.crs.empty() ? "survey frame of the model, metres" : report.crs + ", metres") +
+                         std::string("; x, y, z of the ground under the tripod"));
   facts.emplace_back("computed", "vantage " + std::string(version()) + ", seed " + std::to_string(config.seed));
   return facts;
 }

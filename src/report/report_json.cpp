@@ -42,7 +42,7 @@ ordered_json stations_json(const Evaluation& network) {
                         {"status", to_string(s.status)},
                         {"fault", explain(s.status)},
                         {"active", active(s)},
-                        {"kept", s.kept},
+                        {"existing", s.existing},
                         {"points", network.exact && k < points.size() ? ordered_json(points[k]) : ordered_json()}});
   }
   return stations;
@@ -119,7 +119,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"visit", nullptr},
                        {"parts", nullptr}};
   if (network.visit && !network.visit->order.empty()) {
-    const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::kept));
+    const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
     json["visit"] = visit_json(*network.visit, kept, true);
   }
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
@@ -208,7 +208,7 @@ ordered_json report_json(const Report& report) {
           {"version", version()},
           {"facts", std::move(facts)},
           {"date", report.options.date},
-          {"crs", report.options.crs},
+          {"crs", report.crs},
           {"logo", logo_json(report.options.logo)},
           {"answer", report.answer},
           {"axes", std::move(axes)},

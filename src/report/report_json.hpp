@@ -17,11 +17,9 @@ nlohmann::ordered_json report_json(const Report& report);
 nlohmann::ordered_json network_json(const Evaluation& network, std::span<const Requirement> requirements = {});
 
 // The part of a view that does not depend on stations: mesh, storeys, and the places of cells, if any.
-nlohmann::ordered_json site_json(const Simulator& simulator, const SearchArea& area,
-                                 std::span<const PlacedStation> stations, const CoverageCells& cells);
+nlohmann::ordered_json site_json(Site& site, std::span<const PlacedStation> stations, const CoverageCells& cells);
 
 // The rest of the view in three dimensions: the mesh, the cells and their colours for each network.
-nlohmann::ordered_json view_json(const Report& report, Simulator& simulator, const SearchArea& area,
-                                 const Progress& progress);
+nlohmann::ordered_json view_json(const Report& report, Site& site, const Progress& progress);
 
 }  // namespace vantage

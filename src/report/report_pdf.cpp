@@ -39,7 +39,45 @@ void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
                       logo.width);
 }
 
-Sheet front_sheet(const Report& report, const Simulator& simulator, const SearchArea& area) {
+// The plan view; of several storeys those with most stations, below each other as far as there is room.
+void front_plans(Sheet& sheet, const Evaluation& network, Site& site) {
+  std::span<const StationError> errors;
+  if (network.registration) errors = network.registration->stations;
+  const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
+  const auto pages = plan_view_pictures({.scene = site.scene(),
+                                         .area = site.area(),
+                                         .stations = network.stations,
+                                         .names = station_names(network.stations, network.names),
+                                         .links = links,
+                                         .title = "Stations and links",
+                                         .errors = errors});
+  std::vector<const Canvas*> plans;
+  for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k) plans.push_back(pages[k].canvas.get());
+  const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), network.stations);
+  if (levels.size() == plans.size()) {
+    const auto standing = [&](std::size_t k) {
+      return std::ranges::count_if(network.stations, [&](const PlacedStation& s) {
+        return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
+      });
+    };
+    std::vector<std::size_t> order(plans.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater{}, standing);
+    std::vector<const Canvas*> sorted;
+    for (const std::size_t k : order) sorted.push_back(plans[k]);
+    plans = std::move(sorted);
+  }
+  for (const Canvas* const plan : plans) {
+    const bool first = plan == plans.front();
+    const double width = sheet.right() - Sheet::kMargin, whole = width / plan->width();
+    if (!first && sheet.left() < whole * plan->height()) break;
+    const double scale = std::min(whole, sheet.left() / plan->height());
+    sheet.canvas->page({Sheet::kMargin, sheet.y, plan->width() * scale, plan->height() * scale}, *plan);
+    sheet.y += plan->height() * scale + 6;
+  }
+}
+
+Sheet front_sheet(const Report& report, Site& site) {
   const Evaluation& network = report.shown();
   const double margin = Sheet::kMargin;
   Sheet sheet(a4());
@@ -78,41 +116,7 @@ Sheet front_sheet(const Report& report, const Simulator& simulator, const Search
   for (const auto& [heading, text] : report.facts)
     line(heading, text + (heading == "computed" ? "; report.html has every parameter" : ""), false);
   sheet.y += 8;
-  std::span<const StationError> errors;
-  if (network.registration) errors = network.registration->stations;
-  const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
-  const auto pages = plan_view_pictures({.scene = simulator.scene(),
-                                         .area = area,
-                                         .stations = network.stations,
-                                         .names = station_names(network.stations, network.names),
-                                         .links = links,
-                                         .title = "Stations and links",
-                                         .errors = errors});
-  // Of several storeys those with most stations, below each other as far as there is room.
-  std::vector<const Canvas*> plans;
-  for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k) plans.push_back(pages[k].canvas.get());
-  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), area.mesh(), network.stations);
-  if (levels.size() == plans.size()) {
-    const auto standing = [&](std::size_t k) {
-      return std::ranges::count_if(network.stations, [&](const PlacedStation& s) {
-        return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
-      });
-    };
-    std::vector<std::size_t> order(plans.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::ranges::greater{}, standing);
-    std::vector<const Canvas*> sorted;
-    for (const std::size_t k : order) sorted.push_back(plans[k]);
-    plans = std::move(sorted);
-  }
-  for (const Canvas* const plan : plans) {
-    const bool first = plan == plans.front();
-    const double width = sheet.right() - margin, whole = width / plan->width();
-    if (!first && sheet.left() < whole * plan->height()) break;
-    const double scale = std::min(whole, sheet.left() / plan->height());
-    sheet.canvas->page({margin, sheet.y, plan->width() * scale, plan->height() * scale}, *plan);
-    sheet.y += plan->height() * scale + 6;
-  }
+  front_plans(sheet, network, site);
   return sheet;
 }
 
@@ -250,13 +254,12 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
 
 }  // namespace
 
-void write_report_pdf(const std::filesystem::path& file, const Report& report, const Simulator& simulator,
-                      const SearchArea& area) {
+void write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site) {
   const Evaluation& network = report.shown();
-  const std::vector<StationFacts> facts = station_facts(report, simulator);
+  const std::vector<StationFacts> facts = station_facts(report, site.simulator());
   std::vector<Sheet> sheets;
-  sheets.push_back(front_sheet(report, simulator, area));
-  FieldSheets maps = field_sheets(report, facts, simulator.scene(), area);
+  sheets.push_back(front_sheet(report, site));
+  FieldSheets maps = field_sheets(report, facts, site);
   const std::size_t first_map = sheets.size() + 1;
   std::ranges::move(maps.sheets, std::back_inserter(sheets));
   stations_table(sheets, network, facts, maps.of_station, first_map);

@@ -13,7 +13,7 @@ const VIEW_COLOURS = {
   bridge: '#8c2d91',
   route: '#e07b00',
   station: '#1d4f91',
-  kept: '#6b2a70',
+  existing: '#6b2a70',
 };
 
 const vertexShader = `
@@ -267,7 +267,7 @@ class SiteView {
     this.labels = stations.map((station, k) => {
       const label = document.createElement('button');
       label.type = 'button';
-      label.className = 'label' + (station.kept ? ' kept' : '') + (station.active ? '' : ' left-out');
+      label.className = 'label' + (station.existing ? ' existing' : '') + (station.active ? '' : ' left-out');
       label.textContent = station.name;
       label.setAttribute('aria-pressed', 'false');
       label.addEventListener('click', () => this.onPick(k));
@@ -307,7 +307,7 @@ class SiteView {
     };
     this.stations.forEach((station, k) => {
       if (!station.head) return;
-      const head = this.local(station.head), colour = k === this.selected ? '#111111' : station.kept ? VIEW_COLOURS.kept : VIEW_COLOURS.station;
+      const head = this.local(station.head), colour = k === this.selected ? '#111111' : station.existing ? VIEW_COLOURS.existing : VIEW_COLOURS.station;
       if (!this.shown(head)) return;
       add(new THREE.SphereGeometry(size, 20, 14), colour, head);
       rod(this.local(station.ground), head, size * 0.18, colour);

@@ -20,7 +20,7 @@ constexpr std::uint64_t kSeen = 400'000;  // voxels that shares are taken of
 void add_round(std::vector<StationFacts>& facts, const Evaluation& network, const Simulator& simulator) {
   if (!network.visit || network.visit->order.empty()) return;
   const Visit& visit = *network.visit;
-  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::kept));
+  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
   const auto stops = static_cast<double>(visit.order.size());
   double minutes = 0;
   for (std::size_t k = 0; k < visit.order.size(); ++k) {
@@ -104,7 +104,7 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
   for (const std::string& name : station_names(network.stations, network.names)) facts.push_back({.name = name});
   for (std::size_t k = 0; k < facts.size(); ++k) {
     const PlacedStation& s = network.stations[k];
-    facts[k].note = s.kept                            ? "there before"
+    facts[k].note = s.existing                        ? "there before"
                     : s.status == StationStatus::hole ? "no ground"
                     : active(s)                       ? ""
                                                       : "left out";

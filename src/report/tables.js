@@ -34,7 +34,7 @@ function table(titles, rows, textColumns = []) {
 const weak = (network, link) => link.value < 1.25 * network.least_link;
 
 function figures(holder, network) {
-  const used = network.stations.filter((s) => s.active).length, kept = network.stations.filter((s) => s.kept).length;
+  const used = network.stations.filter((s) => s.active).length, kept = network.stations.filter((s) => s.existing).length;
   const tile = (name, value, note, bad) =>
     element('div', bad ? { class: 'bad' } : {}, element('dt', {}, name), element('dd', {}, value, element('small', {}, note)));
   const tiles = [
@@ -107,7 +107,7 @@ function stationTable(holder, network, pick) {
     const cells = [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
       s.points === null ? null : grouped(s.points), s.linked === undefined ? null : s.linked];
     if (place.size) cells.push(place.has(k) ? place.get(k) + 1 : null, place.has(k) ? network.visit.legs_m[place.get(k)].toFixed(1) : null);
-    return [...cells, s.kept ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
+    return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
   const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
   holder.replaceChildren(...foldedTable(titles, visitingOrder(network).map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
@@ -217,7 +217,7 @@ function stationCard(holder, network, k, only, { pick, stand }) {
   if (only !== null) fact('Only it sees', percent(only) + ' of the site');
   const stop = network.visit ? network.visit.order.indexOf(k) : -1;
   if (stop >= 0) fact('Stop', `${stop + 1} of ${network.visit.order.length}, after ${network.visit.legs_m[stop].toFixed(1)} m on foot`);
-  if (s.kept) fact('', 'was there before');
+  if (s.existing) fact('', 'was there before');
   if (s.fault) fact('Mind', s.fault);
   parts.push(facts);
   const links = (network.links || []).filter((l) => l.a === k || l.b === k).sort((l, r) => r.value - l.value);

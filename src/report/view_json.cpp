@@ -120,13 +120,13 @@ ordered_json colours_json(const Report& report, Simulator& simulator, const Cove
 }
 
 // Storeys of a covered site, each a slice with its walls and heads and without ceilings. Empty: an open site.
-ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations) {
-  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), area.mesh(), stations);
+ordered_json levels_json(Site& site, std::span<const PlacedStation> stations) {
+  const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), stations);
   if (levels.size() == 1 && !levels.front().cut) return ordered_json::array();
-  double height = simulator.scanner().height_m;
+  double height = site.scanner().height_m;
   for (const PlacedStation& s : stations)
     if (s.status != StationStatus::hole) height = std::max(height, s.position.z - s.ground.z);
-  const Box bounds = simulator.scene().bounds();
+  const Box bounds = site.scene().bounds();
   ordered_json json = ordered_json::array();
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double above = levels[k].floor + 1.1 * height;  // heads clear of the cut, below most ceilings
@@ -139,11 +139,11 @@ ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std
 
 }  // namespace
 
-ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations,
-                       const CoverageCells& cells) {
+ordered_json site_json(Site& site, std::span<const PlacedStation> stations, const CoverageCells& cells) {
+  const Simulator& simulator = site.simulator();
   ordered_json json = {{"origin", point_json(simulator.origin())},
                        {"mesh", mesh_json(surface_mesh(simulator.scene().data(), kTriangles))},
-                       {"levels", levels_json(simulator, area, stations)},
+                       {"levels", levels_json(site, stations)},
                        {"voxel_m", simulator.voxel_size_m()},
                        {"goal", simulator.goal_density()},
                        {"cells", nullptr}};
@@ -158,9 +158,10 @@ ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::
   return json;
 }
 
-ordered_json view_json(const Report& report, Simulator& simulator, const SearchArea& area, const Progress& progress) {
+ordered_json view_json(const Report& report, Site& site, const Progress& progress) {
+  Simulator& simulator = site.simulator();
   const CoverageCells cells = coverage_cells(simulator, kVoxels, kCells);
-  ordered_json json = site_json(simulator, area, report.shown().stations, cells);
+  ordered_json json = site_json(site, report.shown().stations, cells);
   if (cells.keys.empty()) return json;
   json["cells"]["networks"] = colours_json(report, simulator, cells, progress);
   if (const MissedVoxels* const missed = report.options.missed; missed && !missed->ranks.empty())

@@ -10,9 +10,10 @@
 
 #include "core/read_json.hpp"
 #include "core/setting_list.hpp"
+#include "placement/ground_weights.hpp"
+#include "placement/place_head.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
-#include "vantage/ground.hpp"
 
 namespace vantage {
 namespace {
@@ -364,12 +365,19 @@ Simulator& Site::surroundings() {
   return *impl_->surroundings;
 }
 
+PlacedHead Site::place_head(const Vec3& head, std::optional<Uv> uv) {
+  return vantage::place_head(has_area() ? &area() : nullptr, clash(), scanner().height_m, head, uv);
+}
+
+OnSite Site::on_site(OnSiteOptions options) {
+  if (!options.entrance && !walkable().enter.empty()) options.entrance = walkable().enter.front();
+  return {area(), clash(), scanners(), options};
+}
+
 Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,
-                          const OnSiteOptions& on_site, const Progress& progress) {
-  OnSiteOptions round = on_site;
-  if (!round.entrance && !walkable().enter.empty()) round.entrance = walkable().enter.front();
+                          const OnSiteOptions& options_on_site, const Progress& progress) {
   std::optional<OnSite> walk;
-  if (has_area()) walk.emplace(area(), clash(), scanners(), round);
+  if (has_area()) walk = on_site(options_on_site);
   return evaluate_stations({.simulator = simulator(),
                             .surroundings = options.overlap ? &surroundings() : nullptr,
                             .on_site = walk ? &*walk : nullptr,

@@ -9,6 +9,7 @@
 
 #include "edit/session.hpp"
 #include "networks.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -38,8 +39,6 @@ void DragOptions::add(CLI::App& command) {
 
 void run_drag(const DragOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
   const Scanner scanner = options.site.scanner();
   const bool given = !options.site.typed.empty() || !options.site.station_file.empty();
   const Network network =
@@ -48,13 +47,11 @@ void run_drag(const DragOptions& options) {
   for (const EngineInfo& engine : options.site.engines_here()) {
     SimulatorConfig config = options.site.config();
     config.engine = engine.engine, config.device_index = engine.device_index;
-    Simulator simulator(scene, scanner, config);
+    Site site = test::site_of(Simulator(scene, scanner, config));
     std::vector<EditStation> stations;
-    for (const Station& station : network)
-      stations.push_back({.placed = place_head(&area, clash, scanner.height_m, station.position).station});
+    for (const Station& station : network) stations.push_back({.placed = site.place_head(station.position).station});
     EditSession session(
-        simulator, area, clash, stations, {.voxels = options.sample}, [](const auto&) {},
-        [](const auto&, const auto&) {});
+        site, stations, {.voxels = options.sample}, [](const auto&) {}, [](const auto&, const auto&) {});
     const Vec3 middle = stations.front().placed.ground;
     std::vector<double> wall, cpu;
     std::size_t off_ground = 0;
@@ -76,7 +73,7 @@ void run_drag(const DragOptions& options) {
     if (wall.empty()) throw Error(Errc::invalid_argument, "drag: the first station has no ground around it");
     std::printf("%s: %zu stations, %llu of %llu voxels, %zu moves (%zu off the ground)\n",
                 to_string(engine.engine).c_str(), stations.size(), static_cast<unsigned long long>(options.sample),
-                static_cast<unsigned long long>(simulator.voxel_count()), wall.size(), off_ground);
+                static_cast<unsigned long long>(site.simulator().voxel_count()), wall.size(), off_ground);
     std::printf("  wall ms a move: %.1f in the middle, %.1f at 90 %%\n", at_share(wall, 0.5), at_share(wall, 0.9));
     std::printf("  CPU ms a move, of all threads: %.1f in the middle, %.1f at 90 %%\n", at_share(cpu, 0.5),
                 at_share(cpu, 0.9));

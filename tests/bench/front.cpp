@@ -16,6 +16,7 @@
 #include "export/chart.hpp"
 #include "plan/decision_space.hpp"
 #include "plan/placement_oracle.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -176,16 +177,14 @@ void FrontOptions::add(CLI::App& command) {
 }
 
 void run_front(const FrontOptions& options) {
-  const Scene scene = Scene::load(options.site.scene);
-  Simulator simulator = options.site.simulator(scene, options.devices);
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
+  Site site = test::site_of(options.site.simulator(Scene::load(options.site.scene), options.devices));
+  Simulator& simulator = site.simulator();
   const auto [fewest, most] = range_of(options.stations);
   const SurveyProblem problem = survey_problem(options.problem, fewest, most);
   const std::size_t objectives = problem.objectives.size();
   const Algorithm algorithm = algorithm_from_string(options.algorithm);
-  const PlacementOracle site = make_placement_oracle(area, clash, simulator.scanner());
-  const DecisionSpace space(site, problem);
+  const PlacementOracle oracle = make_placement_oracle(site);
+  const DecisionSpace space(oracle, problem);
   EveryRay every_ray(simulator, space, problem);
 
   std::printf("sample,seed,what,seconds,evaluations,networks,undominated,searched,every_ray,difference\n");
@@ -206,7 +205,7 @@ void run_front(const FrontOptions& options) {
       const Stopwatch watch;
       double next = options.first_s, searched = 0;
       const PlanResult result =
-          plan(simulator, area, clash, problem, search, {.report = [&](const PlanProgress& progress) {
+          plan(site, problem, search, {.report = [&](const PlanProgress& progress) {
                  if (progress.phase == "search") searched = watch.seconds();
                  if (progress.phase != "search" || watch.seconds() < next || progress.front.empty()) return;
                  curve.looks.push_back({.seconds = watch.seconds(),

@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "export/chart.hpp"
+#include "support/site_of.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/placement.hpp"
 
@@ -77,14 +78,11 @@ void GapOptions::add(CLI::App& command) {
 }
 
 void run_gap(const GapOptions& options) {
-  const Scene scene = Scene::load(options.site.scene);
-  Simulator simulator = options.site.simulator(scene);
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
+  Site site = test::site_of(options.site.simulator(Scene::load(options.site.scene)));
   const std::size_t most = *std::ranges::max_element(options.candidates);
   // The first n of them are spread as evenly as all.
-  const Candidates all = find_candidates(
-      simulator, area, clash, {.first = most, .most = most, .sample_voxels = options.sample, .max_seconds = 0});
+  const Candidates all =
+      find_candidates(site, {.first = most, .most = most, .sample_voxels = options.sample, .max_seconds = 0});
   std::printf("stations,candidates,bound,found,gap\n");
   std::vector<Dot> dots;
   for (const std::size_t stations : options.counts)

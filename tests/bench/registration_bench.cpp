@@ -106,7 +106,7 @@ Figures figures(const NetworkCounts& counts) {
 }
 
 // Heads above places where a person can stand, spread over the site's rooms and grounds by their area.
-std::vector<Vec3> draw_heads(const test::Site& site, const Scene& scene, const Scanner& scanner, std::size_t many,
+std::vector<Vec3> draw_heads(const test::KnownSite& site, const Scene& scene, const Scanner& scanner, std::size_t many,
                              std::mt19937_64& random) {
   const ClashChecker clash(scene, {.radius_m = 0.4});
   std::vector<double> areas;
@@ -232,7 +232,7 @@ class Samples {
 };
 
 void run(const Options& o) {
-  const test::Site site = test::make_site(o.site);
+  const test::KnownSite site = test::make_site(o.site);
   const auto file = std::filesystem::temp_directory_path() / fmt::format("registration_{}_{}.glb", o.site, o.seed);
   test::write_site(site, {}, file);
   const Scene scene = Scene::load(file);

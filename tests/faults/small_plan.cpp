@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <new>
 
+#include "support/site_of.hpp"
 #include "vantage/built_in_scenes.hpp"
 
 namespace vantage::test {
@@ -40,15 +41,13 @@ std::string SmallPlan::run(const std::filesystem::path& checkpoint, bool resume)
   const Scene scene = Scene::load(folder_ / "scene.glb");
   const Scanner scanner{
       .azimuth_step = Angle::degrees(12), .zenith_step = Angle::degrees(12), .height_m = 1.5, .noise = rtc360_noise()};
-  Simulator simulator(scene, scanner,
-                      {.engine = engine_,
-                       .warn = [this](const std::string& line) { warned_.push_back(line); },
-                       .user_size_m = 0.5,
-                       .point_spacing_m = 0.25,
-                       .validation = validation_,
-                       .max_rays_per_dispatch = 8192});
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
+  Site site = site_of(Simulator(scene, scanner,
+                                {.engine = engine_,
+                                 .warn = [this](const std::string& line) { warned_.push_back(line); },
+                                 .user_size_m = 0.5,
+                                 .point_spacing_m = 0.25,
+                                 .validation = validation_,
+                                 .max_rays_per_dispatch = 8192}));
   const std::vector<std::string> objectives{"coverage", "overlap", "registration"};
   const PlanConfig config{.population = 8,
                           .iterations = 1,
@@ -59,7 +58,7 @@ std::string SmallPlan::run(const std::filesystem::path& checkpoint, bool resume)
                           .checkpoint_seconds = 1e-9,
                           .resume = resume};
   const auto report = [this](const PlanProgress& now) { searching_ |= now.evaluations > 0; };
-  return text_of(plan(simulator, area, clash, survey_problem(objectives, 2, 2), config, {.report = report}));
+  return text_of(plan(site, survey_problem(objectives, 2, 2), config, {.report = report}));
 }
 
 Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& arm,

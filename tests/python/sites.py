@@ -19,6 +19,12 @@ def four_walls(**config):
     return vantage.Simulator(vantage.Scene.load(FOUR_WALLS), scanner, **config)
 
 
+def four_walls_site(**settings):
+    """The same as a site."""
+    return vantage.Site.open(FOUR_WALLS, **{"step": 0.2, "height": 1.5, "user_size": 0.2, "spacing": 0.03,
+                                            "engine": "embree", **settings})
+
+
 def wall(offset=(0.0, 0.0, 0.0)):
     """Corners and triangles of a wall 4 m wide and 2 m high, 3 m north of the offset: it faces south."""
     corners = np.array([[-2, 3, -1], [2, 3, -1], [2, 3, 1], [-2, 3, 1]], float) + offset

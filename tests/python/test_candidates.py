@@ -4,23 +4,21 @@ import unittest
 
 import numpy as np
 import vantage
-from sites import four_walls
+from sites import four_walls_site
 
 
 class CandidatesAndBounds(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.simulator = four_walls()
-        cls.area = vantage.SearchArea(cls.simulator.scene)
-        cls.clash = vantage.ClashChecker(cls.simulator.scene)
-        cls.found = vantage.find_candidates(
-            cls.simulator, cls.area, cls.clash, first=32, most=64, sample_voxels=800)
+        cls.site = four_walls_site()
+        cls.simulator = cls.site.simulator
+        cls.found = vantage.find_candidates(cls.site, first=32, most=64, sample_voxels=800)
 
     def test_candidates_may_be_stood_on(self):
         self.assertEqual(len(self.found), 64)
         self.assertEqual(self.found.ended, "enough")
         grounds = np.array([station.ground for station in self.found.stations])
-        self.assertFalse(self.clash.clashes(grounds, self.simulator.scanner.height_m).any())
+        self.assertFalse(self.site.clash.clashes(grounds, self.simulator.scanner.height_m).any())
 
     def test_columns_add_up_to_what_a_network_covers(self):
         sampled, chosen = self.found.coverage, [3, 17, 40]
@@ -103,7 +101,7 @@ class CandidatesAndBounds(unittest.TestCase):
     def test_the_exact_network_keeps_apart(self):
         def exact(apart_m):
             found = vantage.exact_network(
-                self.simulator, self.area, self.clash, 3, candidates=24, sample_voxels=400, max_seconds=20, apart_m=apart_m)
+                self.site, 3, candidates=24, sample_voxels=400, max_seconds=20, apart_m=apart_m)
             heads = [s.position for s in found.stations]
             return found, min(math.dist(a, b) for i, a in enumerate(heads) for b in heads[:i])
 
@@ -115,15 +113,21 @@ class CandidatesAndBounds(unittest.TestCase):
             exact(-1)
 
     def test_the_exact_network_is_no_worse_than_the_greedy_one(self):
-        exact = vantage.exact_network(
-            self.simulator, self.area, self.clash, 2, candidates=24, sample_voxels=400, max_seconds=5)
+        exact = vantage.exact_network(self.site, 2, candidates=24, sample_voxels=400, max_seconds=5)
         self.assertEqual(len(exact.stations), 2)
         self.assertLessEqual(exact.choice.coverage, exact.choice.bound + 1e-12)
         sampled = vantage.sample_coverage(self.simulator, exact.stations, sample_voxels=400)
         self.assertAlmostEqual(sampled.coverage()[0], exact.choice.coverage, places=12)
 
+    def test_a_sample_may_be_of_every_voxel(self):
+        every = vantage.greedy_network(self.site, 1, candidates=8, sample_voxels=None)
+        covered = self.simulator.evaluate(vantage.heads(every.stations)).coverage
+        self.assertAlmostEqual(every.coverage[0], covered, places=12)
+        with self.assertRaises(vantage.Error):
+            vantage.find_candidates(self.site, sample_voxels=0)
+
     def test_greedy_takes_the_best_first(self):
-        greedy = vantage.greedy_network(self.simulator, self.area, self.clash, 3, candidates=50, sample_voxels=800)
+        greedy = vantage.greedy_network(self.site, 3, candidates=50, sample_voxels=800)
         self.assertEqual(len(greedy.stations), 3)
         self.assertEqual(greedy.coverage, sorted(greedy.coverage))
 

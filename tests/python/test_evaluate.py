@@ -59,8 +59,7 @@ class Evaluations(unittest.TestCase):
         self.assertEqual(found.points_on_surveyed.tolist()[3], 0)
         usual = self.simulator.evaluate(HEADS).points_on_surveyed
         self.assertEqual([int(found.points_on_surveyed[k]) == int(usual[k]) for k in range(3)], [True, False, False])
-        area, clash = vantage.SearchArea(simulator.scene), vantage.ClashChecker(simulator.scene)
-        placed = vantage.place_heads(area, clash, 1.5, network[:3])
+        placed = vantage.place_heads(vantage.Site(simulator.scene, height=1.5), network[:3])
         self.assertEqual([station.setup for station in placed], [station.setup for station in network[:3]])
         self.assertEqual(simulator.evaluate(placed).coverage, found.coverage)
         sampled, = simulator.evaluate_sampled([network], voxels=simulator.voxel_count)

@@ -9,9 +9,8 @@ import unittest
 
 LONG = """
 import vantage
-from sites import four_walls
+from sites import four_walls, four_walls_site
 simulator = four_walls(max_rays_per_dispatch=20_000)
-area, clash = vantage.SearchArea(simulator.scene), vantage.ClashChecker(simulator.scene)
 begun = []
 def report(now):
     if not begun:
@@ -23,7 +22,7 @@ except KeyboardInterrupt:
     print("interrupted", flush=True)
 print("simulator usable:", simulator.evaluate([[0, 0, 1.5]]).coverage > 0, flush=True)
 """
-PLAN = ("vantage.plan(simulator, area, clash, vantage.coverage_overlap_fix(8), iterations=10**9, sample_voxels=2000, "
+PLAN = ("four_walls_site().plan(vantage.coverage_overlap_fix(8), iterations=10**8, sample=2000, "
         "checkpoint={checkpoint!r}, progress=report)")
 EVALUATE = "while True: simulator.evaluate([[0, 0, 1.5]] * 64, skip=False, progress=report)"
 

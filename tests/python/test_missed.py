@@ -7,18 +7,18 @@ import unittest
 
 import numpy as np
 import vantage
-from sites import BEFORE_EACH_WALL, four_walls
+from sites import BEFORE_EACH_WALL, four_walls_site
 
 
 class AfterASearch(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.simulator = four_walls()
-        cls.area, cls.clash = vantage.SearchArea(cls.simulator.scene), vantage.ClashChecker(cls.simulator.scene)
+        cls.site = four_walls_site()
+        cls.simulator = cls.site.simulator
 
     def test_missed_voxels_have_a_reason(self):
         seen = self.simulator.evaluate(BEFORE_EACH_WALL[:2], field=True)  # the walls in the north and south are not
-        missed = vantage.why_missed(self.simulator, self.area, self.clash, seen)
+        missed = vantage.why_missed(self.site, seen)
         self.assertEqual(missed.reasons, ["captured", "hidden", "out_of_range", "too_flat", "too_sparse", "not_chosen"])
         np.testing.assert_array_equal(missed.points, seen.voxel_points[missed.voxels])
         np.testing.assert_array_equal(missed.why == 0, missed.points >= seen.goal_density)
@@ -29,11 +29,11 @@ class AfterASearch(unittest.TestCase):
         self.assertGreater(missed.shares[""]["not_chosen"], 0.3)
         self.assertEqual(missed.candidates, 256)
         with self.assertRaisesRegex(vantage.Error, "evaluate with field=True"):
-            vantage.why_missed(self.simulator, self.area, self.clash, self.simulator.evaluate(BEFORE_EACH_WALL))
+            vantage.why_missed(self.site, self.simulator.evaluate(BEFORE_EACH_WALL))
 
     def test_a_round_adds_up(self):
         options = vantage.OnSiteOptions(set_up_min=5, walking_m_per_s=1, entrance=(0, 0, 0))
-        on_site = vantage.OnSite(self.area, self.clash, self.simulator.scanners, options)
+        on_site = vantage.OnSite(self.site, options)
         visit = on_site.visit(BEFORE_EACH_WALL)
         self.assertEqual(sorted(visit.order), [0, 1, 2, 3])
         self.assertEqual(len(visit.legs_m), 5)

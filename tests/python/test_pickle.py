@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 import vantage
-from sites import BEFORE_EACH_WALL, FOUR_WALLS, four_walls
+from sites import BEFORE_EACH_WALL, four_walls_site
 
 
 def again(value):
@@ -35,9 +35,8 @@ def parts(value):
 class Pickles(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.simulator = four_walls()
-        cls.scene = cls.simulator.scene
-        cls.area, cls.clash = vantage.SearchArea(cls.scene), vantage.ClashChecker(cls.scene)
+        cls.site = four_walls_site()
+        cls.simulator, cls.scene = cls.site.simulator, cls.site.scene
 
     def same(self, value):
         self.assertGreater(len(parts(value)), 1)
@@ -54,8 +53,8 @@ class Pickles(unittest.TestCase):
 
     def test_problems(self):
         for problem in (vantage.fewest_stations(0.8, 0.25, 2, 9), vantage.coverage_overlap_min(3, 7),
-                        vantage.SurveyProblem(stations_min=2, stations_max=3, kept=[(1, 2, 1.5)], objectives=["time"],
-                                              kept_setups=[vantage.StationSetup(tilt_deg=90)], heights_m=(1.2, 1.9),
+                        vantage.SurveyProblem(stations_min=2, stations_max=3, existing=[(1, 2, 1.5)], objectives=["time"],
+                                              existing_setups=[vantage.StationSetup(tilt_deg=90)], heights_m=(1.2, 1.9),
                                               requirements=["coverage >= 0.123456789", "stations <= 3"])):
             self.same(problem)
         own = vantage.Objective("own", lambda network: 1, vantage.maximise(1, 0))
@@ -70,9 +69,9 @@ class Pickles(unittest.TestCase):
                       self.simulator.scan((8, 0, 1.5), ["position", "normal", "mesh"]),
                       self.simulator.scan((8, 0, 1.5), ["colour", "voxel"], grid=True),
                       vantage.Station((8, 0, 1.5), vantage.StationSetup(heading_deg=20)),
-                      vantage.place_heads(self.area, self.clash, 1.5, BEFORE_EACH_WALL)[1],
-                      vantage.why_missed(self.simulator, self.area, self.clash, exact),
-                      vantage.OnSite(self.area, self.clash, self.simulator.scanners).visit(BEFORE_EACH_WALL)):
+                      vantage.place_heads(self.site, BEFORE_EACH_WALL)[1],
+                      vantage.why_missed(self.site, exact),
+                      vantage.OnSite(self.site).visit(BEFORE_EACH_WALL)):
             with self.subTest(type(value).__name__):
                 self.same(value)
         self.assertEqual(again(exact).to_dict(), exact.to_dict())
@@ -88,9 +87,8 @@ class Pickles(unittest.TestCase):
             fresh.__setstate__(("0.0.1", state[1]))
 
     def test_what_owns_a_device_is_not_pickled(self):
-        plan = vantage.plan(self.simulator, self.area, self.clash, vantage.coverage_fix(2), population=4, iterations=1,
-                            sample_voxels=100)
-        for value in (self.simulator, vantage.Site.open(FOUR_WALLS, engine="embree"), plan, plan.answer):
+        plan = self.site.plan(vantage.coverage_fix(2), population=4, iterations=1, sample=100)
+        for value in (self.simulator, self.site, plan, plan.answer):
             with self.assertRaisesRegex(TypeError, f"a {type(value).__name__} .* is not pickled; "):
                 pickle.dumps(value)
 

@@ -133,13 +133,13 @@ class Placing(unittest.TestCase):
         builder.add(*wall((0, 0, 1.01)), name="wall")
         scene = builder.build()
         self.assertEqual([mesh.weight for mesh in scene.meshes], [1, 1])
-        weighed = vantage.weigh_ground(scene, vantage.SearchArea(scene))
+        weighed = vantage.Site(scene).scene
         self.assertEqual(weighed.meshes[0].weight, 1)
         # 400 m² of ground, 8 m² of wall: 2 · 400 / 8, rounded up.
         self.assertIn(weighed.meshes[1].weight, (100, 101))
         marked = vantage.Scene.load(FOUR_WALLS)
         self.assertEqual(
-            vantage.weigh_ground(marked, vantage.SearchArea(marked)).fingerprint, marked.fingerprint)
+            vantage.Site(marked).scene.fingerprint, marked.fingerprint)
 
     def test_clashes_are_those_with_the_walls(self):
         scene = vantage.Scene.load(FOUR_WALLS)
@@ -150,7 +150,7 @@ class Placing(unittest.TestCase):
         np.testing.assert_allclose(clash.distance(grounds + [0, 0, 1], 10), distances, atol=1e-6)
         self.assertFalse(clash.sees((0, 0, 1), (9, 0, 1)))
         self.assertTrue(clash.sees((0, 0, 1), (4, 0, 1)))
-        placed = vantage.place_heads(vantage.SearchArea(scene), clash, 1.5, [[8, 0, 1.5], [5.1, 0, 1.5]])
+        placed = vantage.place_heads(vantage.Site(scene, height=1.5), [[8, 0, 1.5], [5.1, 0, 1.5]])
         self.assertEqual([station.status for station in placed], ["ok", "clash"])
         np.testing.assert_array_equal(vantage.heads(placed), [[8, 0, 1.5], [5.1, 0, 1.5]])
 

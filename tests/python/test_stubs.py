@@ -10,7 +10,7 @@ import vantage
 from vantage import _core
 
 PACKAGE = os.path.dirname(vantage.__file__)
-UNSAID = {"SurveyProblem": {"registration", "on_site", "objectives", "requirements", "kept"}}  # defaults that are no literals
+UNSAID = {"SurveyProblem": {"registration", "on_site", "objectives", "requirements", "existing"}}  # defaults that are no literals
 
 
 def parameters(function):

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sites/site.hpp"
+#include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/planner.hpp"
 
@@ -34,7 +35,7 @@ bool within(const test::Place& place, const Vec3& local, double low, double high
 }
 
 // Mean fill of the voxels from a place's floor up to a person's reach.
-double captured_of(const test::Place& place, const test::Site& site, const Simulator& simulator,
+double captured_of(const test::Place& place, const test::KnownSite& site, const Simulator& simulator,
                    const VoxelField& field) {
   double sum = 0, count = 0;
   for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
@@ -45,19 +46,19 @@ double captured_of(const test::Place& place, const test::Site& site, const Simul
   return count > 0 ? sum / count : 1;
 }
 
+Site site_in(const std::filesystem::path& file) {
+  return test::site_of(Simulator(Scene::load(file), coarse_scanner(),
+                                 {.engine = Engine::embree, .user_size_m = kVoxel_m, .point_spacing_m = kSpacing_m}));
+}
+
 class Plans : public testing::TestWithParam<std::string> {};
 
 TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
   const test::TemporaryFolder folder;
-  const test::Site site = test::make_site(GetParam());
+  const test::KnownSite site = test::make_site(GetParam());
   test::write_site(site, {}, folder / "site.glb");
-  const Scene scene = Scene::load(folder / "site.glb");
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
-  Simulator simulator(scene, coarse_scanner(),
-                      {.engine = Engine::embree, .user_size_m = kVoxel_m, .point_spacing_m = kSpacing_m});
-  const PlanResult result =
-      plan(simulator, area, clash, fewest_stations(), {.iterations = 0, .sample_voxels = kSample});
+  Site planned = site_in(folder / "site.glb");
+  const PlanResult result = plan(planned, fewest_stations(), {.iterations = 0, .sample_voxels = kSample});
   ASSERT_EQ(result.front.size(), 1u);
   const PlanEntry& entry = result.front[answer(result)];
   std::string missing;
@@ -68,6 +69,7 @@ TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
   EXPECT_NEAR(entry.value("link"), connectivity(entry.scan_overlap_matrix, 0).weakest_overlap, 1e-12);
   EXPECT_GE(entry.value("apart"), 1);
 
+  Simulator& simulator = planned.simulator();
   VoxelField field;
   const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = false, .field = &field});
   const double whole = coverage(counts, simulator.goal_density());
@@ -98,13 +100,9 @@ TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
 TEST(PlansInATime, HaveAsManyStationsAsThereIsTimeFor) {
   const test::TemporaryFolder folder;
   test::write_site(test::make_site("office"), {}, folder / "site.glb");
-  const Scene scene = Scene::load(folder / "site.glb");
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
-  Simulator simulator(scene, coarse_scanner(),
-                      {.engine = Engine::embree, .user_size_m = kVoxel_m, .point_spacing_m = kSpacing_m});
+  Site office = site_in(folder / "site.glb");
   const PlanConfig config{.iterations = 2, .sample_voxels = kSample};
-  const auto planned = [&](const SurveyProblem& problem) { return plan(simulator, area, clash, problem, config); };
+  const auto planned = [&](const SurveyProblem& problem) { return plan(office, problem, config); };
   const PlanResult free = planned(fewest_stations());
   const PlanEntry& all = free.front[answer(free)];
   ASSERT_TRUE(all.visit);

@@ -12,7 +12,7 @@
 namespace vantage::test {
 
 struct RandomSite {
-  Site site;                   // every room is one of its places
+  KnownSite site;              // every room is one of its places
   Variant variant;             // how it is written: unit, axis, origin, names
   std::set<std::string> shut;  // rooms that no way leads to
   std::vector<Part> leaves;    // of doors, closed in the file and open in truth

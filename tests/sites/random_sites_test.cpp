@@ -27,7 +27,7 @@ double area_of(const test::Place& place) { return (place.x1 - place.x0) * (place
 
 // Sheets may be turned in the file; the truth keeps them upward.
 void write(const RandomSite& random, const std::filesystem::path& file) {
-  test::Site site = random.site;
+  test::KnownSite site = random.site;
   site.parts.insert(site.parts.end(), random.leaves.begin(), random.leaves.end());
   if (random.turned)
     for (test::Part& part : site.parts)

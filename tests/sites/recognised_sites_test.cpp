@@ -12,10 +12,10 @@
 namespace vantage {
 namespace {
 
-using test::Site;
+using test::KnownSite;
 using test::Variant;
 
-Box bounds(const Site& site) {
+Box bounds(const KnownSite& site) {
   Box box;
   for (const test::Part& part : site.parts)
     for (const Vec3& p : part.positions) box.extend(p + site.offset);

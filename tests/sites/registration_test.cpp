@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sites/site.hpp"
+#include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/measure.hpp"
@@ -21,7 +22,7 @@ namespace {
 struct Surveyed {
   explicit Surveyed(const std::string& name, const test::Variant& variant = {}) {
     const test::TemporaryFolder folder;
-    const test::Site site = test::make_site(name, variant);
+    const test::KnownSite site = test::make_site(name, variant);
     test::write_site(site, variant, folder / "site.glb");
     scene.emplace(Scene::load(folder / "site.glb"));
     for (const test::Place& place : site.places) {
@@ -44,10 +45,10 @@ struct Surveyed {
 // not.
 TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   Surveyed plant("plant");
-  Simulator all = plant.simulator(1);
+  Site site = test::site_of(plant.simulator(1));
+  Simulator& all = site.simulator();
   ASSERT_GT(all.voxel_count(), 100'000u);
-  const ClashChecker clash(*plant.scene);
-  plant.network = to_network(candidate_positions(SearchArea::build(*plant.scene), clash, all.scanner(), 8));
+  plant.network = to_network(candidate_positions(site, 8));
   const NetworkCounts exact = all.evaluate(plant.network, {.registration = RegistrationModel{}});
   const double truth = registration_error(exact, exact.voxels).rms_m;
   double squares = 0;

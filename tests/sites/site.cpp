@@ -65,7 +65,7 @@ std::vector<Crossing> crossings(const Part& part, const Vec3& p) {
 
 }  // namespace
 
-Standing Site::at(const Vec3& ground) const {
+Standing KnownSite::at(const Vec3& ground) const {
   const Vec3 p = ground - offset;
   const double above = p.z + 1.01 * kTouch_m;
   const Part* under = nullptr;
@@ -102,19 +102,19 @@ std::span<const char* const> site_names() {
   return kNames;
 }
 
-Site make_site(const std::string& name, const Variant& variant) {
-  Site site{name == "office"   ? sites::office()
-            : name == "house"  ? sites::house()
-            : name == "street" ? sites::street()
-            : name == "plant"  ? sites::plant()
-                               : throw std::invalid_argument("no site is called " + name)};
+KnownSite make_site(const std::string& name, const Variant& variant) {
+  KnownSite site{name == "office"   ? sites::office()
+                 : name == "house"  ? sites::house()
+                 : name == "street" ? sites::street()
+                 : name == "plant"  ? sites::plant()
+                                    : throw std::invalid_argument("no site is called " + name)};
   site.name = name;
   if (variant.utm) site.offset = kUtm;
   site.entry = site.entry + site.offset;
   return site;
 }
 
-void write_site(const Site& site, const Variant& variant, const std::filesystem::path& file) {
+void write_site(const KnownSite& site, const Variant& variant, const std::filesystem::path& file) {
   const double unit = variant.millimetres ? 1000 : variant.per_metre;
   const auto file_from_survey = [&](const Vec3& p) { return variant.z_up ? p * unit : Vec3{p.x, p.z, -p.y} * unit; };
   GlbBuilder glb;

@@ -41,7 +41,7 @@ struct Variant {
   bool nameless = false;     // without names
 };
 
-struct Site : sites::Site {
+struct KnownSite : sites::Site {
   Vec3 offset = {};  // of the survey frame, by variant
 
   // The surface under a point of the survey frame, in metres.
@@ -50,8 +50,8 @@ struct Site : sites::Site {
 
 std::span<const char* const> site_names();  // office, house, street, plant
 // Throws std::invalid_argument if there is no such site.
-Site make_site(const std::string& name, const Variant& variant = {});
+KnownSite make_site(const std::string& name, const Variant& variant = {});
 // Writes a GLB without roles; the same arguments give the same bytes.
-void write_site(const Site& site, const Variant& variant, const std::filesystem::path& file);
+void write_site(const KnownSite& site, const Variant& variant, const std::filesystem::path& file);
 
 }  // namespace vantage::test

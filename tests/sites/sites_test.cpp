@@ -17,7 +17,7 @@
 namespace vantage {
 namespace {
 
-using test::Site;
+using test::KnownSite;
 using test::Standing;
 using test::Surface;
 
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(All, Sites, testing::ValuesIn(test::site_names().begin(
 TEST_P(Sites, FloorsAreWhatIsReachedOnFoot) {
   for (const test::Variant variant : {test::Variant{}, test::Variant{.utm = true}}) {
     const test::TemporaryFolder folder;
-    const Site site = make_site(GetParam(), variant);
+    const KnownSite site = make_site(GetParam(), variant);
     write_site(site, variant, folder / "site.glb");
     const Scene scene = Scene::load(folder / "site.glb");
     Columns columns(scene);

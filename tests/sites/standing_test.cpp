@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-using test::Site;
+using test::KnownSite;
 using test::Standing;
 using test::Surface;
 
@@ -36,7 +36,7 @@ std::vector<Case> cases() {
 
 class StandingOnSites : public testing::TestWithParam<Case> {
  protected:
-  Site site = make_site(GetParam().name, GetParam().variant);
+  KnownSite site = make_site(GetParam().name, GetParam().variant);
   Scene load() const {
     const test::TemporaryFolder folder;
     write_site(site, GetParam().variant, folder / "site.glb");

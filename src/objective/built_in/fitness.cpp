@@ -22,7 +22,7 @@ Objective fitness(const ObjectiveSettings& settings) {
           .value =
               [weights, low, high](const MeasuredNetwork& m) {
                 const double spared =
-                    high == low ? 1 : (high - static_cast<double>(m.stations.size() - m.kept)) / (high - low);
+                    high == low ? 1 : (high - static_cast<double>(m.stations.size() - m.existing)) / (high - low);
                 return weights.coverage * vantage::coverage(m.counts, m.goal_density) +
                        weights.station_count * (std::exp2(spared) - 1) +
                        weights.visibility / static_cast<double>(m.visible_parts);

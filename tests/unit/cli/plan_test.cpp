@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <thread>
 
@@ -69,6 +70,22 @@ TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
   EXPECT_TRUE(found);
 }
 
+// Earlier versions called existing stations "kept".
+TEST_F(Plan, ReadsResultsOfEarlierVersions) {
+  const auto front = json_of(plan("plan", {"--problem", "coverage-fix", "--stations", "2", "--keep", "8,0,1.5"}));
+  const auto renamed = [&](const std::string& name) {
+    const std::string text = read("plan/" + name);
+    EXPECT_NE(text.find("existing"), std::string::npos) << name;
+    write(name, std::regex_replace(text, std::regex("existing"), "kept"));
+    return path(name);
+  };
+  for (const char* name : {"front.json", "stations.csv"}) {
+    const auto again = json_of(coarse("evaluate", {"--stations", renamed(name)}));
+    EXPECT_EQ(again["stations"].size(), 3u) << name;
+    EXPECT_EQ(again["coverage"], front["front"][0]["exact"]["coverage"]) << name;
+  }
+}
+
 TEST_F(Plan, ChoosesAStepForEachStation) {
   const std::vector<std::string> what{
       "--objectives", "time,coverage",         "--stations", "3",  "--search-step", "4,2,1",
@@ -80,7 +97,7 @@ TEST_F(Plan, ChoosesAStepForEachStation) {
     for (std::size_t k = 0; k < 4; ++k) {
       const auto& station = entry["stations"][k];
       const double step = station["step"];
-      EXPECT_EQ(station["kept"], k == 0);
+      EXPECT_EQ(station["existing"], k == 0);
       EXPECT_EQ(station["tilt"], k == 0 ? 90 : 0);
       if (k == 0) {
         EXPECT_NEAR(step, 1, 1e-12);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes that users make: each gets one clear line and a stated exit code, and leaves nothing behind.
 #include "program.hpp"
-#include "vantage/station_files.hpp"
 
 namespace vantage::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -39,19 +40,16 @@ State finished(const EditSession& session) {
 }
 
 struct Bench {
-  Scene scene = weighed_site();
-  SearchArea area = SearchArea::build(scene);
-  ClashChecker clash{scene};
-  Simulator simulator{scene, noisy_scanner(), {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}};
+  Site site = test::site_of(Simulator(weighed_site(), noisy_scanner(),
+                                      {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}));
+  Simulator& simulator = site.simulator();
   EditOptions options{.voxels = 300, .cells = 200, .improve_seconds = 0.5};
   std::size_t kept = 0;
   std::vector<EditStation> last_kept;
   std::vector<PlacedStation> saved;
   std::uint64_t saved_voxels = 0;
   EditSession session{
-      simulator,
-      area,
-      clash,
+      site,
       {},
       options,
       [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
@@ -190,13 +188,14 @@ TEST(EditSession, ImprovesAStationWithItsOwnScanner) {
   Bench bench;
   Scanner scanners[] = {noisy_scanner(), noisy_scanner()};
   scanners[0].min_range_m = 100;
-  Simulator simulator(bench.scene, scanners, {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1});
-  const Uv ground = bench.area.project({1009, 2009, 48.5}).value();
+  Site site = test::site_of(
+      Simulator(bench.site.scene(), scanners, {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}));
+  const Uv ground = site.area().project({1009, 2009, 48.5}).value();
   const double pair[] = {ground.u, ground.v};
-  PlacedStation far = place_stations(bench.area, bench.clash, 1.5, pair).front();
+  PlacedStation far = place_stations(site, pair).front();
   far.setup.scanner = 1;
   std::vector<EditStation> kept;
-  EditSession session(simulator, bench.area, bench.clash, {{.id = 1, .placed = far}}, bench.options,
+  EditSession session(site, {{.id = 1, .placed = far}}, bench.options,
                       [&](const std::vector<EditStation>& stations) { kept = stations; }, {});
   const double before = session.state()["network"]["coverage"];
   session.change({{"do", "improve"}});

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
@@ -10,19 +11,17 @@ namespace vantage {
 namespace {
 
 struct Bench {
-  Scene scene = test::wall_and_floor().scene();
-  SearchArea area = SearchArea::build(scene);
-  ClashChecker clash{scene};
-  Simulator simulator{
-      scene, test::coarse_scanner(2), {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}};
-  Simulator surroundings = surroundings_of(simulator);
-  OnSite on_site{area, clash, simulator.scanners()};
-  std::vector<PlacedStation> stations{{.position = {-2, 0, 1.5}, .kept = true},
+  Site whole = test::site_of(Simulator(test::wall_and_floor().scene(), test::coarse_scanner(2),
+                                       {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+  Simulator &simulator = whole.simulator(), &surroundings = whole.surroundings();
+  OnSite on_site = whole.on_site();
+  std::vector<PlacedStation> stations{{.position = {-2, 0, 1.5}, .existing = true},
                                       {.position = {1, 1, 1.5}},
                                       {.position = {2, 0, 1.5}},
                                       {.position = {0, 0, 1.5}, .status = StationStatus::clash}};
   Network network = to_network(stations);
-  EvaluationSite site{.simulator = simulator, .surroundings = &surroundings, .on_site = &on_site, .clash = &clash};
+  EvaluationSite site{
+      .simulator = simulator, .surroundings = &surroundings, .on_site = &on_site, .clash = &whole.clash()};
 };
 
 void expect_equal(const PairMatrix& a, const PairMatrix& b) {

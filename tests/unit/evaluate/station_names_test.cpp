@@ -10,7 +10,7 @@ using Names = std::vector<std::string>;
 
 TEST(StationNames, CountFromOneAndKeptOnesApart) {
   PlacedStation placed, kept;
-  kept.kept = true;
+  kept.existing = true;
   EXPECT_EQ(station_names(std::vector<PlacedStation>{}), Names{});
   EXPECT_EQ(station_names(std::vector{kept, kept, placed, placed}), (Names{"K1", "K2", "S1", "S2"}));
 }

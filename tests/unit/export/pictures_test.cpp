@@ -12,6 +12,7 @@
 #include "export/relief.hpp"
 #include "export/search_tint.hpp"
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/drawn.hpp"
 #include "unit/export/files.hpp"
@@ -279,11 +280,17 @@ SearchArea floor_of_room() {
   return SearchArea::from_mesh(mesh);
 }
 
+Site site_of(const Scene& scene, const SearchArea& area) {
+  return test::site_of(
+      Simulator(scene, test::coarse_scanner(5), {.engine = Engine::embree, .user_size_m = 1, .point_spacing_m = 0.5}),
+      area);
+}
+
 TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   const test::TemporaryFolder folder;
-  const SearchArea area = floor_of_room();
+  Site site = site_of(room(), floor_of_room());
   const auto station = [](double x, double y, StationStatus status, bool kept) {
-    return PlacedStation{.uv = {}, .position = {x, y, 1.8}, .ground = {x, y, 0}, .status = status, .kept = kept};
+    return PlacedStation{.uv = {}, .position = {x, y, 1.8}, .ground = {x, y, 0}, .status = status, .existing = kept};
   };
   const std::vector<PlacedStation> stations{
       station(-1, -1, StationStatus::ok, false),  station(-1, -1, StationStatus::ok, false),
@@ -292,10 +299,10 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   OverlapMatrix overlap(6);
   overlap.set(0, 2, 0.5);
   const StationLinks links{.least = 0.01, .values = overlap};
-  draw_plan_view(folder / "plan.png", room(), area, stations, links, "A room");
-  draw_plan_view(folder / "plan.svg", room(), area, stations, links, "A room");
-  draw_plan_view(folder / "unlinked.png", room(), area, stations, {.values = OverlapMatrix(6)}, "A room");
-  const auto written = draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
+  draw_plan_view(folder / "plan.png", site, stations, links, "A room");
+  draw_plan_view(folder / "plan.svg", site, stations, links, "A room");
+  draw_plan_view(folder / "unlinked.png", site, stations, {.values = OverlapMatrix(6)}, "A room");
+  const auto written = draw_plan_view(folder / "none.png", site, {}, {}, "No station");
   EXPECT_EQ(written, std::vector{folder / "none.png"});
   EXPECT_EQ(test::entries(folder.path()), 4u);
   const test::Drawn plan(folder / "plan.png"), unlinked(folder / "unlinked.png"), none(folder / "none.png");
@@ -312,8 +319,7 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   // The map is room and search area: 640 units high at two pixels each, nearly as wide.
   EXPECT_GT(none.ink(), 1'000'000u);
   EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
-  EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, {.values = OverlapMatrix(3)}, "Wrong"),
-               Error);
+  EXPECT_THROW(draw_plan_view(folder / "bad.png", site, stations, {.values = OverlapMatrix(3)}, "Wrong"), Error);
 }
 
 TEST(Pictures, PlanViewDrawsStandardEllipses) {
@@ -330,8 +336,9 @@ TEST(Pictures, PlanViewDrawsStandardEllipses) {
                       .title = "",
                       .errors = errors};
   EXPECT_NEAR(kWidestEllipse / view.ellipse_scale(), 3e-3, 1e-12);
+  Site site = site_of(room(), floor_of_room());
   const auto red = [&](const char* name, std::span<const StationError> shown) {
-    draw_plan_view(folder / name, room(), floor_of_room(), stations, {}, "A room", {}, shown);
+    draw_plan_view(folder / name, site, stations, {}, "A room", {}, shown);
     return test::Drawn(folder / name).near({0.72, 0.12, 0.12}, 40);
   };
   EXPECT_GT(red("with.png", errors), red("without.png", {}) + 200);
@@ -344,8 +351,9 @@ INSTANTIATE_TEST_SUITE_P(Pictures, RegistrationMaps, testing::Values(2, 67));
 TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
   const std::size_t count = GetParam(), last = count - 1;
   const test::TemporaryFolder folder;
-  Simulator simulator(test::wall_and_floor().scene(), test::coarse_scanner(1),
-                      {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
+  Site site = test::site_of(Simulator(test::wall_and_floor().scene(), test::coarse_scanner(1),
+                                      {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2}));
+  const Simulator& simulator = site.simulator();
   VoxelField field;
   field.count.assign(simulator.voxel_count(), 1);
   const std::size_t voxels = simulator.voxel_count();
@@ -369,9 +377,8 @@ TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
   }
   EXPECT_EQ(at, ply.size());
   const std::vector<PlacedStation> stations{{.uv = {}, .position = {0, 0, 0}, .status = StationStatus::ok}};
-  const SearchArea area = SearchArea::build(simulator.scene());
   for (const char* name : {"error.png", "error.svg"})
-    draw_registration(folder / name, simulator, area, field, error, stations, "Where scans are off");
+    draw_registration(folder / name, site, field, error, stations, "Where scans are off");
   EXPECT_GT(test::Drawn(folder / "error.png").near(kRisingRamp.back(), 40), 500u) << "the largest on top";
   field.stations.pop_back();
   EXPECT_THROW(write_registration_ply(folder / "bad.ply", simulator, field, error), Error);
@@ -411,8 +418,8 @@ TEST(Pictures, EachFloorHasAPageAndItsWallsAreFilled) {
   const std::vector<PlacedStation> stations{{.uv = {}, .position = {2, 2, 1.85}, .ground = {2, 2, 0}},
                                             {.uv = {}, .position = {8, 6, 4.85}, .ground = {8, 6, 3}}};
   const test::TemporaryFolder folder;
-  const auto written = draw_plan_view(folder / "plan.png", Scene::from_triangles(p, t), SearchArea::from_mesh(mesh),
-                                      stations, {.values = OverlapMatrix(2)}, "A house");
+  Site site = site_of(Scene::from_triangles(p, t), SearchArea::from_mesh(mesh));
+  const auto written = draw_plan_view(folder / "plan.png", site, stations, {.values = OverlapMatrix(2)}, "A house");
   ASSERT_EQ(written, (std::vector{folder / "plan.png", folder / "plan-level-1.png", folder / "plan-level-2.png"}));
   constexpr Colour cut{0.27, 0.28, 0.31}, number{0.10, 0.22, 0.45};
   const auto largest = [&](const std::filesystem::path& file) {

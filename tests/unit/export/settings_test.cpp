@@ -159,11 +159,11 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"name", [](SurveyProblem& p) { p.name = "other"; }, false},
     {"stations_min", [](SurveyProblem& p) { p.stations_min = 2; }},
     {"stations_max", [](SurveyProblem& p) { p.stations_max = 5; }},
-    {"kept",
+    {"existing",
      [](SurveyProblem& p) {
-       p.kept = {{1, 2, 3}};
+       p.existing = {{1, 2, 3}};
      }},
-    {"kept_setups", [](SurveyProblem& p) { p.kept_setups = {{.tilt = Angle::degrees(90)}}; }},
+    {"existing_setups", [](SurveyProblem& p) { p.existing_setups = {{.tilt = Angle::degrees(90)}}; }},
     {"scanners",
      [](SurveyProblem& p) {
        p.scanners = {0, 1};
@@ -238,15 +238,12 @@ Told told(const PlanRun& run) {
   std::vector<Vec3> upright;
   for (const Vec3& p : wall.positions) upright.push_back({p.x, 6, p.y + 5});
   const Scene scene = Scene::from_triangles(upright, wall.triangles);
-  const SearchArea area = SearchArea::build(scene, run.walkable);
-  const ClashChecker clash(scene, run.security);
-  const Simulator simulator(scene, run.scanner, run.simulation);
-  const PlacementOracle site = make_placement_oracle(area, clash, run.scanner);
+  Site site(Simulator(scene, run.scanner, run.simulation), SearchArea::build(scene, run.walkable),
+            ClashChecker(scene, run.security));
   PlanResult result;
   result.problem = run.problem, result.config = run.config;
-  result.walkable = area.options(), result.security = clash.volume();
-  return {identity(simulator, site, area, clash, run.problem, run.config, 20, 4),
-          run_parameters_json(simulator, &result)};
+  result.walkable = site.area().options(), result.security = site.clash().volume();
+  return {identity(site, run.problem, run.config, 20, 4), run_parameters_json(site.simulator(), &result)};
 }
 
 template <class Struct>

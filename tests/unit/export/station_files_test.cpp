@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/station_files.hpp"
+#include "export/station_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
+#include "vantage/export.hpp"
 
 namespace vantage {
 namespace {
@@ -22,7 +24,7 @@ const std::string kUtm32 = "EPSG:25832";
 std::vector<PlacedStation> sample() {
   const auto at = [](double x, double y, StationStatus status, bool kept) {
     PlacedStation s{.uv = {}, .position = {x, y, 101.85}, .status = status};
-    s.ground = {x, y, 100}, s.kept = kept;
+    s.ground = {x, y, 100}, s.existing = kept;
     return s;
   };
   std::vector<PlacedStation> stations{at(500'000, 5'300'000, StationStatus::ok, true),
@@ -41,6 +43,14 @@ SearchArea area() {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return SearchArea::from_mesh(mesh);
 }
+
+// A floor of 20 m × 20 m; only its coordinates matter.
+Site floor_at(const Vec3& origin, const std::string& crs, std::vector<std::string>* warnings = nullptr) {
+  SiteOptions options{.engine = Engine::embree, .crs = crs};
+  if (warnings) options.warn = [warnings](const std::string& line) { warnings->push_back(line); };
+  return Site(test::wall_and_floor(origin).scene(), options);
+}
+constexpr Vec3 kBavaria{500'000, 5'300'000, 100};
 
 // One entity of a DXF: its groups in order.
 using Groups = std::vector<std::pair<int, std::string>>;
@@ -76,7 +86,7 @@ TEST(StationFiles, DxfHasStationsNamesLinksAndArea) {
   for (const Groups& e : entities_of(text)) by_type[group(e, 0)].push_back(e);
 
   ASSERT_EQ(by_type["POINT"].size(), 3u);  // the one in a hole has no place
-  EXPECT_EQ(group(by_type["POINT"][0], 8), "STATIONS_KEPT");
+  EXPECT_EQ(group(by_type["POINT"][0], 8), "STATIONS_EXISTING");
   EXPECT_EQ(group(by_type["POINT"][1], 8), "STATIONS");
   EXPECT_EQ(group(by_type["POINT"][2], 8), "STATIONS_LEFT_OUT");
   EXPECT_EQ(group(by_type["POINT"][1], 10), "500010.50000");
@@ -104,9 +114,16 @@ TEST(StationFiles, GeoJsonAndKmlNeedACoordinateSystem) {
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, ""), Error);
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, "EPSG:99999999"), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
-  write_station_files(folder.path(), {stations, kNames}, {}, area(), "");
+  std::vector<std::string> warnings;
+  Site nowhere = floor_at(kBavaria, ""), off_the_map = floor_at({1e30, 0, 0}, kUtm32, &warnings),
+       site = floor_at(kBavaria, kUtm32);
+  write_station_files(folder.path(), {stations, kNames}, {}, nowhere);
   EXPECT_EQ(test::entries(folder.path()), 1u);  // the drawing
-  write_station_files(folder.path(), {stations, kNames}, {}, area(), kUtm32);
+  write_station_files(folder.path(), {stations, kNames}, {}, off_the_map);
+  EXPECT_EQ(test::entries(folder.path()), 1u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("no stations.geojson and stations.kml: ")) << warnings[0];
+  write_station_files(folder.path(), {stations, kNames}, {}, site);
   EXPECT_EQ(test::entries(folder.path()), 3u);
 }
 
@@ -139,11 +156,11 @@ TEST(StationFiles, GeoJsonFollowsTheRfc) {
   EXPECT_GT(feature["geometry"]["coordinates"][0], 9.0);  // longitude first
   EXPECT_EQ(feature["geometry"]["coordinates"][2], 100);
   EXPECT_EQ(feature["properties"]["name"], kNames[1]);
-  EXPECT_EQ(feature["properties"]["kept"], false);
+  EXPECT_EQ(feature["properties"]["existing"], false);
   EXPECT_EQ(feature["properties"]["head_height_m"], 1.85);
   EXPECT_EQ(feature["properties"]["x"], 500'010.5);
   EXPECT_EQ(feature["properties"]["ground_z"], 100);
-  EXPECT_EQ(json["features"][0]["properties"]["kept"], true);
+  EXPECT_EQ(json["features"][0]["properties"]["existing"], true);
   EXPECT_EQ(json["features"][2]["properties"]["status"], "clash");
   EXPECT_TRUE(json["features"][3]["geometry"].is_null());
 }
@@ -156,7 +173,7 @@ TEST(StationFiles, KmlEscapesNamesAndLeavesOutWhatHasNoPlace) {
   EXPECT_NE(kml.find("<name>S1 &lt;north&gt; &amp; Tür</name>"), std::string::npos);
   EXPECT_EQ(kml.find("S3"), std::string::npos);
   EXPECT_NE(kml.find("#left_out"), std::string::npos);
-  EXPECT_NE(kml.find("#kept"), std::string::npos);
+  EXPECT_NE(kml.find("#existing"), std::string::npos);
 }
 
 TEST(StationFiles, RefusesWrongUse) {
@@ -165,7 +182,8 @@ TEST(StationFiles, RefusesWrongUse) {
   const std::vector<std::string> few{"S1"};
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, few}, {}, area()), Error);
   EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.values = OverlapMatrix(2)}, area()), Error);
-  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, area(), kUtm32), Error);
+  Site site = floor_at(kBavaria, kUtm32);
+  EXPECT_THROW(write_stations(folder / "a.shp", stations, kNames, {}, site), Error);
   EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, area()), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }

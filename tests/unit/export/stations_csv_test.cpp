@@ -31,10 +31,10 @@ TEST(StationsCsv, ReadsBackToTheSameBits) {
        .position = {500'000.1, 4'500'000.0 / 3, 1e-300},
        .ground = {500'000.1, 4'500'000.0 / 3, -1.0 / 3}},
       {.uv = {0.1 + 0.2, 5e-324}, .position = {}, .status = StationStatus::hole},
-      {.uv = {1, 0}, .position = {-0.1, 1e20, 3}, .status = StationStatus::clash, .kept = true}};
+      {.uv = {1, 0}, .position = {-0.1, 1e20, 3}, .status = StationStatus::clash, .existing = true}};
   write_stations_csv(folder / "s.csv", stations);
-  EXPECT_EQ(test::content(folder / "s.csv").substr(0, 58),
-            "station,name,x,y,z,ground_z,u,v,status,kept\n1,S1,500000.1,");
+  EXPECT_EQ(test::content(folder / "s.csv").substr(0, 62),
+            "station,name,x,y,z,ground_z,u,v,status,existing\n1,S1,500000.1,");
   const auto rows = read_stations_csv(folder / "s.csv");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].position, stations[0].position);
@@ -57,7 +57,8 @@ TEST(StationsCsv, TellsHowStationsAreSetUpWhereItMatters) {
   stations[1].setup.scanner = 1;
   write_stations_csv(folder / "s.csv", stations, scanners);
   const std::string text = test::content(folder / "s.csv");
-  EXPECT_EQ(text.substr(0, text.find('\n')), "station,name,x,y,z,ground_z,u,v,status,kept,heading,tilt,scanner,step");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "station,name,x,y,z,ground_z,u,v,status,existing,heading,tilt,scanner,step");
   const auto rows = read_stations_csv(folder / "s.csv");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_NEAR(rows[0].setup.heading.in_degrees(), 30, 1e-12);

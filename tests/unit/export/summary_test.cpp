@@ -44,7 +44,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       "           S7 " +
           explain(StationStatus::hole) + ", and is left out: move it\n");
   Evaluation pair{.stations = std::vector<PlacedStation>(2), .exact = true, .values = {{"coverage", {1, 0}}}};
-  pair.stations[0].kept = true;
+  pair.stations[0].existing = true;
   pair.overlap_matrix = OverlapMatrix(2);
   pair.overlap_matrix.set(0, 1, 0.3);
   EXPECT_EQ(summary_text(pair),
@@ -61,15 +61,15 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
 TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {
   std::vector<PlacedStation> stations(3);
   stations[0].position = {500'000.12345, 2.5, 1.85}, stations[0].ground = {500'000.12345, 2.5, -0.0001};
-  stations[0].kept = true;
+  stations[0].existing = true;
   stations[1].status = StationStatus::hole;
   stations[2].position = {-1, 20.0004, 3.1}, stations[2].ground = {-1, 20.0004, 1.25};
   const std::vector<std::uint64_t> points{12, 0, 345};
   EXPECT_EQ(station_table(stations, station_names(stations), points),
-            "station    ground x       y      z  head z  status    points on surveyed meshes\n"
-            "K1       500000.123   2.500  0.000   1.850  ok, kept                         12\n"
-            "S1                                          hole                              0\n"
-            "S2           -1.000  20.000  1.250   3.100  ok                              345\n");
+            "station    ground x       y      z  head z  status        points on surveyed meshes\n"
+            "K1       500000.123   2.500  0.000   1.850  ok, existing                         12\n"
+            "S1                                          hole                                  0\n"
+            "S2           -1.000  20.000  1.250   3.100  ok                                  345\n");
 }
 
 TEST(Summary, TheTableSaysHowStationsAreSetUpWhereAnyIsNotAsUsual) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/vantage.hpp"
@@ -42,12 +43,13 @@ SearchArea around() {
 }
 
 struct Survey {
-  Scene scene = cube();
-  SearchArea area = around();
-  ClashChecker clash{scene, {.lower_m = 0.6, .upper_m = 1.35, .radius_m = 0.3}};
-  Simulator simulator{scene,
-                      {.azimuth_step = Angle::degrees(1), .zenith_step = Angle::degrees(1), .height_m = 1.2},
-                      {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}};
+  explicit Survey(double radius_m = 0.3)
+      : site(test::site_of(
+            Simulator(cube(), {.azimuth_step = Angle::degrees(1), .zenith_step = Angle::degrees(1), .height_m = 1.2},
+                      {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}),
+            around(), {.lower_m = 0.6, .upper_m = 1.35, .radius_m = radius_m})) {}
+  Site site;
+  Simulator& simulator = site.simulator();
 };
 
 json without_seconds(json value) {
@@ -78,13 +80,13 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const test::TemporaryFolder folder;
   Survey survey;
   const PlanConfig config{.population = 8, .iterations = 6, .sample_voxels = 200, .seed = 3};
-  const PlanResult result = plan(survey.simulator, survey.area, survey.clash, asked(GetParam()), config);
+  const PlanResult result = plan(survey.site, asked(GetParam()), config);
   ASSERT_FALSE(result.front.empty());
   EXPECT_EQ(result.evaluations, 48u);
   const PlanEntry& entry = result.front[answer(result)];
   VoxelField seen;
   survey.simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &seen});
-  const std::size_t chosen = write_plan(folder / "out", result, survey.simulator, survey.area, &seen);
+  const std::size_t chosen = write_plan(folder / "out", result, survey.site, &seen);
   ASSERT_EQ(chosen, answer(result));
 
   for (const char* name :
@@ -146,7 +148,7 @@ TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {
   std::string texts[2];
   for (std::string& text : texts) {
     Survey survey;
-    text = front_json(plan(survey.simulator, survey.area, survey.clash, asked(GetParam()), config), survey.simulator);
+    text = front_json(plan(survey.site, asked(GetParam()), config), survey.simulator);
   }
   EXPECT_EQ(without_seconds(json::parse(texts[0])), without_seconds(json::parse(texts[1])));
   // Byte for byte, too: only lines inside "seconds" differ.
@@ -160,11 +162,11 @@ TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {
 TEST(Plan, SampledOfEveryVoxelIsExact) {
   Survey survey;
   PlanConfig config{.population = 6, .iterations = 3, .exact = true};
-  const PlanResult exact = plan(survey.simulator, survey.area, survey.clash, coverage_overlap_fix(3), config);
+  const PlanResult exact = plan(survey.site, coverage_overlap_fix(3), config);
   config.exact = false;
   config.batch = 1;  // as the exact search has it
   config.sample_voxels = survey.simulator.voxel_count();
-  const PlanResult sampled = plan(survey.simulator, survey.area, survey.clash, coverage_overlap_fix(3), config);
+  const PlanResult sampled = plan(survey.site, coverage_overlap_fix(3), config);
   ASSERT_EQ(exact.front.size(), sampled.front.size());
   for (std::size_t k = 0; k < exact.front.size(); ++k) {
     EXPECT_EQ(exact.front[k].x, sampled.front[k].x);
@@ -179,12 +181,12 @@ TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
   const test::TemporaryFolder folder;
   PlanConfig config{.population = 6, .iterations = 5, .sample_voxels = 100};
   Survey whole;
-  const PlanResult wanted = plan(whole.simulator, whole.area, whole.clash, coverage_overlap_fix(3), config);
+  const PlanResult wanted = plan(whole.site, coverage_overlap_fix(3), config);
   config.checkpoint = folder / "c";
   config.resume = true;
   std::stop_source stop;
   Survey first;
-  const PlanResult cut = plan(first.simulator, first.area, first.clash, coverage_overlap_fix(3), config,
+  const PlanResult cut = plan(first.site, coverage_overlap_fix(3), config,
                               {.report =
                                    [&](const PlanProgress& p) {
                                      if (p.evaluations >= 14) stop.request_stop();
@@ -193,26 +195,26 @@ TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
   EXPECT_EQ(cut.stop_reason, StopReason::cancelled);
   for (const PlanEntry& e : cut.front) EXPECT_TRUE(e.exact);  // what was found so far is still confirmed
   Survey second;
-  const PlanResult rest = plan(second.simulator, second.area, second.clash, coverage_overlap_fix(3), config);
+  const PlanResult rest = plan(second.site, coverage_overlap_fix(3), config);
   EXPECT_GE(rest.resumed_evaluations, 12u);
   ASSERT_EQ(rest.front.size(), wanted.front.size());
   for (std::size_t k = 0; k < rest.front.size(); ++k) EXPECT_EQ(rest.front[k].x, wanted.front[k].x);
 
-  const ClashChecker wider(second.scene, {.lower_m = 0.6, .upper_m = 1.35, .radius_m = 0.5});
-  EXPECT_THROW(plan(second.simulator, second.area, wider, coverage_overlap_fix(3), config), Error);
+  Survey wider(0.5);
+  EXPECT_THROW(plan(wider.site, coverage_overlap_fix(3), config), Error);
   config.seed = 2;
-  EXPECT_THROW(plan(second.simulator, second.area, second.clash, coverage_overlap_fix(3), config), Error);
+  EXPECT_THROW(plan(second.site, coverage_overlap_fix(3), config), Error);
 }
 
 TEST(Plan, KeepsStationsThatAreThere) {
   Survey survey;
   SurveyProblem problem = coverage_fix(1);
-  problem.kept = {kPlace + Vec3{-3, 0, 1.2}, kPlace + Vec3{3, 0, 1.2}};
-  const PlanResult result = plan(survey.simulator, survey.area, survey.clash, problem, {.iterations = 3});
+  problem.existing = {kPlace + Vec3{-3, 0, 1.2}, kPlace + Vec3{3, 0, 1.2}};
+  const PlanResult result = plan(survey.site, problem, {.iterations = 3});
   ASSERT_EQ(result.front.size(), 1u);
   ASSERT_EQ(result.front[0].stations.size(), 3u);
-  EXPECT_EQ(result.front[0].stations[0].position, problem.kept[0]);
-  EXPECT_EQ(result.front[0].stations[1].position, problem.kept[1]);
+  EXPECT_EQ(result.front[0].stations[0].position, problem.existing[0]);
+  EXPECT_EQ(result.front[0].stations[1].position, problem.existing[1]);
   EXPECT_GT(result.front[0].counts.points_on_surveyed[0], 0u);
 }
 
@@ -230,8 +232,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
                                   return std::sqrt(dot(way, way));
                                 }});
   problem.requirements = {{.objective = problem.objectives[1], .bound = Requirement::Bound::at_least, .limit = 3}};
-  const PlanResult result =
-      plan(survey.simulator, survey.area, survey.clash, problem, {.population = 12, .iterations = 20});
+  const PlanResult result = plan(survey.site, problem, {.population = 12, .iterations = 20});
   ASSERT_GT(result.front.size(), 1u);
   for (const PlanEntry& entry : result.front) {
     const Vec3 way = entry.stations[1].position - entry.stations[0].position;
@@ -243,7 +244,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   EXPECT_EQ(written["objectives"], (json{"coverage", "walk"}));
   EXPECT_EQ(written["front"][0]["values"]["walk"]["exact"].get<double>(), result.front[0].value("walk"));
   const test::TemporaryFolder folder;
-  write_plan(folder / "out", result, survey.simulator, survey.area);
+  write_plan(folder / "out", result, survey.site);
   EXPECT_NE(test::content(folder / "out/front.csv").find(",exact_walk,"), std::string::npos);
   EXPECT_NE(test::content(folder / "out/front.svg").size(), 0u);
 }

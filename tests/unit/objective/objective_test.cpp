@@ -24,7 +24,7 @@ struct Survey {
   MeasuredNetwork measured() const {
     return {.counts = counts,
             .stations = stations,
-            .kept = 1,
+            .existing = 1,
             .goal_density = 4,
             .voxels = 100,
             .overlap = overlap_matrix(counts),

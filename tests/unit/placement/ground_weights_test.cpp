@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "placement/ground_weights.hpp"
+
 #include <gtest/gtest.h>
 
 #include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
-#include "vantage/ground.hpp"
 
 namespace vantage {
 namespace {

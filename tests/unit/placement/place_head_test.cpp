@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "placement/place_head.hpp"
+
 #include <gtest/gtest.h>
 
 #include "placement_scenes.hpp"
-#include "vantage/placement.hpp"
 
 namespace vantage {
 namespace {
@@ -65,12 +66,12 @@ TEST_F(PlaceHead, WithoutAnAreaAnyGroundWillDo) {
 TEST(StationStatus, SaysWhoAddsToANetwork) {
   for (const auto status : {StationStatus::ok, StationStatus::off_ground, StationStatus::outside}) {
     EXPECT_TRUE(active({.uv = {}, .position = {}, .status = status}));
-    EXPECT_TRUE(active({.uv = {}, .position = {}, .status = status, .kept = true}));
+    EXPECT_TRUE(active({.uv = {}, .position = {}, .status = status, .existing = true}));
   }
   EXPECT_FALSE(active({.uv = {}, .position = {}, .status = StationStatus::clash}));
-  EXPECT_TRUE(active({.uv = {}, .position = {}, .status = StationStatus::clash, .kept = true})) << "it was scanned";
+  EXPECT_TRUE(active({.uv = {}, .position = {}, .status = StationStatus::clash, .existing = true})) << "it was scanned";
   for (const auto status : {StationStatus::hole, StationStatus::inside})
-    EXPECT_FALSE(active({.uv = {}, .position = {}, .status = status, .kept = true}));
+    EXPECT_FALSE(active({.uv = {}, .position = {}, .status = status, .existing = true}));
   EXPECT_EQ(to_string(StationStatus::off_ground), "off_ground");
   EXPECT_EQ(explain(StationStatus::ok), "");
   EXPECT_NE(explain(StationStatus::inside).find("inside"), std::string::npos);

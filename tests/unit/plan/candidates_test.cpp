@@ -9,6 +9,7 @@
 
 #include "plan/spread_positions.hpp"
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -152,11 +153,9 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
   SearchMesh mesh;
   add_ground(mesh, {0, 0, 0}, 30, 20, {0, 0}, {0.2, 1});
   add_ground(mesh, {40, 0, 5}, 10, 20, {0.3, 0}, {1, 1});
-  const SearchArea area = SearchArea::from_mesh(mesh);
   const Scene scene = QuadScene().quad({0, 0, -50}, {1, 0, 0}, {0, 1, 0}).scene();
-  const ClashChecker clash(scene);
-  const PlacementOracle site = make_placement_oracle(area, clash, coarse_scanner());
-  const SpreadPositions spread = spread_positions(site, area.mesh(), 1.5, 512);
+  Site site = test::site_of(Simulator(scene, coarse_scanner(), config()), SearchArea::from_mesh(mesh));
+  const SpreadPositions spread = spread_positions(make_placement_oracle(site), site.area().mesh(), 1.5, 512);
   ASSERT_EQ(spread.stations.size(), 512u);
   for (const std::size_t n : {64u, 128u, 512u}) {
     const auto in_large = std::count_if(spread.stations.begin(), spread.stations.begin() + static_cast<int>(n),
@@ -179,13 +178,12 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
 
 // Two equal walls, one behind the other and out of sight from all of the ground.
 TEST(Candidates, TellWhatIsAttainable) {
-  QuadScene site;
-  site.quad({5, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
-  site.quad({6, -2, -1.4f}, {0, 4, 0}, {0, 0, 3.4f});
-  Simulator simulator(site.scene(), coarse_scanner(0.5), config());
-  const SearchArea area = ground({0, -1, -1.5}, 2, 2);
-  const ClashChecker clash(simulator.scene());
-  const Candidates found = find_candidates(simulator, area, clash, {.first = 8, .most = 64, .sample_voxels = 0});
+  QuadScene walls;
+  walls.quad({5, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
+  walls.quad({6, -2, -1.4f}, {0, 4, 0}, {0, 0, 3.4f});
+  Site site = test::site_of(Simulator(walls.scene(), coarse_scanner(0.5), config()), ground({0, -1, -1.5}, 2, 2));
+  const Simulator& simulator = site.simulator();
+  const Candidates found = find_candidates(site, {.first = 8, .most = 64, .sample_voxels = every_voxel});
   double front = 0;
   for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) front += simulator.voxel_centre(rank).x < 5.5;
   const double share = front / static_cast<double>(simulator.voxel_count());
@@ -208,29 +206,29 @@ TEST(Candidates, TellWhatIsAttainable) {
 }
 
 TEST(Candidates, GrowAsFarAsTheyMay) {
-  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
-  const SearchArea area = ground({-8, -8, -1.5}, 12, 16);
-  const ClashChecker clash(simulator.scene());
-  const Candidates few = find_candidates(simulator, area, clash, {.first = 4, .most = 12, .change = 0});
+  Site site =
+      test::site_of(Simulator(wall_and_floor().scene(), coarse_scanner(3), config()), ground({-8, -8, -1.5}, 12, 16));
+  const Candidates few = find_candidates(site, {.first = 4, .most = 12, .change = 0});
   EXPECT_EQ(few.ended(), "most");
   EXPECT_EQ(few.stations().size(), 12u);
-  const Candidates more = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
+  const Candidates more = find_candidates(site, {.first = 4, .most = 48, .change = 0});
   EXPECT_LE(few.attainable().value, more.attainable().value);
   EXPECT_GT(few.spacing_m(), more.spacing_m());
-  const Candidates again = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
+  const Candidates again = find_candidates(site, {.first = 4, .most = 48, .change = 0});
   EXPECT_EQ(again.attainable().value, more.attainable().value);
-  const Candidates timed =
-      find_candidates(simulator, area, clash, {.first = 100, .most = 1000, .change = 0, .max_seconds = 1e-6});
+  const Candidates timed = find_candidates(site, {.first = 100, .most = 1000, .change = 0, .max_seconds = 1e-6});
   EXPECT_EQ(timed.ended(), "time");
   EXPECT_GT(timed.stations().size(), 0u);
   EXPECT_LT(timed.stations().size(), 1000u);
 }
 
-TEST(Candidates, RefuseGroundWithoutAPlaceToStand) {
-  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
-  const SearchArea area = ground({4.9, -1, -1.5}, 0.2, 2);  // in the wall
-  const ClashChecker clash(simulator.scene());
-  EXPECT_THROW(find_candidates(simulator, area, clash), Error);
+TEST(Candidates, RefuseGroundWithoutAPlaceToStandAndSamplesOfNothing) {
+  const auto site_on = [](const SearchArea& area) {
+    return test::site_of(Simulator(wall_and_floor().scene(), coarse_scanner(3), config()), area);
+  };
+  Site in_the_wall = site_on(ground({4.9, -1, -1.5}, 0.2, 2)), site = site_on(ground({-8, -8, -1.5}, 12, 16));
+  EXPECT_THROW(find_candidates(in_the_wall), Error);
+  EXPECT_THROW(find_candidates(site, {.sample_voxels = 0}), Error);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(DecisionSpace, DecodesByEquation7) {
 TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
   const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 2);
-  config.kept = {{5, 5, 9}};  // above the hole: it was scanned from there all the same
+  config.existing = {{5, 5, 9}};  // above the hole: it was scanned from there all the same
   config.heights_m = {1, 2};
   const DecisionSpace space(site, config);
   const std::vector<double> x{0.1, 0.1, 0.9, 0.9, 1.25, 1.75};
@@ -68,7 +68,7 @@ TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
   EXPECT_EQ(placed[1].position.z, 4.25);
   EXPECT_EQ(placed[2].position.z, 4.75);
   EXPECT_EQ(space.coordinates(2), (std::vector<std::size_t>{2, 3, 5}));
-  EXPECT_TRUE(placed[0].kept && !placed[1].kept);
+  EXPECT_TRUE(placed[0].existing && !placed[1].existing);
 }
 
 TEST(DecisionSpace, ChoosesScannersInEqualShares) {
@@ -102,14 +102,14 @@ TEST(DecisionSpace, ChoosesScannersInEqualShares) {
 TEST(DecisionSpace, KeptStationsStandAsTheyStood) {
   const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(1, 1);
-  config.kept = {{5, 5, 9}, {1, 1, 4}};
-  config.kept_setups = {{.tilt = Angle::degrees(90)}, {.scanner = 1}};
+  config.existing = {{5, 5, 9}, {1, 1, 4}};
+  config.existing_setups = {{.tilt = Angle::degrees(90)}, {.scanner = 1}};
   const auto placed = DecisionSpace(site, config).decode(std::vector<double>{0.1, 0.1});
-  EXPECT_EQ(placed[0].setup, config.kept_setups[0]);
-  EXPECT_EQ(placed[1].setup, config.kept_setups[1]);
+  EXPECT_EQ(placed[0].setup, config.existing_setups[0]);
+  EXPECT_EQ(placed[1].setup, config.existing_setups[1]);
   EXPECT_EQ(placed[2].setup, StationSetup());
-  EXPECT_EQ(to_network(placed)[0].setup, config.kept_setups[0]);
-  config.kept_setups.pop_back();
+  EXPECT_EQ(to_network(placed)[0].setup, config.existing_setups[0]);
+  config.existing_setups.pop_back();
   EXPECT_THROW(DecisionSpace(site, config), Error);
 }
 
@@ -168,7 +168,7 @@ TEST(DecisionSpace, RefusesWhatCannotBe) {
   refused(stations(5, 4), "5 is above stations_max 4");
   refused(stations(4, 1025), "1025 were asked for");
   SurveyProblem config = stations(4, 1024);
-  config.kept = {{1, 1, 1}};
+  config.existing = {{1, 1, 1}};
   refused(config, "1025 were asked for");
   config = stations(4, 4);
   config.heights_m = {2, 1};

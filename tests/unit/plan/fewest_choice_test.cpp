@@ -27,7 +27,7 @@ TEST(FewestAsked, TakesTheStrictestLimits) {
   problem.attainable = 0.5;
   for (Requirement& requirement : problem.requirements)
     if (requirement.objective.name == "capture") requirement.objective = make_objective("capture", problem.settings());
-  problem.kept = {{1, 1, 4.5}};
+  problem.existing = {{1, 1, 4.5}};
   FewestAsked asked = fewest_asked(problem);
   EXPECT_EQ(asked.existing, 1u);
   EXPECT_EQ(asked.fewest, 2u);

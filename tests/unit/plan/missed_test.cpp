@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/missed.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "plan/why_missed.hpp"
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -36,26 +37,26 @@ struct Walls {
     config.engine = Engine::embree;
     config.user_size_m = 0.5;
     config.point_spacing_m = 0.1;
-    simulator = std::make_unique<Simulator>(quads.scene(), scanner, config);
-    clash = std::make_unique<ClashChecker>(simulator->scene());
-    ranks.resize(simulator->voxel_count());
+    site.emplace(test::site_of(Simulator(quads.scene(), scanner, config)));
+    ranks.resize(simulator().voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    patches = simulator->voxel_patches(ranks);
+    patches = simulator().voxel_patches(ranks);
   }
 
+  Simulator& simulator() { return site->simulator(); }
+
   Scanner scanner;
-  std::unique_ptr<Simulator> simulator;
-  std::unique_ptr<ClashChecker> clash;
+  std::optional<Site> site;
   std::vector<std::uint32_t> ranks;
   std::vector<VoxelPatch> patches;
   std::vector<PlacedStation> candidates{at({0, 0, 0}), at({0.2, 0.2, 0})};
 };
 
 TEST(VoxelPatches, LieOnTheirSurfaces) {
-  const Walls site;
+  Walls walls;
   const std::array<Vec3, 5> normals{{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}}};
   std::array<double, 5> area{};
-  for (const VoxelPatch& patch : site.patches) {
+  for (const VoxelPatch& patch : walls.patches) {
     ASSERT_LT(patch.mesh, 5u);
     area[patch.mesh] += patch.area_m2;
     if (patch.area_m2 == 0) continue;
@@ -69,19 +70,19 @@ TEST(VoxelPatches, LieOnTheirSurfaces) {
 }
 
 TEST(WhyMissed, TellsEachReason) {
-  const Walls site;
-  const std::vector<std::uint32_t> none(site.ranks.size());
-  const std::vector<VoxelStatus> status = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
+  Walls walls;
+  const std::vector<std::uint32_t> none(walls.ranks.size());
+  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.ranks, none);
   const std::array<WhyMissed, 5> expected{WhyMissed::not_chosen, WhyMissed::hidden, WhyMissed::far, WhyMissed::flat,
                                           WhyMissed::sparse};
-  const double face = site.simulator->voxel_size_m() * site.simulator->voxel_size_m();
+  const double face = walls.simulator().voxel_size_m() * walls.simulator().voxel_size_m();
   std::array<std::size_t, 5> whole{};
   double points = 0, attainable = 0, sparse = 0;
   VoxelField field, other;
-  site.simulator->evaluate(to_network(std::span(site.candidates).first(1)), {.field = &field});
-  site.simulator->evaluate(to_network(std::span(site.candidates).last(1)), {.field = &other});
+  walls.simulator().evaluate(to_network(std::span(walls.candidates).first(1)), {.field = &field});
+  walls.simulator().evaluate(to_network(std::span(walls.candidates).last(1)), {.field = &other});
   for (std::size_t i = 0; i < status.size(); ++i) {
-    const VoxelPatch& patch = site.patches[i];
+    const VoxelPatch& patch = walls.patches[i];
     if (patch.area_m2 < 0.95 * face) continue;  // a wall's rim
     ++whole[patch.mesh];
     const WhyMissed why = status[i].why;
@@ -95,11 +96,11 @@ TEST(WhyMissed, TellsEachReason) {
     }
     if (why == WhyMissed::sparse) {
       points += (field.count[i] + other.count[i]) / 2.0;
-      attainable += status[i].attainable * site.simulator->goal_density();
+      attainable += status[i].attainable * walls.simulator().goal_density();
       ++sparse;
     }
     if (why == WhyMissed::not_chosen) {
-      EXPECT_GE(most, site.simulator->goal_density());
+      EXPECT_GE(most, walls.simulator().goal_density());
       EXPECT_EQ(status[i].attainable, 1);
     }
   }
@@ -110,18 +111,18 @@ TEST(WhyMissed, TellsEachReason) {
 }
 
 TEST(WhyMissed, KnowsWhatIsCaptured) {
-  const Walls site;
-  const auto enough = static_cast<std::uint32_t>(std::ceil(site.simulator->goal_density()));
-  std::vector<std::uint32_t> points(site.ranks.size(), enough);
+  Walls walls;
+  const auto enough = static_cast<std::uint32_t>(std::ceil(walls.simulator().goal_density()));
+  std::vector<std::uint32_t> points(walls.ranks.size(), enough);
   points[0] = enough - 1;
-  const std::vector<VoxelStatus> status = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
+  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.ranks, points);
   EXPECT_NE(status[0].why, WhyMissed::captured);
   EXPECT_TRUE(
       std::all_of(status.begin() + 1, status.end(), [](const VoxelStatus& s) { return s.why == WhyMissed::captured; }));
-  const std::vector<MissedShare> shares = missed_by_node(*site.simulator, site.ranks, status);
+  const std::vector<MissedShare> shares = missed_by_node(walls.simulator(), walls.ranks, status);
   ASSERT_EQ(shares.size(), 6u);
-  EXPECT_EQ(shares[0].voxels, site.ranks.size());
-  const double part = points[0] / site.simulator->goal_density(), voxels = static_cast<double>(site.ranks.size());
+  EXPECT_EQ(shares[0].voxels, walls.ranks.size());
+  const double part = points[0] / walls.simulator().goal_density(), voxels = static_cast<double>(walls.ranks.size());
   EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - (1 - part) / voxels, 1e-6);
   for (const MissedShare& share : shares)
     EXPECT_NEAR(std::accumulate(share.shares.begin(), share.shares.end(), 0.0), 1, 1e-6) << share.node;
@@ -134,11 +135,11 @@ TEST(WhyMissed, KnowsWhatIsCaptured) {
 }
 
 TEST(WhyMissed, RefusesWhatDoesNotFit) {
-  const Walls site;
-  const std::vector<std::uint32_t> none(site.ranks.size()), one(1), outside{0xFFFFFFF0u};
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, one), Error);
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, {}, site.ranks, none), Error);
-  EXPECT_THROW(why_missed(*site.simulator, *site.clash, site.candidates, outside, one), Error);
+  Walls walls;
+  const std::vector<std::uint32_t> none(walls.ranks.size()), one(1), outside{0xFFFFFFF0u};
+  EXPECT_THROW(why_missed(*walls.site, walls.candidates, walls.ranks, one), Error);
+  EXPECT_THROW(why_missed(*walls.site, {}, walls.ranks, none), Error);
+  EXPECT_THROW(why_missed(*walls.site, walls.candidates, outside, one), Error);
 }
 
 }  // namespace

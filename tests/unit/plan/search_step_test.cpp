@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene_builder.hpp"
@@ -70,11 +71,15 @@ std::vector<Scanner> scanners() {
   return both;
 }
 
+Site closet_or_hall() {
+  return test::site_of(
+      Simulator(closet_and_hall(), scanners(), {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2}),
+      middles(), {.radius_m = 0});
+}
+
 TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
-  const Scene scene = closet_and_hall();
-  const std::vector<Scanner> both = scanners();
-  Simulator simulator(scene, both, {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
-  const ClashChecker clash(scene, {.radius_m = 0});
+  Site site = closet_or_hall();
+  Simulator& simulator = site.simulator();
 
   // Coverage of each choice, from the middles.
   const auto captured = [&](std::uint32_t in_closet, std::uint32_t in_hall) {
@@ -91,8 +96,7 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
   SurveyProblem problem = survey_problem(objectives, 2, 2);
   problem.scanners = {0, 1};
   problem.on_site.set_up_min = 0;
-  const PlanResult result =
-      plan(simulator, middles(), clash, problem, {.population = 16, .iterations = 30, .sample_voxels = 500, .seed = 4});
+  const PlanResult result = plan(site, problem, {.population = 16, .iterations = 30, .sample_voxels = 500, .seed = 4});
   bool found = false;
   for (const PlanEntry& entry : result.front) {
     ASSERT_TRUE(entry.exact);
@@ -116,21 +120,18 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
 }
 
 TEST(SearchStep, TheFewestStationsAreChosenByTheStepThatSeesMost) {
-  const Scene scene = closet_and_hall();
-  const std::vector<Scanner> both = scanners();
-  Simulator simulator(scene, both, {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
-  const ClashChecker clash(scene, {.radius_m = 0});
+  Site site = closet_or_hall();
   SurveyProblem problem = fewest_stations(0.9, 0, 1, 8, 0);
   problem.scanners = {0, 1};
   const PlanConfig config{.population = 6, .iterations = 4, .sample_voxels = 500, .seed = 4};
-  const PlanResult result = plan(simulator, middles(), clash, problem, config);
+  const PlanResult result = plan(site, problem, config);
   ASSERT_FALSE(result.front.empty());
   EXPECT_EQ(result.front.front().violation, 0) << "the coarse step, the first of the list, cannot capture as much";
   ASSERT_TRUE(result.candidates);
   for (const PlacedStation& candidate : result.candidates->stations()) EXPECT_EQ(candidate.setup.scanner, 1u);
 
   problem.scanners = {0, 2};
-  EXPECT_THROW(plan(simulator, middles(), clash, problem, config), Error);
+  EXPECT_THROW(plan(site, problem, config), Error);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "unit/plan/toy_survey.hpp"
 #include "vantage/error.hpp"
 
@@ -29,19 +30,18 @@ class SeedNetworks : public testing::Test {
     return SearchArea::from_mesh(mesh);
   }
 
-  Simulator simulator{test::wall_and_floor().scene(), test::coarse_scanner(3), config()};
-  SearchArea area = ground();
-  ClashChecker clash{simulator.scene()};
+  Site site = test::site_of(Simulator(test::wall_and_floor().scene(), test::coarse_scanner(3), config()), ground());
+  Simulator& simulator = site.simulator();
 };
 
 TEST_F(SeedNetworks, GreedyTakesWhatAddsMost) {
-  const GreedyConfig config{.stations = 4, .candidates = 40, .sample_voxels = 0};
-  const GreedyResult result = greedy_network(simulator, area, clash, config);
+  const GreedyConfig config{.stations = 4, .candidates = 40, .sample_voxels = every_voxel};
+  const GreedyResult result = greedy_network(site, config);
   ASSERT_EQ(result.stations.size(), 4u);
   ASSERT_EQ(result.coverage.size(), 4u);
   EXPECT_FALSE(result.cancelled);
   // Every candidate tried again at every step, by every ray.
-  const auto candidates = candidate_positions(area, clash, simulator.scanner(), 40);
+  const auto candidates = candidate_positions(site, 40);
   const auto coverage_of = [&](const std::vector<PlacedStation>& network) {
     return coverage(simulator.evaluate(to_network(network)), simulator.goal_density());
   };
@@ -64,10 +64,10 @@ TEST_F(SeedNetworks, GreedyTakesWhatAddsMost) {
 }
 
 TEST_F(SeedNetworks, GreedyAddsToWhatIsThere) {
-  const GreedyResult alone = greedy_network(simulator, area, clash, {.stations = 3, .candidates = 40});
+  const GreedyResult alone = greedy_network(site, {.stations = 3, .candidates = 40});
   GreedyConfig config{.stations = 2, .candidates = 40};
   config.existing = {alone.stations[0].position};
-  const GreedyResult rest = greedy_network(simulator, area, clash, config);
+  const GreedyResult rest = greedy_network(site, config);
   ASSERT_EQ(rest.stations.size(), 2u);
   EXPECT_EQ(rest.stations[0].position, alone.stations[1].position);
   EXPECT_EQ(rest.stations[1].position, alone.stations[2].position);
@@ -75,7 +75,7 @@ TEST_F(SeedNetworks, GreedyAddsToWhatIsThere) {
 }
 
 TEST_F(SeedNetworks, GreedyKeepsTheNumberAskedThoughNothingIsAdded) {
-  const GreedyResult all = greedy_network(simulator, area, clash, {.stations = 40, .candidates = 40});
+  const GreedyResult all = greedy_network(site, {.stations = 40, .candidates = 40});
   ASSERT_EQ(all.stations.size(), 40u);
   EXPECT_TRUE(std::ranges::is_sorted(all.coverage));
   for (std::size_t i = 0; i < 40; ++i) {
@@ -85,9 +85,9 @@ TEST_F(SeedNetworks, GreedyKeepsTheNumberAskedThoughNothingIsAdded) {
 }
 
 TEST_F(SeedNetworks, GreedyRefusesWhatMakesNoSense) {
-  EXPECT_THROW(greedy_network(simulator, area, clash, {.stations = 8, .candidates = 5}), Error);
-  EXPECT_THROW(greedy_network(simulator, area, clash, {.stations = 0}), Error);
-  EXPECT_THROW(greedy_network(simulator, area, clash, {.stations = max_stations + 1, .candidates = 2000}), Error);
+  EXPECT_THROW(greedy_network(site, {.stations = 8, .candidates = 5}), Error);
+  EXPECT_THROW(greedy_network(site, {.stations = 0}), Error);
+  EXPECT_THROW(greedy_network(site, {.stations = max_stations + 1, .candidates = 2000}), Error);
 }
 
 TEST_F(SeedNetworks, GreedyStopsWhenTold) {
@@ -95,8 +95,8 @@ TEST_F(SeedNetworks, GreedyStopsWhenTold) {
   const auto report = [&](double done) {
     if (done > 0.3) stop.request_stop();
   };
-  const GreedyResult result = greedy_network(simulator, area, clash, {.stations = 6, .candidates = 200},
-                                             {.report = report, .stop = stop.get_token()});
+  const GreedyResult result =
+      greedy_network(site, {.stations = 6, .candidates = 200}, {.report = report, .stop = stop.get_token()});
   EXPECT_TRUE(result.cancelled);
   EXPECT_TRUE(result.stations.empty());
 }

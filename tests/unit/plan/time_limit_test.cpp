@@ -6,6 +6,7 @@
 #include <stop_token>
 
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
@@ -19,14 +20,15 @@ class TimeLimit : public testing::Test {
                                   .triangles = {{0, 1, 2}, {0, 2, 3}}});
   }
   PlanResult plan(const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch = {}) {
-    return vantage::plan(simulator_, area_, clash_, problem, config, watch);
+    return vantage::plan(site_, problem, config, watch);
   }
 
-  Scene scene_ = test::wall_and_floor().scene();
-  Simulator simulator_{
-      scene_, test::coarse_scanner(), {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2}};
-  SearchArea area_ = ground();
-  ClashChecker clash_{scene_, {.radius_m = 0}};
+  static Site site(const Scanner& scanner) {
+    return test::site_of(Simulator(test::wall_and_floor().scene(), scanner,
+                                   {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2}),
+                         ground(), {.radius_m = 0});
+  }
+  Site site_ = site(test::coarse_scanner());
 };
 
 TEST_F(TimeLimit, EndsTheLookAndClaimsNothing) {
@@ -44,10 +46,9 @@ TEST_F(TimeLimit, EndsTheLookAndClaimsNothing) {
 TEST_F(TimeLimit, EndsTheSearchAndConfirmsWhatItFound) {
   double longest = 0;
   // Few rays, so that networks differ: with more, all capture everything, and the search ends by itself.
-  Simulator few_rays(scene_, test::coarse_scanner(5),
-                     {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
+  Site few_rays = site(test::coarse_scanner(5));
   const PlanResult result =
-      vantage::plan(few_rays, area_, clash_, coverage_overlap_fix(3),
+      vantage::plan(few_rays, coverage_overlap_fix(3),
                     {.population = 10, .iterations = 100'000'000, .sample_voxels = 200, .max_seconds = 2},
                     {.report = [&](const PlanProgress& now) { longest = std::max(longest, now.seconds_left); }});
   EXPECT_EQ(result.stop_reason, StopReason::max_time);
@@ -75,8 +76,8 @@ TEST_F(TimeLimit, ALookCutShortLeavesCaptureUnknown) {
   ASSERT_TRUE(met(result));
   std::stop_source stop;
   stop.request_stop();
-  result.candidates = std::make_shared<const Candidates>(
-      find_candidates(simulator_, area_, clash_, {}, {.report = {}, .stop = stop.get_token()}));
+  result.candidates =
+      std::make_shared<const Candidates>(find_candidates(site_, {}, {.report = {}, .stop = stop.get_token()}));
   EXPECT_FALSE(met(result));
   ASSERT_EQ(what_would_help(result).size(), 1u);
   EXPECT_NE(what_would_help(result)[0].find("cut short"), std::string::npos);

@@ -95,7 +95,7 @@ class ToyEvaluator final : public NetworkEvaluator {
     counts.weight = 1, counts.partial_points = static_cast<std::uint64_t>(whole * coverage_of(network));
     return measure.value({.counts = counts,
                           .stations = network,
-                          .kept = 0,
+                          .existing = 0,
                           .goal_density = whole,
                           .voxels = 1,
                           .overlap = near(network),

@@ -12,14 +12,14 @@
 namespace vantage {
 namespace {
 
-struct Site {
+struct Surveyed {
   Scene scene = test::wall_and_floor({1000, 2000, 50}).scene();
   Simulator simulator{
       scene, test::coarse_scanner(), {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}};
 };
 
 TEST(CoverageCells, HoldEverySampledVoxelInItsCube) {
-  Site site;
+  Surveyed site;
   for (const std::size_t most : {100'000u, 60u, 7u}) {
     const CoverageCells cells = coverage_cells(site.simulator, 100'000, most);
     ASSERT_EQ(cells.ranks.size(), site.simulator.voxel_count());
@@ -37,7 +37,7 @@ TEST(CoverageCells, HoldEverySampledVoxelInItsCube) {
 }
 
 TEST(CoverageCells, ColoursAreMeansOfTheirVoxels) {
-  Site site;
+  Surveyed site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 60);
   const double goal = site.simulator.goal_density();
   std::vector<std::uint32_t> counts;  // up to nearly twice the goal
@@ -71,7 +71,7 @@ TEST(CoverageCells, TellWhetherOneStationSeesAlone) {
 }
 
 TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
-  Site site;
+  Surveyed site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 100'000);
   // Only voxels of one end are known: all others copy the edge of the known ones.
   std::vector<std::uint32_t> ranks, counts;
@@ -88,7 +88,7 @@ TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
 }
 
 TEST(CoverageCells, ReasonsAreTheCommonestAround) {
-  Site site;
+  Surveyed site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 60);
   std::vector<VoxelStatus> why;
   for (const std::uint32_t rank : cells.ranks)

@@ -14,6 +14,7 @@
 
 #include "report/report_json.hpp"
 #include "support/quad_scene.hpp"
+#include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
 
@@ -21,13 +22,17 @@ namespace vantage {
 namespace {
 
 struct Survey {
-  Scene scene = test::wall_and_floor().scene();
-  SearchArea area = SearchArea::build(scene);
-  ClashChecker clash{scene};
-  Simulator simulator{
-      scene, test::coarse_scanner(2), {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}};
-  PlanResult result = plan(simulator, area, clash, coverage_overlap_fix(3),
-                           {.population = 6, .iterations = 3, .sample_voxels = 100, .seed = 2});
+  explicit Survey(const std::string& crs = "")
+      : site(test::wall_and_floor().scene(),
+             {.scanners = {test::coarse_scanner(2)},
+              .user_size_m = 0.4,
+              .spacing_m = 0.1,
+              .engine = Engine::embree,
+              .crs = crs},
+             "A wall") {}
+  Site site;
+  PlanResult result =
+      plan(site, coverage_overlap_fix(3), {.population = 6, .iterations = 3, .sample_voxels = 100, .seed = 2});
 };
 
 std::string read(const std::filesystem::path& file) {
@@ -44,7 +49,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Report, HasTheNumbersOfThePlan) {
   Survey survey;
-  const auto json = report_json(report_of(survey.result, survey.simulator, {}));
+  const auto json = report_json(report_of(survey.result, survey.site, {}));
   EXPECT_EQ(json["answer"], answer(survey.result));
   ASSERT_EQ(json["networks"].size(), survey.result.front.size());
   for (std::size_t k = 0; k < survey.result.front.size(); ++k) {
@@ -65,7 +70,7 @@ TEST(Report, HasTheNumbersOfThePlan) {
 TEST(Report, ThePageNamesNoAddressToLoadFrom) {
   const test::TemporaryFolder folder;
   Survey survey;
-  write_report(folder / "report.html", survey.result, survey.simulator, survey.area,
+  write_report(folder / "report.html", survey.result, survey.site,
                {.title = "a </title><script>alert(1)</script> & b", .command = "vantage plan '</script><!--.glb'"});
   const std::string page = read(folder / "report.html");
   EXPECT_LT(page.size(), 5'000'000u);
@@ -109,18 +114,17 @@ const Word* find(const std::vector<Word>& words, const std::string& text) {
 
 TEST(Report, SheetsNameEveryStationAndKeepTheirRatio) {
   const test::TemporaryFolder folder;
-  Survey survey;
+  Survey survey("EPSG:25832");
   // Stations on a grid of 2 m, in a round that begins at the last.
   std::vector<PlacedStation> stations;
   for (int k = 0; k < 40; ++k) {
     const Vec3 ground{-8 + 2.0 * (k % 8), -4 + 2.0 * static_cast<double>(k / 8), -1.5};
     stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
   }
-  Evaluation found = evaluate_stations({.simulator = survey.simulator}, stations, {.field = true});
-  found.visit = OnSite(survey.area, survey.clash, survey.simulator.scanner()).visit(stations);
+  Evaluation found = evaluate_stations({.simulator = survey.site.simulator()}, stations, {.field = true});
+  found.visit = survey.site.on_site().visit(stations);
   std::ranges::reverse(found.visit->order);
-  write_report(folder / "report.pdf", found, survey.simulator, survey.area,
-               {.title = "A wall", .crs = "EPSG:25832", .date = "3 May"});
+  write_report(folder / "report.pdf", found, survey.site, {.date = "3 May"});
   const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
   ASSERT_GE(sheets.size(), 3u) << "front, map and table";
   const auto on_some = [&](const std::string& text, std::size_t first, std::size_t last) {
@@ -186,7 +190,7 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
   MissedVoxels missed;
   missed.shares.assign(200,
                        {.node = "a mesh with a name that is far too long for its column", .voxels = 10, .shares = {1}});
-  write_report(folder / "report.pdf", survey.result, survey.simulator, survey.area, {.missed = &missed});
+  write_report(folder / "report.pdf", survey.result, survey.site, {.missed = &missed});
   const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
   std::set<std::string> names;
   for (const auto& sheet : sheets)
@@ -194,7 +198,7 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
       if (word.text.starts_with("S")) names.insert(word.text);
   for (std::size_t k = 0; k < max_stations; ++k) EXPECT_TRUE(names.contains("S" + std::to_string(k + 1))) << k + 1;
   EXPECT_LT(sheets.size(), 60u);
-  write_report(folder / "report.html", survey.result, survey.simulator, survey.area, {.pictures = false});
+  write_report(folder / "report.html", survey.result, survey.site, {.pictures = false});
   EXPECT_LT(std::filesystem::file_size(folder / "report.html"), 5'000'000u);
 }
 
@@ -202,15 +206,15 @@ TEST(Report, OfANetworkThatNoPlanFoundHasItsFigures) {
   const test::TemporaryFolder folder;
   Survey survey;
   const Evaluation found =
-      evaluate_stations({.simulator = survey.simulator}, survey.result.front.front().stations, {.field = true});
-  const auto json = report_json(report_of(found, survey.simulator, {}));
+      evaluate_stations({.simulator = survey.site.simulator()}, survey.result.front.front().stations, {.field = true});
+  const auto json = report_json(report_of(found, survey.site, {}));
   ASSERT_EQ(json["networks"].size(), 1u);
   EXPECT_EQ(json["networks"][0]["coverage"], found.value("coverage"));
   EXPECT_EQ(json["question"], "3 stations, as given");
   EXPECT_TRUE(json["axes"].empty());
-  write_report(folder / "a.html", found, survey.simulator, survey.area, {.title = "A wall", .pictures = false});
+  write_report(folder / "a.html", found, survey.site, {.pictures = false});
   EXPECT_EQ(count(read(folder / "a.html"), "<title>A wall – survey plan</title>"), 1u);
-  EXPECT_THROW(write_report(folder / "a.txt", found, survey.simulator, survey.area), Error);
+  EXPECT_THROW(write_report(folder / "a.txt", found, survey.site), Error);
   EXPECT_TRUE(why_no_report().empty());
 }
 

@@ -113,15 +113,15 @@ TEST(SettledPlan, KeepsWhatIsGivenAndIsSettledOnce) {
   EXPECT_THROW(settled({.exact = true, .sample_voxels = 10}, coverage_fix(4), 100, 1), Error);
 }
 
-TEST(PlanOfASite, IsThatOfItsParts) {
+TEST(PlanOfASite, IsThatOfItsPartsAndProblem) {
   const PlanConfig config{.population = 4, .iterations = 2, .sample_voxels = 100, .seed = 3};
   SurveyQuestion question;
   question.objectives = {"coverage"}, question.stations = {2, 2};
   Site site = small_site();
   const PlanResult whole = plan(site, question, config);
-  Site parts = small_site();
-  const PlanResult by_parts =
-      plan(parts.simulator(), parts.area(), parts.clash(), survey_problem(parts, question), config);
+  Site parts(Simulator(site.scene(), site.scanners(), site.simulator_config()),
+             SearchArea::build(site.scene(), site.walkable()), ClashChecker(site.scene(), site.security()));
+  const PlanResult by_parts = plan(parts, survey_problem(parts, question), config);
   ASSERT_EQ(whole.front.size(), by_parts.front.size());
   EXPECT_EQ(whole.front[0].x, by_parts.front[0].x);
   EXPECT_EQ(whole.front[0].value("coverage"), by_parts.front[0].value("coverage"));

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "evaluate/sight_targets.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
@@ -47,8 +48,7 @@ Site tunnel() {
 std::vector<PlacedStation> stations_of(Site& site) {
   std::vector<PlacedStation> stations;
   for (const double x : {10.0, 25.0, 40.0, 52.0})
-    stations.push_back(
-        place_head(&site.area(), site.clash(), site.scanner().height_m, {x, 0.3, site.scanner().height_m}).station);
+    stations.push_back(site.place_head({x, 0.3, site.scanner().height_m}).station);
   return stations;
 }
 
@@ -82,7 +82,7 @@ TEST(Targets, AreProposedWhereTheyHelpMost) {
   const auto best = propose_targets(site, stations, {}, {.most = 1});
   ASSERT_TRUE(best);
   ASSERT_EQ(best->targets.size(), 1u);
-  const auto all = candidate_positions(site.area(), site.clash(), site.scanner(), 400);
+  const auto all = candidate_positions(site, 400);
   int tried = 0;
   for (std::size_t k = 0; k < all.size(); k += 40) {
     Target other{.name = "other", .centre = all[k].ground + Vec3{0, 0, TargetOptions().height_m}};
