@@ -68,20 +68,25 @@ class Surface {
  public:
   explicit Surface(const char* name) : name_(name) {}
 
-  void add(const FlatRegion& region, const Rectangle& of, double cell_m, bool turned) {
-    const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
-    const std::array<std::int32_t, 2> u{of.low[0], of.high[0]}, v{of.low[1], of.high[1]};
-    for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-      Eigen::Vector3d p;
-      p[(region.axis + 1) % 3] = u[static_cast<std::size_t>(a)];
-      p[(region.axis + 2) % 3] = v[static_cast<std::size_t>(b)];
-      p[region.axis] = region.height(p[(region.axis + 1) % 3], p[(region.axis + 2) % 3]);
-      p *= cell_m;
-      for (const double c : {p.x(), p.z(), -p.y()}) positions_.push_back(static_cast<float>(c));
-    }
+  void add(const FlatRegion& region, const std::vector<Square>& squares, double cell_m, bool turned) {
+    const std::vector<Rectangle> all = rectangles(squares);
+    const Outlines outlines(all);
     const bool forwards = (region.normal[region.axis] > 0) != turned;
-    for (const std::uint32_t k : forwards ? std::array{0U, 1U, 2U, 0U, 2U, 3U} : std::array{0U, 2U, 1U, 0U, 3U, 2U})
-      indices_.push_back(first + k);
+    for (const Rectangle& rectangle : all) {
+      const std::vector<Square> outline = outlines.of(rectangle);
+      const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
+      const auto count = static_cast<std::uint32_t>(outline.size());
+      for (const Square& corner : outline) add_corner(region, corner[0], corner[1], cell_m);
+      if (count == 4) {
+        add_triangle({first, first + 1, first + 2}, forwards);
+        add_triangle({first, first + 2, first + 3}, forwards);
+        continue;
+      }
+      add_corner(region, 0.5 * (rectangle.low[0] + rectangle.high[0]), 0.5 * (rectangle.low[1] + rectangle.high[1]),
+                 cell_m);
+      for (std::uint32_t k = 0; k < count; ++k)
+        add_triangle({first + k, first + (k + 1) % count, first + count}, forwards);
+    }
   }
 
   std::size_t triangles() const { return indices_.size() / 3; }
@@ -95,6 +100,17 @@ class Surface {
   }
 
  private:
+  void add_corner(const FlatRegion& region, double u, double v, double cell_m) {
+    Eigen::Vector3d p;
+    p[(region.axis + 1) % 3] = u, p[(region.axis + 2) % 3] = v, p[region.axis] = region.height(u, v);
+    p *= cell_m;
+    for (const double c : {p.x(), p.z(), -p.y()}) positions_.push_back(static_cast<float>(c));
+  }
+  void add_triangle(std::array<std::uint32_t, 3> corners, bool forwards) {
+    if (!forwards) std::swap(corners[1], corners[2]);
+    indices_.insert(indices_.end(), corners.begin(), corners.end());
+  }
+
   const char* name_;
   std::vector<float> positions_;
   std::vector<std::uint32_t> indices_;
@@ -199,9 +215,9 @@ class Converter {
                          : region.normal.z() <= -kGround           ? ceilings_
                          : std::abs(region.normal.z()) <= kUpright ? walls_
                                                                    : slopes_;
-      for (const Rectangle& rectangle : rectangles(known)) surface.add(region, rectangle, grid_->cell_m(), false);
+      surface.add(region, known, grid_->cell_m(), false);
       // Nobody stands on what faces down.
-      for (const Rectangle& rectangle : rectangles(unknown)) unknown_.add(region, rectangle, grid_->cell_m(), true);
+      unknown_.add(region, unknown, grid_->cell_m(), true);
       unknown_m2_ += square_m2 * static_cast<double>(unknown.size()) / std::max(region.normal.z(), kGround);
     }
     if (triangles() == 0) throw Refused("no surface shows in its points; export more of them");

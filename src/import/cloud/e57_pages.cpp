@@ -28,6 +28,7 @@ E57Pages::E57Pages(const std::filesystem::path& file) : file_(file) {
                   std::to_string(file_.size()) + "; copy or export it again");
   content_ = page_bytes_ - kChecksum;
   pages_ = file_.size() / page_bytes_;
+  load(0);  // whose checksum covers the header
 }
 
 std::uint64_t E57Pages::logical(std::uint64_t physical) const {

@@ -63,4 +63,36 @@ std::vector<Rectangle> rectangles(const std::vector<Square>& squares) {
   return all;
 }
 
+Outlines::Outlines(const std::vector<Rectangle>& all) {
+  std::vector<Square>& rows = corners_[0];
+  for (const Rectangle& r : all)
+    for (const Square& corner : {r.low, Square{r.high[0], r.low[1]}, r.high, Square{r.low[0], r.high[1]}})
+      rows.push_back(corner);
+  corners_[1] = rows;
+  sort_rows(rows);
+  transpose(corners_[1]);
+  sort_rows(corners_[1]);
+}
+
+std::vector<Square> Outlines::of(const Rectangle& rectangle) const {
+  std::vector<Square> outline;
+  // From one corner to the next, without the latter. `across`: 0 along a row.
+  const auto side = [&](std::size_t across, std::int32_t line, std::int32_t from, std::int32_t to) {
+    const std::vector<Square>& corners = corners_[across];
+    const auto less = [](const Square& a, const Square& b) { return std::pair(a[1], a[0]) < std::pair(b[1], b[0]); };
+    auto first = std::ranges::lower_bound(corners, Square{std::min(from, to), line}, less);
+    const auto last = std::ranges::upper_bound(corners, Square{std::max(from, to), line}, less);
+    std::vector<Square> along(first, last);
+    if (from > to) std::ranges::reverse(along);
+    along.pop_back();
+    if (across) transpose(along);
+    outline.insert(outline.end(), along.begin(), along.end());
+  };
+  side(0, rectangle.low[1], rectangle.low[0], rectangle.high[0]);
+  side(1, rectangle.high[0], rectangle.low[1], rectangle.high[1]);
+  side(0, rectangle.high[1], rectangle.high[0], rectangle.low[0]);
+  side(1, rectangle.low[0], rectangle.high[1], rectangle.low[1]);
+  return outline;
+}
+
 }  // namespace vantage::importer
