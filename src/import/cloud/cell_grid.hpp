@@ -62,16 +62,23 @@ class CellGrid {
   std::uint32_t find(const CellIndex& index) const;
   static CellIndex index_of(const Cell& cell);
   static Eigen::Vector3d middle_of(const CellIndex& index) { return index.cast<double>().array() + 0.5; }
-  // Calls `visit(number, index)` for kept cells of the 26 around one.
+  // Calls `visit(number, index)` for cells of the 26 around one.
   template <class Visit>
-  void for_neighbours(const CellIndex& index, Visit&& visit) const {
+  void for_all_around(const CellIndex& index, Visit&& visit) const {
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
           if (x == 0 && y == 0 && z == 0) continue;
           const CellIndex beside = index + CellIndex(x, y, z);
-          if (const std::uint32_t k = find(beside); k != none && cells_[k].kept) visit(k, beside);
+          if (const std::uint32_t k = find(beside); k != none) visit(k, beside);
         }
+  }
+  // The same for those that are kept.
+  template <class Visit>
+  void for_neighbours(const CellIndex& index, Visit&& visit) const {
+    for_all_around(index, [&](std::uint32_t k, const CellIndex& beside) {
+      if (cells_[k].kept) visit(k, beside);
+    });
   }
   // Moments of a cell and its kept neighbours about its middle.
   Moments around(std::uint32_t k) const;

@@ -13,6 +13,8 @@ constexpr double kCoarse_m = 0.12;
 constexpr double kMostCoarse = 4e8;  // in the box around the cloud, at a byte each
 // A ray that runs along a surface touches it by noise alone.
 constexpr float kLeastSlope = 0.3F;
+// A plane that lies in the faces between cells crosses either, by noise.
+constexpr float kBeyond = 0.2F;
 // A single ray may be one that was recorded wrongly.
 constexpr std::uint8_t kSeveral = 2;
 
@@ -110,15 +112,31 @@ void FreeSpace::test_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& d
     if (std::abs(slope) < kLeastSlope) return;
     const Eigen::Vector3f seen = (from - CellGrid::middle_of(index)).cast<float>();
     const float t = (planes_[k].offset - planes_[k].normal.dot(seen)) / slope;
-    if ((seen + t * d).cwiseAbs().maxCoeff() <= 0.5F) ++cell.seen_through;
+    if ((seen + t * d).cwiseAbs().maxCoeff() <= 0.5F + kBeyond) ++cell.seen_through;
   });
 }
 
 std::uint32_t drop_seen_through(CellGrid& grid) {
-  std::uint32_t dropped = 0;
+  std::vector<std::uint32_t> dropped;
   for (std::uint32_t k = 0; k < grid.size(); ++k)
-    if (grid[k].kept && grid[k].seen_through >= kSeveral) grid[k].kept = false, ++dropped;
-  return dropped;
+    if (grid[k].kept && grid[k].seen_through >= kSeveral) dropped.push_back(k);
+  for (const std::uint32_t k : dropped) grid[k].kept = false;
+  // Cells that few rays met go with most of their neighbours.
+  std::vector<std::uint32_t> remains;
+  for (const std::uint32_t gone : dropped)
+    grid.for_neighbours(CellGrid::index_of(grid[gone]), [&](std::uint32_t k, const CellIndex& at) {
+      if (grid[k].scan != grid[gone].scan) return;
+      std::uint32_t others = 0, stay = 0;
+      grid.for_all_around(at, [&](std::uint32_t beside, const CellIndex&) {
+        ++others;
+        stay += grid[beside].kept ? 1 : 0;
+      });
+      if (2 * stay < others) remains.push_back(k);
+    });
+  std::ranges::sort(remains);
+  remains.erase(std::unique(remains.begin(), remains.end()), remains.end());
+  for (const std::uint32_t k : remains) grid[k].kept = false;
+  return static_cast<std::uint32_t>(dropped.size() + remains.size());
 }
 
 }  // namespace vantage::importer

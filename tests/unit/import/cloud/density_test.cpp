@@ -31,7 +31,7 @@ TEST(Density, CellsHoldEnoughPoints) {
 TEST(Density, CellsAreCountedOnASampleOfThem) {
   const Density density = floor_of(20'000);
   EXPECT_NEAR(density.cells(0), 62'500, 0.05 * 62'500);  // of 2 cm
-  EXPECT_NEAR(density.cells(4), 10'000, 0.05 * 10'000);    // of 5 cm
+  EXPECT_NEAR(density.cells(4), 10'000, 0.05 * 10'000);  // of 5 cm
   EXPECT_NEAR(density.median(4), 50, 3);
 }
 
