@@ -290,7 +290,8 @@ std::string convert_cloud(const std::filesystem::path& file, const std::string& 
 
 std::string list_scans(const std::filesystem::path& file) {
   json scans = json::array();
-  for (const CloudScan& scan : open_e57(file)->scans()) {
+  const auto source = open_e57(file);
+  for (const CloudScan& scan : source->scans()) {
     if (!scan.posed) continue;
     scans.push_back({{"name", scan.name},
                      {"position", {scan.position.x(), scan.position.y(), scan.position.z()}},

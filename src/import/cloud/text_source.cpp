@@ -71,6 +71,8 @@ class TextSource final : public PointSource {
       }
     }
     points.flush();
+    notes_.clear();
+    if (others > 2) notes_.push_back(std::to_string(others) + " lines that are no points are passed over");
   }
 
   void read_ptx(const PointSink& sink) {
