@@ -10,7 +10,9 @@ namespace vantage::importer {
 namespace {
 
 constexpr double kCoarse_m = 0.12;
-constexpr double kMostCoarse = 4e8;  // in the box around the cloud, at a byte each
+constexpr double kMostCoarse = 2e8;  // in the box around the cloud, at a byte each
+// Rays are followed within the box of the cloud and so far beyond it: as high as people are, and more.
+constexpr double kBeyondCloud_m = 3;
 // A ray that runs along a surface touches it by noise alone.
 constexpr float kLeastSlope = 0.3F;
 // A plane that lies in the faces between cells crosses either, by noise.
@@ -53,7 +55,8 @@ FreeSpace::FreeSpace(CellGrid& grid, const std::vector<CellPlane>& planes) : gri
     const Eigen::Array3d at = CellGrid::index_of(grid[k]).cast<double>().array();
     low = low.min(at), high = high.max(at);
   }
-  const double volume = (high - low + 1).prod();
+  low_ = low - kBeyondCloud_m / grid.cell_m(), high_ = high + 1 + kBeyondCloud_m / grid.cell_m();
+  const double volume = (high_ - low_).prod();
   coarse_ = std::max({1, static_cast<std::int32_t>(std::lround(kCoarse_m / grid.cell_m())),
                       static_cast<std::int32_t>(std::ceil(std::cbrt(volume / kMostCoarse)))});
   for (std::uint32_t k = 0; k < grid.size(); ++k) {
@@ -93,10 +96,18 @@ void FreeSpace::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, 
   const double length = way.norm(), end = length - 2 * coarse_;
   if (!(end > 0) || !(from.cwiseAbs().maxCoeff() < CellGrid::reach)) return;
   const Eigen::Vector3d direction = way / length;
-  walk(from / coarse_, direction, end / coarse_, [&](const CellIndex& coarse, double begins, double ends) {
+  double begin = 0;  // where it comes into the box
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0) continue;
+    const double face = direction[axis] > 0 ? low_[axis] : high_[axis];
+    begin = std::max(begin, (face - from[axis]) / direction[axis]);
+  }
+  if (!(begin < end)) return;
+  const Eigen::Vector3d enters = from + begin * direction;
+  walk(enters / coarse_, direction, (end - begin) / coarse_, [&](const CellIndex& coarse, double begins, double ends) {
     std::uint8_t& here = state(coarse);
     here |= kFree;
-    if (here & kSurface) test_cells(from, direction, begins * coarse_, ends * coarse_, scan);
+    if (here & kSurface) test_cells(enters, direction, begins * coarse_, ends * coarse_, scan);
   });
 }
 

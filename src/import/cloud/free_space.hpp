@@ -44,6 +44,7 @@ class FreeSpace {
   CellGrid& grid_;
   const std::vector<CellPlane>& planes_;
   std::int32_t coarse_ = 1;
+  Eigen::Array3d low_, high_;  // of the box in which rays are followed, in cells
   std::unordered_map<std::uint64_t, Brick> bricks_;
   std::uint64_t last_key_ = UINT64_MAX;
   Brick* last_ = nullptr;

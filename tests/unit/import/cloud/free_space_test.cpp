@@ -55,6 +55,17 @@ TEST(FreeSpace, RaysAlongASurfaceDoNotDropIt) {
   EXPECT_EQ(importer::drop_seen_through(grid), 0u);
 }
 
+TEST(FreeSpace, RaysFromFarAwayAreFollowedNearTheCloudAlone) {
+  CellGrid grid(Eigen::Vector3d::Zero(), 0.05);
+  add_square(grid, 2.01, 0);
+  const auto planes = importer::cell_planes(grid);
+  FreeSpace free(grid, planes);
+  for (int k = 0; k < 1000; ++k)
+    free.add_ray(grid.in_cells({-10'000, static_cast<double>(k), 1}), grid.in_cells({2.01, 0, 1}), 0);
+  EXPECT_TRUE(free.known(grid.in_cells({0, 0, 1})));
+  EXPECT_FALSE(free.known(grid.in_cells({-100, 0, 1})));
+}
+
 TEST(FreeSpace, SeveralScansOrTheSameProveACell) {
   CellGrid grid(Eigen::Vector3d::Zero(), 0.05);
   add_square(grid, 2.01, 0), add_square(grid, 2.01, 1);
