@@ -89,7 +89,7 @@ class SearchArea {
   /// horizontal plane is laid under its lowest point; it extends beyond every side by the model's largest extent.
   /// `description()` says what was done.
   /// Throws Error: invalid_argument when the scene has neither a mesh nor a usable search area, an option is out of its
-  /// range, or nothing is left within the levels and regions.
+  /// range, nothing is left within the levels and regions, or a point cloud shows no ground.
   static SearchArea build(const Scene& scene, const WalkableOptions& options = {});
   /// Throws Error: invalid_argument when no triangle has an area in (u, v), or the arrays do not fit together.
   static SearchArea from_mesh(SearchMesh mesh);

@@ -18,7 +18,11 @@ struct ImportOptions {
   bool json = false;
 
   void add(CLI::App& command) {
-    command.add_option("file", file, "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF")->type_name("FILE");
+    command
+        .add_option("file", file,
+                    "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or points: E57, LAS, PLY, XYZ, PTS, "
+                    "PTX or PCD")
+        ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     command.add_flag("--json", json, "Print one JSON object");
   }

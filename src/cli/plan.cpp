@@ -19,6 +19,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
+#include "import/scans.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage::cli {
@@ -39,6 +40,7 @@ struct PlanOptions {
   double seed_seconds = ExactConfig().max_seconds;
   std::string seed_with;  // nothing, greedy or exact
   std::vector<StationText> keep, start;
+  std::optional<std::string> keep_from;
   std::optional<std::string> output;
 
   void add(CLI::App& command) {
@@ -46,6 +48,8 @@ struct PlanOptions {
     add_settings(command, question_settings(), question);
     add_values(command, "--keep", "X,Y,Z|U,V", "A station that is there already, on top of --stations; may be repeated",
                [this](const std::string& text, const std::string& what) { keep.push_back(parse_station(text, what)); })
+        ->group("Problem");
+    add_text(command, "--keep-from", "FILE", "Stations that are there already: the scans of an E57 file", keep_from)
         ->group("Problem");
     add_settings(command, plan_settings(), config);
     add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
@@ -88,6 +92,17 @@ std::vector<PlacedStation> heads_of(Site& site, const std::vector<StationText>& 
     heads.push_back(station.placed);
   }
   return heads;
+}
+
+// The scans of a file as existing stations. K1 and so on are the names of such stations in results.
+std::vector<StationText> scans_of(const std::string& file, std::size_t before) {
+  std::vector<StationText> stations;
+  for (const importers::TakenScan& scan : importers::taken_scans(file)) {
+    stations.push_back({.position = scan.head, .name = scan.name, .setup = scan.setup});
+    spdlog::info("K{} is \"{}\" of {}, at {:.3f},{:.3f},{:.3f}", before + stations.size(), scan.name, file, scan.head.x,
+                 scan.head.y, scan.head.z);
+  }
+  return stations;
 }
 
 void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
@@ -271,7 +286,9 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const std::filesystem::path folder = options.output ? *options.output : site.name() + "-plan";
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))
     options.config.start.push_back(station.position);
-  keep(options.question, heads_of(site, options.keep, "--keep"));
+  if (options.keep_from)
+    for (const StationText& scan : scans_of(*options.keep_from, options.keep.size())) options.keep.push_back(scan);
+  keep(options.question, heads_of(site, options.keep, options.keep_from ? "--keep, --keep-from" : "--keep"));
   const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
   site.area();  // an error now, not behind the voxels
 

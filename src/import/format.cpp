@@ -17,20 +17,25 @@ namespace {
 using std::string_view_literals::operator""sv;
 
 constexpr const char* kMesh = "vantage-import-mesh";
+constexpr const char* kCloud = "vantage-import-cloud";
 constexpr Format kGltf{"glTF", ".glb .gltf .b3dm ", nullptr};
 constexpr Format kPacked{"compressed glTF", ".gltf .gz ", "vantage-import-gltf"};
 constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc"};
 constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
-constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx, &kCollada, &k3ds, &kX3d, &kDxf};
+// A PLY holds either; its name alone means faces.
+constexpr Format kE57{"E57", ".e57 ", kCloud}, kLas{"LAS", ".las .laz ", kCloud},
+    kPlyPoints{"PLY of points", ".ply ", kCloud}, kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud},
+    kPcd{"PCD", ".pcd ", kCloud};
+constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
+                              &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
 
 // A file that people take for a model, by its first bytes, and advice about it.
 struct Mistaken {
   std::string_view begins;
   const char* is;
 };
-constexpr const char* kPointCloud = "a point cloud; make a mesh of it (e.g. with CloudCompare) and export that as PLY";
 constexpr const char* kPicture = "a picture; give the model";
 constexpr std::array kMistaken{
     Mistaken{"version https://git-lfs"sv, "a Git LFS pointer, not the model itself; fetch it with git lfs pull"},
@@ -40,19 +45,17 @@ constexpr std::array kMistaken{
     Mistaken{"%PDF"sv, "a PDF document; ask its author for the model"},
     Mistaken{"\x89PNG"sv, kPicture},
     Mistaken{"\xFF\xD8\xFF"sv, kPicture},
-    Mistaken{"LASF"sv, kPointCloud},
-    Mistaken{"ASTM-E57"sv, kPointCloud},
-    Mistaken{"# .PCD"sv, kPointCloud},
     Mistaken{"AC10"sv, "a DWG drawing; export IFC, FBX, or DXF with faces"},
     Mistaken{"\xD0\xCF\x11\xE0"sv, "a file of Revit, 3ds Max or an office program; export IFC or FBX"},
     Mistaken{"\xFF\xFE\xFF\x0E"sv, "a SketchUp file; export glTF or COLLADA"},
-    Mistaken{"pnts"sv, kPointCloud},
+    Mistaken{"pnts"sv, "a 3D tile of points; export the cloud as E57 or LAS"},
     Mistaken{"i3dm"sv, "a 3D tile of instances; give their model"},
     Mistaken{"cmpt"sv, "a 3D tile of several tiles; give them one by one"},
     Mistaken{"BLENDER"sv, "a Blender file; export glTF"},
     Mistaken{"3D Geometry File Format"sv, "a Rhino file; export OBJ or FBX"},
     Mistaken{"PXR-USDC"sv, "a USD file; export glTF"},
     Mistaken{"#usda"sv, "a USD file; export glTF"},
+    Mistaken{"OFF\n"sv, "an OFF model; export OBJ or PLY"},
     Mistaken{"#VRML"sv, "a VRML file; export X3D (as XML) or glTF"},
 };
 
@@ -105,21 +108,22 @@ bool holds_obj(std::string_view text) {
   return vertices && known > 20 * others;
 }
 
-// Whether there are two lines of three numbers or more.
+// Whether most of the first lines begin with three numbers, behind titles and counts.
 bool holds_numbers(std::string_view text) {
-  const auto lines = first_lines(text, 2);
-  const auto numbers = [](std::string_view line) {
+  constexpr std::size_t kLines = 40;
+  const auto three_numbers = [](std::string_view line) {
     std::string words(line);
     std::ranges::replace_if(
         words, [](char c) { return c == ',' || c == ';'; }, ' ');
     std::istringstream stream(words);
     stream.imbue(std::locale::classic());
     double value = 0;
-    std::size_t count = 0;
-    while (stream >> value) ++count;
-    return stream.eof() ? count : 0;
+    return bool{stream >> value >> value >> value};
   };
-  return lines.size() == 2 && std::ranges::all_of(lines, [&](std::string_view line) { return numbers(line) >= 3; });
+  std::size_t points = 0, others = 0;
+  for (const std::string_view line : first_lines(text, kLines))
+    if (!line.starts_with('#') && !line.starts_with("//")) ++(three_numbers(line) ? points : others);
+  return points >= 2 && points > others;
 }
 
 // A PLY's header may say that it has no faces.
@@ -181,8 +185,6 @@ std::string mistaken_for_a_model(const Head& head) {
   }
   if (text.starts_with("ISO-10303-21") && head.bytes.find("IFC") == std::string::npos)
     return "a STEP file of a CAD program; export glTF, OBJ or IFC";
-  if (text.starts_with("ply") && ply_without_faces(text)) return kPointCloud;
-  if (holds_numbers(text)) return "a table of numbers, perhaps a point cloud; a model of surfaces is needed";
   return {};
 }
 
@@ -192,7 +194,10 @@ const Format* format_by_content(const Head& head) {
   if (text.starts_with("ISO-10303-21")) return &kIfc;
   if (bytes.starts_with("Kaydara FBX Binary") || bytes.find("FBXHeaderExtension") != std::string_view::npos)
     return &kFbx;
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return &kPly;
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return ply_without_faces(text) ? &kPlyPoints : &kPly;
+  if (bytes.starts_with("ASTM-E57")) return &kE57;
+  if (bytes.starts_with("LASF")) return &kLas;
+  if (text.starts_with("# .PCD") || text.starts_with("VERSION .7") || text.starts_with("VERSION 0.7")) return &kPcd;
   if (bytes.size() >= 84 && head.size == 84 + std::uintmax_t{50} * little_endian_32(bytes.substr(80))) return &kStl;
   if (text.starts_with("solid") && text.find("facet") != std::string_view::npos) return &kStl;
   if (bytes.size() >= 6 && bytes.starts_with("MM") && head.size == little_endian_32(bytes.substr(2))) return &k3ds;
@@ -208,15 +213,17 @@ const Format* format_by_content(const Head& head) {
   std::span<const std::string_view> rest = lines;
   while (rest.size() >= 2 && rest[0] == "999") rest = rest.subspan(2);  // DXF's comments
   if (rest.size() >= 2 && rest[0] == "0" && rest[1] == "SECTION") return &kDxf;
-  return holds_obj(text) ? &kObj : nullptr;
+  if (holds_obj(text)) return &kObj;
+  return holds_numbers(text) ? &kText : nullptr;
+}
+
+bool is_named_as(const std::filesystem::path& file, const Format& format) {
+  const std::string extension = lower(file.extension().string()) + " ";
+  return extension.size() >= 2 && std::string_view(format.extensions).find(extension) != std::string_view::npos;
 }
 
 const Format* format_by_extension(const std::filesystem::path& file) {
-  const std::string extension = lower(file.extension().string()) + " ";
-  if (extension.size() < 2) return nullptr;
-  const auto found = std::ranges::find_if(kFormats, [&](const Format* format) {
-    return std::string_view(format->extensions).find(extension) != std::string_view::npos;
-  });
+  const auto found = std::ranges::find_if(kFormats, [&](const Format* format) { return is_named_as(file, *format); });
   return found == kFormats.end() ? nullptr : *found;
 }
 
@@ -272,7 +279,7 @@ Recognised recognise(const std::filesystem::path& file) {
     throw Error(Errc::malformed_file,
                 file.string() + ": this is no model that vantage knows; it reads " + names + ": export one of these");
   }
-  if (!by_extension || by_extension == format) return {format};
+  if (!by_extension || is_named_as(file, *format)) return {format};
   return {format, std::string("it is named as ") + by_extension->name + ", but holds " + format->name +
                       ", and is read as that"};
 }

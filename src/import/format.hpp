@@ -20,7 +20,7 @@ struct Recognised {
 
 // Recognises the format of a model by its content, else by its extension. Missing or unreadable files are left to the
 // loader's own errors. Throws Error malformed_file, which names the kind of file, for files without surfaces (a zip
-// archive, a page, a point cloud, …).
+// archive, a page, a picture, …).
 Recognised recognise(const std::filesystem::path& file);
 
 }  // namespace vantage::importers

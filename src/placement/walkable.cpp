@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -321,6 +322,13 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   return surface;
 }
 
+// Whether the model is what a scan saw: nothing is known beyond it.
+bool is_scanned(const SceneData& scene) {
+  const auto defaults = nlohmann::json::parse(scene.defaults_json, nullptr, false);
+  const auto scanned = defaults.is_object() ? defaults.find("scanned") : defaults.end();
+  return scanned != defaults.end() && scanned->is_boolean() && scanned->get<bool>();
+}
+
 void check(const WalkableOptions& options) {
   const double slope = options.max_slope.in_degrees();
   const auto refuse = [](const char* what, double value, const char* wanted) {
@@ -370,7 +378,12 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
   for (const Float3& p : scene.positions) points.push_back(to_glm(p));
   if (named) return use_station_area(scene, tree, points, options);
   WalkableSurface walkable = derive_walkable(scene, tree, points, options);
-  return walkable.mesh.triangles.empty() ? lay_plane(scene, tree, options) : walkable;
+  if (!walkable.mesh.triangles.empty()) return walkable;
+  if (is_scanned(scene))
+    throw Error(Errc::invalid_argument,
+                "no ground for a station shows in the points, and what lies beside them is unknown; give a cloud with "
+                "the ground around, an entrance (enter), or the nodes to stand on (station-area)");
+  return lay_plane(scene, tree, options);
 }
 
 }  // namespace vantage

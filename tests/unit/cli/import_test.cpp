@@ -37,8 +37,44 @@ TEST_F(ImportCommandTest, SaysWhatItWants) {
   expect_refused(run_program({"import"}), 2, "no model given");
   expect_refused(run_program({"import", scene_, "-o", path("out.glb")}), 2, "is glTF already");
   write("cloud.xyz", "1 2 3\n4 5 6\n");
-  expect_refused(run_program({"import", path("cloud.xyz"), "-o", path("out.glb")}), 1, "a table of numbers");
+  expect_refused(run_program({"import", path("cloud.xyz"), "-o", path("out.glb")}), 1, "too thin for surfaces");
   expect_refused(run_program({"import", path("none.obj"), "-o", path("out.glb")}), 1, "none.obj");
+}
+
+// A room of 6 x 4 x 2.5 m with a box in it, Y up.
+constexpr const char* kRoom =
+    "v 0 0 0\nv 6 0 0\nv 6 0 -4\nv 0 0 -4\nv 0 2.5 0\nv 6 2.5 0\nv 6 2.5 -4\nv 0 2.5 -4\n"
+    "v 2.6 0 -1.6\nv 3.4 0 -1.6\nv 3.4 0 -2.4\nv 2.6 0 -2.4\nv 2.6 1 -1.6\nv 3.4 1 -1.6\nv 3.4 1 -2.4\nv 2.6 1 -2.4\n"
+    "o floor\nf 1 2 3 4\no ceiling\nf 5 8 7 6\no walls\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+    "o box\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\nf 13 14 15 16\n";
+
+TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
+  write("room.obj", kRoom);
+  json_of({"scan",    path("room.obj"), "--unit",  "m",      "--up", "y",       "--station", "1,1,1.6",  "--station",
+           "5,3,1.6", "--station",      "1,3,1.6", "--step", "0.4",  "--noise", "rtc360",    "--engine", "embree",
+           "-o",      path("room.e57")});
+  json_of({"import", path("room.e57"), "-o", path("room.glb")});
+  const Scene scene = Scene::load(path("room.glb"));
+  EXPECT_NEAR(scene.bounds().min.z, 0, 0.05);
+  EXPECT_NEAR(scene.bounds().max.x, 6, 0.05);
+  const auto front = json_of({"plan", path("room.e57"), "--step", "1", "--engine", "embree", "--no-report", "-o",
+                              path("plan"), "--iterations", "2"});
+  const auto& stations = front["front"][0]["stations"];
+  ASSERT_GT(stations.size(), 0u);
+  for (const auto& station : stations) {
+    const auto ground = station["ground"].get<std::array<double, 3>>();
+    EXPECT_NEAR(ground[2], 0, 0.02);
+    EXPECT_TRUE(ground[0] > 0 && ground[0] < 6 && ground[1] > 0 && ground[1] < 4);
+    EXPECT_FALSE(ground[0] > 2.6 && ground[0] < 3.4 && ground[1] > 1.6 && ground[1] < 2.4) << "on the box";
+  }
+  // The scans are the stations of another plan.
+  const auto more =
+      json_of({"plan", path("room.obj"), "--unit", "m", "--up", "y", "--keep-from", path("room.e57"), "--step", "1",
+               "--engine", "embree", "--no-report", "-o", path("more"), "--stations", "1", "--iterations", "2"});
+  const auto& all = more["front"][0]["stations"];
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_TRUE(all[2]["kept"].get<bool>() && !all[3]["kept"].get<bool>());
+  EXPECT_EQ(all[1]["position"], (nlohmann::json{5.0, 3.0, 1.6}));
 }
 
 }  // namespace

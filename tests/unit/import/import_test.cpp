@@ -128,6 +128,11 @@ TEST_F(ImporterTest, MissingOneIsNamedWithWhatBringsIt) {
                [&] { import(model_); });
   const auto building = write("a.ifc", "ISO-10303-21;\nFILE_SCHEMA(('IFC4'));");
   expect_error(Errc::io, "setup.sh --ifc", [&] { import(building); });
+  const auto cloud = write("a.las", "LASF");
+  expect_error(
+      Errc::io,
+      "this is LAS, which vantage-import-cloud turns into glTF, and that is not installed; install libexpat1-dev",
+      [&] { import(cloud); });
 }
 
 TEST_F(ImporterTest, SceneTakesItsNotesAndItsErrors) {

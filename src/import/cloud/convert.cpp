@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/cloud/convert.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "import/cloud/cell_grid.hpp"
+#include "import/cloud/density.hpp"
+#include "import/cloud/flat_regions.hpp"
+#include "import/cloud/free_space.hpp"
+#include "import/cloud/points.hpp"
+#include "import/cloud/rectangles.hpp"
+#include "import/glb_bytes.hpp"
+#include "import/program.hpp"
+
+namespace vantage::importer {
+namespace {
+
+using nlohmann::json;
+
+// Rows and columns of a region may lack so many cells between two that have points.
+constexpr std::int32_t kClosedGap = 3;
+// A person's space above ground, in metres: known if so much of it was seen through.
+constexpr double kFromGround_m = 0.3, kHeight_m = 1.8, kKnownShare = 0.5;
+constexpr double kGround = 0.8;   // least z of a normal of ground
+constexpr double kUpright = 0.3;  // largest z of a wall's
+// Rays of all scans that are followed to find free space; more say nothing new.
+constexpr std::uint64_t kMostRays = 20'000'000;
+
+std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format) {
+  if (format == "e57") return open_e57(file);
+  if (format == "las") return open_las(file);
+  if (format == "ply") return open_ply(file);
+  if (format == "pcd") return open_pcd(file);
+  return open_text(file);
+}
+
+// Bytes that cells may take: most of what this process may.
+double memory_for_cells() {
+  constexpr double kShare = 0.6, kWithoutLimit = 2e9;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kShare * kWithoutLimit;
+  return kShare * static_cast<double>(limit.rlim_cur);
+}
+
+std::string counted(std::uint64_t n, const char* what) {
+  const std::string digits = std::to_string(n);
+  std::string text;
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    if (k > 0 && (digits.size() - k) % 3 == 0) text += ' ';
+    text += digits[k];
+  }
+  return text + " " + what;
+}
+
+std::string with_unit(double value, const char* unit) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g ", value);
+  return std::string(text) + unit;
+}
+
+// Triangles of one node, about the cloud's middle; Y up, as glTF has it.
+class Surface {
+ public:
+  explicit Surface(const char* name) : name_(name) {}
+
+  void add(const FlatRegion& region, const std::vector<Square>& squares, double cell_m, bool turned) {
+    const std::vector<Rectangle> all = rectangles(squares);
+    const Outlines outlines(all);
+    const bool forwards = (region.normal[region.axis] > 0) != turned;
+    for (const Rectangle& rectangle : all) {
+      const std::vector<Square> outline = outlines.of(rectangle);
+      const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
+      const auto count = static_cast<std::uint32_t>(outline.size());
+      for (const Square& corner : outline) add_corner(region, corner[0], corner[1], cell_m);
+      if (count == 4) {
+        add_triangle({first, first + 1, first + 2}, forwards);
+        add_triangle({first, first + 2, first + 3}, forwards);
+        continue;
+      }
+      add_corner(region, 0.5 * (rectangle.low[0] + rectangle.high[0]), 0.5 * (rectangle.low[1] + rectangle.high[1]),
+                 cell_m);
+      for (std::uint32_t k = 0; k < count; ++k)
+        add_triangle({first + k, first + (k + 1) % count, first + count}, forwards);
+    }
+  }
+
+  std::size_t triangles() const { return indices_.size() / 3; }
+
+  void write(Buffer& buffer, json& nodes, json& meshes, const json& translation) const {
+    if (indices_.empty()) return;
+    const int positions = buffer.add_positions(positions_), indices = buffer.add_indices(indices_);
+    meshes.push_back(
+        {{"name", name_}, {"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}});
+    nodes.push_back({{"name", name_}, {"mesh", meshes.size() - 1}, {"translation", translation}});
+  }
+
+ private:
+  void add_corner(const FlatRegion& region, double u, double v, double cell_m) {
+    Eigen::Vector3d p;
+    p[(region.axis + 1) % 3] = u, p[(region.axis + 2) % 3] = v, p[region.axis] = region.height(u, v);
+    p *= cell_m;
+    for (const double c : {p.x(), p.z(), -p.y()}) positions_.push_back(static_cast<float>(c));
+  }
+  void add_triangle(std::array<std::uint32_t, 3> corners, bool forwards) {
+    if (!forwards) std::swap(corners[1], corners[2]);
+    indices_.insert(indices_.end(), corners.begin(), corners.end());
+  }
+
+  const char* name_;
+  std::vector<float> positions_;
+  std::vector<std::uint32_t> indices_;
+};
+
+class Converter {
+ public:
+  Converter(const std::filesystem::path& file, const std::string& format) : source_(open_source(file, format)) {}
+
+  std::string run() {
+    measure();
+    accumulate();
+    const std::uint32_t lone = drop_lone(*grid_);
+    std::vector<CellPlane> planes = cell_planes(*grid_);
+    std::uint32_t moving = 0;
+    std::optional<FreeSpace> free;
+    if (posed_ > 0) {
+      free.emplace(*grid_, planes);
+      follow_rays(*free);
+      moving = drop_seen_through(*grid_);
+      if (moving > 0) drop_lone(*grid_);
+      planes = cell_planes(*grid_);
+    }
+    const bool whole = posed_ == source_->scans().size();
+    cover(flat_regions(*grid_, planes), whole && free ? &*free : nullptr);
+    tell(lone, moving);
+    return write();
+  }
+
+ private:
+  void measure() {
+    Density density;
+    source_->read([&](const PointBlock& block) {
+      for (const Eigen::Vector3d& p : block.positions) density.add(p);
+    });
+    points_ = density.points();
+    if (points_ == 0) throw Refused("it holds no point; export it again");
+    const double cell_m = Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
+    // Whole metres, so that coordinates stay short.
+    grid_.emplace(density.middle().array().round(), cell_m);
+    for (const CloudScan& scan : source_->scans()) posed_ += scan.posed ? 1 : 0;
+  }
+
+  // Number of a scan in cells.
+  static std::uint16_t number_of(std::uint32_t scan) {
+    return static_cast<std::uint16_t>(std::min<std::uint32_t>(scan, Cell::several - 1));
+  }
+
+  void accumulate() {
+    source_->read([&](const PointBlock& block) {
+      const CloudScan scan = source_->scans()[block.scan];
+      for (std::size_t k = 0; k < block.positions.size(); ++k) {
+        const Eigen::Vector3d& p = block.positions[k];
+        Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+        if (scan.posed)
+          towards = (scan.position - p).stableNormalized();
+        else if (!block.normals.empty())
+          towards = block.normals[k].cast<double>();
+        if (!grid_->add(p, number_of(block.scan), towards)) ++far_;
+      }
+    });
+  }
+
+  void follow_rays(FreeSpace& free) {
+    const std::uint64_t stride = 1 + points_ / kMostRays;
+    std::uint64_t count = 0;
+    source_->read([&](const PointBlock& block) {
+      const CloudScan& scan = source_->scans()[block.scan];
+      if (!scan.posed) return;
+      const Eigen::Vector3d from = grid_->in_cells(scan.position);
+      for (const Eigen::Vector3d& p : block.positions)
+        if (count++ % stride == 0) free.add_ray(from, grid_->in_cells(p), number_of(block.scan));
+    });
+  }
+
+  // Whether the space of a person there was seen.
+  bool known_above(const FreeSpace& free, const Eigen::Vector3d& ground) const {
+    int known = 0, all = 0;
+    for (double z = kFromGround_m / grid_->cell_m(); z < kHeight_m / grid_->cell_m(); z += free.coarse_cells(), ++all)
+      known += free.known(ground + Eigen::Vector3d(0, 0, z)) ? 1 : 0;
+    return known >= kKnownShare * all;
+  }
+
+  // `free`: null if nothing is known about it.
+  void cover(const std::vector<FlatRegion>& regions, const FreeSpace* free) {
+    const double square_m2 = grid_->cell_m() * grid_->cell_m();
+    for (const FlatRegion& region : regions) {
+      std::vector<Square> known = close_gaps(region.columns, kClosedGap), unknown;
+      const bool ground = region.normal.z() >= kGround && region.axis == 2;
+      if (ground && free) {
+        const auto seen = [&](const Square& s) {
+          return known_above(*free, {s[0] + 0.5, s[1] + 0.5, region.height(s[0] + 0.5, s[1] + 0.5)});
+        };
+        std::ranges::copy_if(known, std::back_inserter(unknown), [&](const Square& s) { return !seen(s); });
+        std::erase_if(known, [&](const Square& s) {
+          return std::ranges::binary_search(unknown, s, [](const Square& a, const Square& b) {
+            return std::pair(a[1], a[0]) < std::pair(b[1], b[0]);
+          });
+        });
+      }
+      Surface& surface = ground                                    ? floors_
+                         : region.normal.z() <= -kGround           ? ceilings_
+                         : std::abs(region.normal.z()) <= kUpright ? walls_
+                                                                   : slopes_;
+      surface.add(region, known, grid_->cell_m(), false);
+      // Nobody stands on what faces down.
+      unknown_.add(region, unknown, grid_->cell_m(), true);
+      unknown_m2_ += square_m2 * static_cast<double>(unknown.size()) / std::max(region.normal.z(), kGround);
+    }
+    if (triangles() == 0) throw Refused("no surface shows in its points; export more of them");
+  }
+
+  std::size_t triangles() const {
+    std::size_t n = 0;
+    for (const Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_}) n += surface->triangles();
+    return n;
+  }
+
+  void tell(std::uint32_t lone, std::uint32_t moving) {
+    notes_ = source_->notes();
+    const std::size_t scans = source_->scans().size();
+    notes_.push_back("a point cloud, " + counted(points_, "points") +
+                     (scans > 1 ? " of " + counted(scans, "scans") : std::string()) +
+                     ": surfaces are fitted in cells of " + with_unit(100 * grid_->cell_m(), "cm") + ", " +
+                     counted(triangles(), "triangles"));
+    if (lone > 0) notes_.push_back(counted(lone, "cells of lone points are left out"));
+    if (far_ > 0) notes_.push_back(counted(far_, "points far from all others are left out"));
+    if (moving > 0)
+      notes_.push_back(
+          counted(moving, "cells are left out, as other scans saw through them: people, cars and the like"));
+    if (posed_ < scans)
+      notes_.push_back(posed_ == 0
+                           ? "the file does not say where its scans were taken: what lies between points counts as free"
+                           : counted(scans - posed_, "scans have no pose: what lies between points counts as free"));
+    if (unknown_m2_ >= 0.1)
+      notes_.push_back(
+          with_unit(unknown_m2_, "m² of ground lie below space that no scan saw; no station stands there"));
+  }
+
+  std::string write() const {
+    Buffer buffer;
+    json nodes = json::array(), meshes = json::array();
+    const Eigen::Vector3d& middle = grid_->middle();
+    const json translation{middle.x(), middle.z(), -middle.y()};
+    for (const Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_})
+      surface->write(buffer, nodes, meshes, translation);
+    json roots = json::array();
+    for (std::size_t k = 0; k < nodes.size(); ++k) roots.push_back(k);
+    json vantage{{"unit", "m"}, {"up", "y"}, {"scanned", true}};
+    const std::string& crs = source_->crs();
+    if (crs.starts_with("PROJCS[") || crs.starts_with("COMPD_CS[") || crs.starts_with("EPSG:")) vantage["crs"] = crs;
+    return buffer.finish({{"asset",
+                           {{"version", "2.0"},
+                            {"generator", "vantage-import-cloud"},
+                            {"extras", {{"vantage", vantage}, {"notes", notes_}}}}},
+                          {"scene", 0},
+                          {"scenes", {{{"nodes", roots}}}},
+                          {"nodes", nodes},
+                          {"meshes", meshes}});
+  }
+
+  std::unique_ptr<PointSource> source_;
+  std::optional<CellGrid> grid_;
+  std::uint64_t points_ = 0, far_ = 0;
+  std::size_t posed_ = 0;  // scans with a pose
+  double unknown_m2_ = 0;
+  Surface floors_{"floors"}, ceilings_{"ceilings"}, walls_{"walls"}, slopes_{"slopes"},
+      unknown_{"floors-below-unknown-space"};
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+std::string convert_cloud(const std::filesystem::path& file, const std::string& format) {
+  return Converter(file, format).run();
+}
+
+std::string list_scans(const std::filesystem::path& file) {
+  json scans = json::array();
+  const auto source = open_e57(file);
+  for (const CloudScan& scan : source->scans()) {
+    if (!scan.posed) continue;
+    scans.push_back({{"name", scan.name},
+                     {"position", {scan.position.x(), scan.position.y(), scan.position.z()}},
+                     {"rotation", {scan.rotation.w(), scan.rotation.x(), scan.rotation.y(), scan.rotation.z()}},
+                     {"sensor", scan.sensor}});
+  }
+  if (scans.empty()) throw Refused("it does not say from where its scans were taken; export it with their poses");
+  return glb_bytes(
+      {{"asset", {{"version", "2.0"}, {"generator", "vantage-import-cloud"}, {"extras", {{"scans", scans}}}}}}, "");
+}
+
+}  // namespace vantage::importer

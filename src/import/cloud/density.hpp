@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// How dense a cloud is: points to an occupied cell, for cells of several sizes, on a sample of the cells. Memory is
+// bounded, whatever the number of points.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace vantage::importer {
+
+class Density {
+ public:
+  static constexpr std::array<double, 11> sizes_m{0.02, 0.025, 0.03, 0.04, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5};
+
+  void add(const Eigen::Vector3d& p);
+
+  std::uint64_t points() const { return points_; }
+  // A place in the middle of the cloud, whatever single points lie far away.
+  Eigen::Vector3d middle() const;
+  // Median number of points of an occupied cell, and the estimated number of such cells.
+  double median(std::size_t size) const;
+  double cells(std::size_t size) const;
+
+ private:
+  struct Sample {
+    std::uint64_t mask = 0;  // cells are in the sample if their hash has none of these bits
+    std::unordered_map<std::uint64_t, std::uint32_t> counts;
+  };
+
+  std::uint64_t points_ = 0, random_ = 0x9E3779B97F4A7C15;
+  std::vector<Eigen::Vector3d> reservoir_;
+  std::array<Sample, sizes_m.size()> samples_;
+};
+
+// Index of the smallest size whose cells mostly hold enough points for a plane and fit into the memory, in bytes.
+// Throws Refused if the cloud is too thin for any.
+std::size_t choose_cell(const Density& density, double memory, double bytes_each);
+
+}  // namespace vantage::importer

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points of a cloud, a block at a time, and the scans that they are of.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vantage::importer {
+
+// One scan of a cloud. Frame of the file, Z up, in metres.
+struct CloudScan {
+  std::string name;
+  bool posed = false;  // whether the file says from where it was taken
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // from the scanner's frame
+  std::string sensor = {};
+};
+
+struct PointBlock {
+  std::span<const Eigen::Vector3d> positions;  // metres, finite
+  std::span<const Eigen::Vector3f> normals;    // none, or one each; 0 if unknown
+  std::uint32_t scan = 0;
+};
+
+using PointSink = std::function<void(const PointBlock&)>;
+
+class PointSource {
+ public:
+  virtual ~PointSource() = default;
+  // Reads all points, in the same order each time. Throws Refused.
+  virtual void read(const PointSink& sink) = 0;
+  // Complete after the first read().
+  const std::vector<CloudScan>& scans() const { return scans_; }
+  const std::string& crs() const { return crs_; }  // well-known text; empty if unknown
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ protected:
+  std::vector<CloudScan> scans_;
+  std::string crs_;
+  std::vector<std::string> notes_;
+};
+
+// Passes points on in blocks, without those that are not finite.
+class BlockWriter {
+ public:
+  BlockWriter(const PointSink& sink, std::uint32_t scan, bool normals) : sink_(sink), scan_(scan), normals_(normals) {
+    positions_.reserve(kPoints);
+    if (normals_) directions_.reserve(kPoints);
+  }
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3f& normal = Eigen::Vector3f::Zero()) {
+    if (!position.allFinite()) return;
+    positions_.push_back(position);
+    if (normals_) directions_.push_back(normal.allFinite() ? normal : Eigen::Vector3f::Zero());
+    if (positions_.size() == kPoints) flush();
+  }
+  void flush() {
+    if (!positions_.empty()) sink_({positions_, directions_, scan_});
+    positions_.clear(), directions_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kPoints = 4096;
+  const PointSink& sink_;
+  std::uint32_t scan_;
+  bool normals_;
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3f> directions_;
+};
+
+// Readers, one a format. Each reads the file's head. Throw Refused.
+std::unique_ptr<PointSource> open_e57(const std::filesystem::path& file);
+std::unique_ptr<PointSource> open_las(const std::filesystem::path& file);
+std::unique_ptr<PointSource> open_ply(const std::filesystem::path& file);
+std::unique_ptr<PointSource> open_pcd(const std::filesystem::path& file);
+std::unique_ptr<PointSource> open_text(const std::filesystem::path& file);  // XYZ, PTS, PTX
+
+}  // namespace vantage::importer

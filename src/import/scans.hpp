@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vantage/station_setup.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage::importers {
+
+// A scan that was taken, as its file tells.
+struct TakenScan {
+  std::string name, sensor;
+  Vec3 head;           // frame of the file, Z up, metres
+  StationSetup setup;  // heading and tilt; a tilt below 3° is that of a levelled scanner, 0
+};
+
+// The scans of an E57 file that have a pose, read by the importer of point clouds. Throws Error as as_glb() does, and
+// malformed_file if the file is no E57.
+std::vector<TakenScan> taken_scans(const std::filesystem::path& file);
+
+// Heading and tilt of a scanner, from the rotation of its frame into the survey's, a quaternion w, x, y, z.
+StationSetup setup_of(const std::array<double, 4>& rotation);
+
+}  // namespace vantage::importers
