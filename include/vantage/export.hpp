@@ -150,7 +150,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                        const VoxelField* field = nullptr);
 
-/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
+/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, shares of the node's
+/// voxels.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
 /// Every voxel of `ranks` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY, survey frame.

@@ -41,9 +41,9 @@ std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator,
   spdlog::info(
       "{:.1f} % of the surveyed voxels are captured, {:.1f} % would be by other stations; {:.1f} % are hidden "
       "from {} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too "
-      "sparsely",
+      "dark at that distance, {:.1f} % seen too sparsely",
       percent(WhyMissed::captured), percent(WhyMissed::not_chosen), percent(WhyMissed::hidden), judged.candidates,
-      percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::sparse));
+      percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::dark), percent(WhyMissed::sparse));
   return judged;
 }
 

@@ -19,7 +19,7 @@ class AfterASearch(unittest.TestCase):
     def test_missed_voxels_have_a_reason(self):
         seen = self.simulator.evaluate(BEFORE_EACH_WALL[:2], field=True)  # the walls in the north and south are not
         missed = vantage.why_missed(self.simulator, self.area, self.clash, seen)
-        self.assertEqual(missed.reasons, ["captured", "hidden", "out_of_range", "too_flat", "too_sparse", "not_chosen"])
+        self.assertEqual(missed.reasons, ["captured", "hidden", "out_of_range", "too_flat", "too_dark", "too_sparse", "not_chosen"])
         np.testing.assert_array_equal(missed.points, seen.voxel_points[missed.voxels])
         np.testing.assert_array_equal(missed.why == 0, missed.points >= seen.goal_density)
         counts = np.bincount(missed.why, minlength=6) / len(missed.why)

@@ -201,7 +201,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
   std::optional<Picture> picture;
   const WholeScans way = rays.whole_scans();
   if (way == WholeScans::drawn ||
-      (way == WholeScans::faster && Picture::pays(rays.scene().triangles.size(), selected_rays)))
+      (way == WholeScans::faster && Picture::pays(rays.scene().opaque_triangles().size(), selected_rays)))
     picture.emplace(rays, station, ends);
   if (picture && !picture->drawable()) picture.reset();
   tbb::enumerable_thread_specific<Picture::Strip> strips;

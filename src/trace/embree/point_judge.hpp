@@ -2,6 +2,7 @@
 // Checks the limits of points, in double precision.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -31,7 +32,10 @@ class PointJudge {
     dropped.footprint = limits.largest_footprint_square > 0 &&
                         diameter * diameter > static_cast<double>(limits.largest_footprint_square) * square;
     dropped.noise = limits.largest_sigma > 0 && noise_.sigma(t, reflectivity) > limits.largest_sigma;
-    dropped.points = dropped.incidence + dropped.footprint + dropped.noise > 0;
+    dropped.echo =
+        limits.largest_reach_square > 0 && static_cast<double>(t) * static_cast<double>(t) >
+                                               static_cast<double>(limits.largest_reach_square) * std::abs(cosine);
+    dropped.points = dropped.incidence + dropped.footprint + dropped.noise + dropped.echo > 0;
     return dropped;
   }
 

@@ -107,8 +107,7 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
-  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
-  // surveyed mesh.
+  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit.
   DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
     return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot]);
   }
