@@ -20,10 +20,10 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kBlock = 64;     // triangles cut by one task
-constexpr double kThinnest_m = 2e-5;   // parts that are thinner are left out; no beam is
-constexpr double kMostCells = 0x1p28;  // of textures, looked at in all triangles together; some seconds
-constexpr double kMostRepeats = 1000;           // of a texture along a triangle
+constexpr std::size_t kBlock = 64;             // triangles cut by one task
+constexpr double kThinnest_m = 2e-5;           // parts that are thinner are left out; no beam is
+constexpr double kMostCells = 0x1p28;          // of textures, looked at in all triangles together; some seconds
+constexpr double kMostRepeats = 1000;          // of a texture along a triangle
 constexpr std::uint64_t kTriangleBytes = 400;  // of a new triangle: three vertices with all attributes, twice
 
 // Averages of a texture's alpha, each half as wide and tall as the one before.
@@ -49,11 +49,14 @@ class AlphaLevels {
     }
     const auto filled = static_cast<std::size_t>(
         std::ranges::count_if(level.alpha, [&](float a) { return static_cast<double>(a) >= level.cutoff; }));
-    const double share = static_cast<double>(filled) / static_cast<double>(level.alpha.size());
     uniform_ = filled == 0 || filled == level.alpha.size();
     levels_.push_back(std::move(level));
     if (uniform_) return;
-    while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back(), share));
+    const double share = share_filled(levels_.front(), levels_.front().cutoff);
+    while (levels_.back().width > 1 || levels_.back().height > 1) {
+      levels_.push_back(half(levels_.back()));
+      levels_.back().cutoff = cutoff_for(levels_.back(), share);
+    }
   }
 
   std::size_t count() const { return levels_.size(); }
@@ -73,7 +76,7 @@ class AlphaLevels {
     return static_cast<std::size_t>(repeat ? (x % wide + wide) % wide : std::clamp<std::int64_t>(x, 0, wide - 1));
   }
 
-  static Level half(const Level& fine, double share) {
+  static Level half(const Level& fine) {
     Level coarse{.width = std::max(fine.width / 2, 1u), .height = std::max(fine.height / 2, 1u)};
     coarse.alpha.resize(std::size_t{coarse.width} * coarse.height);
     for (std::uint32_t y = 0; y < coarse.height; ++y)
@@ -84,18 +87,39 @@ class AlphaLevels {
                             std::min(2 * x + k % 2, fine.width - 1)];
         coarse.alpha[std::size_t{y} * coarse.width + x] = sum / 4;
       }
-    std::vector<float> sorted = coarse.alpha;
-    const auto filled = static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size())));
-    if (filled == 0 || filled >= sorted.size()) {
-      coarse.cutoff = filled == 0 ? 2 : 0;
-      return coarse;
-    }
-    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(filled);
-    std::ranges::nth_element(sorted, last, std::ranges::greater());
-    const float below = *last, above = *std::min_element(sorted.begin(), last);
-    coarse.cutoff = (static_cast<double>(below) + static_cast<double>(above)) / 2;
-    if (below == above) coarse.cutoff = static_cast<double>(above);
     return coarse;
+  }
+
+  // Share of a level on which alpha reaches a cut-off; alpha is linear on each half of a cell.
+  double share_filled(const Level& level, double cutoff) const {
+    double filled = 0;
+    for (std::uint32_t y = 0; y < level.height; ++y)
+      for (std::uint32_t x = 0; x < level.width; ++x) {
+        const double a = at(level, x, y), b = at(level, x + 1, y), c = at(level, x + 1, y + 1), d = at(level, x, y + 1);
+        filled += share_above(a, b, c, cutoff) + share_above(a, c, d, cutoff);
+      }
+    return filled / (2.0 * level.width * level.height);
+  }
+
+  // Share of a triangle on which a linear function of these values at its corners is at least `least`.
+  static double share_above(double low, double middle, double high, double least) {
+    if (low > middle) std::swap(low, middle);
+    if (middle > high) std::swap(middle, high);
+    if (low > middle) std::swap(low, middle);
+    if (least <= low) return 1;
+    if (least > high) return 0;
+    if (least <= middle) return 1 - (least - low) * (least - low) / ((middle - low) * (high - low));
+    return (high - least) * (high - least) / ((high - middle) * (high - low));
+  }
+
+  // The cut-off that fills this share of a level, to the steps in which textures state alpha.
+  double cutoff_for(const Level& level, double share) const {
+    double low = 0, high = 1;
+    while (high - low > 1.0 / 1024) {
+      const double middle = (low + high) / 2;
+      (share_filled(level, middle) >= share ? low : high) = middle;
+    }
+    return (low + high) / 2;
   }
 
   std::vector<Level> levels_;
@@ -485,7 +509,7 @@ class MaskCutter {
 
   RawScene& raw_;
   std::map<std::uint32_t, std::optional<AlphaLevels>> levels_;  // by material
-  std::vector<Cutout> cutouts_;                  // by triangle
+  std::vector<Cutout> cutouts_;                                 // by triangle
   std::size_t masked_ = 0;
 };
 

@@ -99,8 +99,8 @@ double MaterialTable::read_transparency(int index, const Material& material, Mat
   if (info.glass) return 0;
   const json& mode = file_.find("materials", index, {"alphaMode"});
   if (mode == "MASK") {
-    const bool unread = material.image < 0 &&
-                        file_.find("materials", index, {"pbrMetallicRoughness", "baseColorTexture"}).is_object();
+    const bool unread =
+        material.image < 0 && file_.find("materials", index, {"pbrMetallicRoughness", "baseColorTexture"}).is_object();
     if (unread) return 0;
     const json& cutoff = file_.find("materials", index, {"alphaCutoff"});
     return cutoff.is_number() ? std::clamp(cutoff.get<double>(), 0.0, 1.0) : kHalf;
