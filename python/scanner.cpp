@@ -54,7 +54,10 @@ Options<Scanner> scanner_options() {
       .add<double>(
           "exit_diameter_mm", [](const Scanner& s) { return s.exit_diameter_m * 1e3; },
           [](Scanner& s, double mm) { s.exit_diameter_m = mm * 1e-3; },
-          "Diameter of the beam at the exit, to 1/e^2; 0: not known.");
+          "Diameter of the beam at the exit, to 1/e^2; 0: not known.")
+      .add("detection_range_m", &Scanner::detection_range_m,
+           "Longest distance from which a surface of detection_reflectivity is detected; 0: every echo is.")
+      .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.");
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ Options<SceneOptions> scene_options() {
            "Pairs (pattern, largest range noise of points that count, mm).")
       .add("doors", &SceneOptions::doors, "Closed door leaves: open for people, closed for rays.")
       .add("station_area", &SceneOptions::station_area, "Nodes that stations may stand on.")
+      .add("glass", &SceneOptions::glass, "Nodes of glass, besides what the file says; 'opaque': none is.")
       .add("scene_index", &SceneOptions::scene_index, "Which glTF scene; None: the file's own.")
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
@@ -72,6 +73,7 @@ void add_mesh_info(py::module_& m) {
       .def_readonly("weight", &MeshInfo::weight, "Weight of its voxels in coverage, 1 to 255.")
       .def_readonly("door", &MeshInfo::door, "A closed door leaf: open for people, closed for rays.")
       .def_readonly("station_area", &MeshInfo::station_area, "Stations may stand on it.")
+      .def_readonly("glass", &MeshInfo::glass, "Rays pass it; people and stations do not.")
       .def_readonly("detail_m", &MeshInfo::detail_m, "Widest beam footprint of points that count, metres; 0: any.")
       .def_readonly("accuracy_m", &MeshInfo::accuracy_m,
                     "Largest range noise (sigma) of points that count, metres; 0: any.")

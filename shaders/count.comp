@@ -66,10 +66,10 @@ void main() {
   }
   if (with_limits && subgroupMax(misses) > 0u) {
     const uint dropped = subgroupAdd(misses != 0u ? 1u : 0u);
-    const uvec3 each = subgroupAdd(uvec3(misses & 1u, misses >> 1 & 1u, misses >> 2 & 1u));
+    const uvec4 each = subgroupAdd(uvec4(misses & 1u, misses >> 1 & 1u, misses >> 2 & 1u, misses >> 3 & 1u));
     if (subgroupElect()) {
       add64(push.counters, first_word + 2u * counter_dropped, dropped);
-      for (uint k = 0u; k < 3u; ++k)
+      for (uint k = 0u; k < 4u; ++k)
         if (each[k] > 0u) add64(push.counters, first_word + 2u * (counter_misses + k), each[k]);
     }
   }

@@ -21,16 +21,24 @@ void main() {
   const vec3 direction = ray_direction(row, column, push.turn);
   const Hit hit = trace(push.origin, direction, parameters.min_range,
                         parameters.max_range, want_nearest, from_the_root);
-  const bool is_point = hit.id != no_primitive;
+  bool is_point = hit.id != no_primitive;
+  uint misses = 0u;
   float t = uintBitsToFloat(0x7F800000u);
   Look look = unseen;
   uint voxel_index = no_voxel_index;
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
     if (with_look || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
+    misses = misses_of(hit, look, direction);
+    if ((misses & misses_echo) != 0u) {
+      is_point = false;
+      look = unseen;
+    }
+  }
+  if (is_point) {
     t = range_of(hit, look, ray_number(row, column), push.place);
     position = point_on_ray(push.origin, direction, t);
-    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u && misses_of(hit, look, direction) == 0u)
+    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u && misses == 0u)
       voxel_index = index_of(position);
   }
   if (GIVEN(push.range)) push.range.at[k] = t;

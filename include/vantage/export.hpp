@@ -161,7 +161,7 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                        const VoxelField* field = nullptr);
 
-/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, the node's `MissedShare`.
+/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
 /// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY, survey frame.

@@ -20,16 +20,18 @@
 namespace vantage {
 
 /// Status of a surveyed voxel, the first of these that holds. Lines run from candidates' heads to the middle of the
-/// voxel's surface; a line is free if nothing stands between the head and the voxel.
+/// voxel's surface; a line is free if nothing that stops rays stands between the
+/// head and the voxel.
 enum class WhyMissed : std::uint8_t {
   captured,    ///< It has the goal density.
   hidden,      ///< No line is free, whatever its length.
   far,         ///< Free lines are all longer than the scanner's range, or shorter than its nearest.
   flat,        ///< Free lines within range all meet the surface at more than `MissedOptions::flat`.
+  dark,        ///< Free lines within range that are not too flat all bring echoes too weak for the scanner.
   sparse,      ///< No single candidate's station would leave as many points as the goal density.
   not_chosen,  ///< One other station would have captured it.
 };
-inline constexpr std::size_t why_missed_count = 6;
+inline constexpr std::size_t why_missed_count = 7;
 std::string to_string(WhyMissed);
 
 struct MissedOptions {

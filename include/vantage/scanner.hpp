@@ -49,6 +49,10 @@ struct Scanner {
   /// 0: unknown.
   Angle beam_divergence = Angle::radians(0);
   double exit_diameter_m = 0;
+  /// Longest distance at which the scanner detects a matt surface of reflectivity `detection_reflectivity` at normal
+  /// incidence. 0: it detects every echo within range.
+  double detection_range_m = 0;
+  double detection_reflectivity = 0.9;
   /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;

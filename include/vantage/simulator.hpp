@@ -207,8 +207,7 @@ class Simulator {
   double goal_density() const noexcept;  ///< Points wanted in a voxel; the densest goal if goals differ.
   /// Points wanted in one voxel (`SimulatorConfig::spacing_by_detail`). REQUIRES: voxel < voxel_count().
   double goal_density(std::uint64_t voxel) const;
-  /// Limit in force, from `SimulatorConfig::max_incidence`. Empty: points have no limits of any kind, and all on
-  /// surveyed voxels count.
+  /// Limit of incidence in force, from `SimulatorConfig::max_incidence`. Empty: there is none.
   std::optional<Angle> max_incidence() const noexcept;
   Vec3 voxel_centre(std::uint64_t voxel) const;  ///< Survey frame. REQUIRES: voxel < voxel_count().
   /// Weight of a voxel in coverage (`MeshInfo::weight`). REQUIRES: voxel < voxel_count().

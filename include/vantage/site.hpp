@@ -38,6 +38,8 @@ struct SiteOptions {
   std::optional<std::array<double, 2>> range_m = {};  ///< Nearest and farthest.
   std::optional<std::string> noise = {};              ///< In the form of `load_noise()`.
   std::optional<std::array<double, 2>> beam = {};     ///< Divergence in mrad, exit diameter in mm.
+  /// `Scanner::detection_range_m` and `detection_reflectivity`; {0, 1}: every echo is detected.
+  std::optional<std::array<double, 2>> detection = {};
   std::optional<double> points_per_second = {};
 
   std::optional<double> user_size_m = {};  ///< Upper bound of the voxel size.

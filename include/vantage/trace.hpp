@@ -79,15 +79,18 @@ struct RegistrationSums {
 };
 
 /// Points of one station in surveyed voxels that do not count because they miss a limit
-/// (`SimulatorConfig::max_incidence`, `MeshInfo::detail_m`, `MeshInfo::accuracy_m`). A point may miss several.
+/// (`SimulatorConfig::max_incidence`, `MeshInfo::detail_m`, `MeshInfo::accuracy_m`, `Scanner::detection_range_m`). A
+/// point may miss several.
 struct DroppedPoints {
   std::uint64_t points = 0;     ///< Points that miss any limit.
   std::uint64_t incidence = 0;  ///< Incidence too oblique.
   std::uint64_t footprint = 0;  ///< Beam footprint too wide.
   std::uint64_t noise = 0;      ///< Range too noisy.
+  std::uint64_t echo = 0;       ///< Echo too weak to be detected.
   friend bool operator==(const DroppedPoints&, const DroppedPoints&) = default;
   friend DroppedPoints operator+(const DroppedPoints& a, const DroppedPoints& b) {
-    return {a.points + b.points, a.incidence + b.incidence, a.footprint + b.footprint, a.noise + b.noise};
+    return {a.points + b.points, a.incidence + b.incidence, a.footprint + b.footprint, a.noise + b.noise,
+            a.echo + b.echo};
   }
 };
 

@@ -39,6 +39,8 @@ class MeshInfo:
     @property
     def station_area(self) -> bool: ...
     @property
+    def glass(self) -> bool: ...
+    @property
     def detail_m(self) -> float: ...
     @property
     def accuracy_m(self) -> float: ...
@@ -57,6 +59,7 @@ class Scene:
         accuracies_mm: Sequence[Tuple[str, float]] = [],
         doors: Sequence[str] = [],
         station_area: Sequence[str] = [],
+        glass: Sequence[str] = [],
         scene_index: Optional[int] = None,
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
@@ -139,6 +142,7 @@ def load_gltf(
     accuracies_mm: Sequence[Tuple[str, float]] = [],
     doors: Sequence[str] = [],
     station_area: Sequence[str] = [],
+    glass: Sequence[str] = [],
     scene_index: Optional[int] = None,
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
@@ -167,6 +171,8 @@ class Scanner:
         noise: Optional[Dict[str, npt.ArrayLike]] = None,
         beam_divergence_mrad: float = 0.0,
         exit_diameter_mm: float = 0.0,
+        detection_range_m: float = 0.0,
+        detection_reflectivity: float = 0.9,
     ) -> None: ...
     @staticmethod
     def load(name: str, more: Path = "") -> Scanner: ...
@@ -184,6 +190,8 @@ class Scanner:
     noise: Optional[Dict[str, Any]]
     beam_divergence_mrad: float
     exit_diameter_mm: float
+    detection_range_m: float
+    detection_reflectivity: float
     @property
     def rows(self) -> int: ...
     @property
@@ -684,6 +692,7 @@ class Site:
         blocking: Setting = None,
         search: Setting = None,
         ignore: Setting = None,
+        glass: Setting = None,
         weight: Setting = None,
         detail: Setting = None,
         accuracy: Setting = None,
@@ -702,6 +711,7 @@ class Site:
         range: Setting = None,
         noise: Setting = None,
         beam: Setting = None,
+        detection: Setting = None,
         rate: Setting = None,
         user_size: Setting = None,
         incidence: Setting = None,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of a point: angle of incidence, footprint of the beam and range noise (docs/method.md). Only additions,
-// multiplications and comparisons, so that every device decides alike.
+// Limits of a point: angle of incidence, footprint of the beam, range noise and strength of the echo (docs/method.md).
+// Only additions, multiplications and comparisons, so that every device decides alike.
 #ifndef VANTAGE_LIB_LIMITS
 #define VANTAGE_LIB_LIMITS
 #include "lib/exact.glsl"
@@ -20,6 +20,11 @@ uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 directio
     if (area > allowed) misses |= misses_footprint;
   }
   if (limits.largest_sigma > 0.0 && sigma_at(t, reflectivity) > limits.largest_sigma) misses |= misses_noise;
+  if (limits.largest_reach_square > 0.0) {
+    precise float distance_square = t * t;
+    precise float reached = limits.largest_reach_square * abs(cosine);
+    if (distance_square > reached) misses |= misses_echo;
+  }
   return misses;
 }
 

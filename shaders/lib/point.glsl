@@ -33,8 +33,8 @@ vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uin
   return point_on_ray(origin, direction, range_of(hit, look, ray, place));
 }
 
-// Limits missed by a hit on a surveyed mesh, one bit each; its point counts if there are none. `look` is read if there
-// are limits.
+// Limits missed by a hit, one bit each; its point counts if there are none and the mesh is surveyed. `look` is read if
+// there are limits.
 uint misses_of(Hit hit, Look look, vec3 direction) {
   return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t) : 0u;
 }

@@ -38,11 +38,13 @@ struct PointLimits {
   float least_cosine_square;       // angle between ray and normal
   float largest_footprint_square;  // major axis of the beam on the surface, in metres squared
   float largest_sigma;             // range, in metres
+  float largest_reach_square;      // distance of the weakest echo at normal incidence, in metres squared
 };
 // One bit for each limit that a point misses.
 VANTAGE_CONST uint misses_incidence = 1;
 VANTAGE_CONST uint misses_footprint = 2;
 VANTAGE_CONST uint misses_noise = 4;
+VANTAGE_CONST uint misses_echo = 8;
 
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
@@ -94,8 +96,8 @@ struct TraceParameters {
 VANTAGE_CONST uint counter_points = 0;
 VANTAGE_CONST uint counter_counted = 1;
 VANTAGE_CONST uint counter_dropped = 2;
-VANTAGE_CONST uint counter_misses = 3;  // incidence, footprint, noise
-VANTAGE_CONST uint station_counters = 6;
+VANTAGE_CONST uint counter_misses = 3;  // incidence, footprint, noise, echo
+VANTAGE_CONST uint station_counters = 7;
 
 // Counts of one station.
 struct CountPush {

@@ -261,7 +261,8 @@ std::string evaluation_text(const Evaluation& found, const std::vector<std::stri
                         traced ? "" : fmt::format(" ± {:.2f}", error_mm.standard_error),
                         names[found.registration->worst_station], 1e3 * found.registration->worst_m);
   }
-  if (!found.counts.dropped.empty()) text += dropped_text(found.counts) + "\n";
+  if (std::ranges::any_of(found.counts.dropped, [](const DroppedPoints& lost) { return lost.points > 0; }))
+    text += dropped_text(found.counts) + "\n";
   return text + "\n" + summary_text(found);
 }
 

@@ -39,12 +39,10 @@ std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Pr
   const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
   spdlog::info(
       "{:.1f} % of the site is captured, other stations would capture {:.1f} % more; the rest is hidden from {} "
-      "positions all over the ground ({:.1f} %), out of range ({:.1f} %), or seen too flatly ({:.1f} %) or too "
-      "sparsely "
-      "({:.1f} %)",
-
+      "positions all over the ground ({:.1f} %), out of range ({:.1f} %), or seen too flatly ({:.1f} %), from too far "
+      "for so dark a surface ({:.1f} %) or too sparsely ({:.1f} %)",
       percent(WhyMissed::captured), percent(WhyMissed::not_chosen), judged.candidates, percent(WhyMissed::hidden),
-      percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::sparse));
+      percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::dark), percent(WhyMissed::sparse));
   return judged;
 }
 

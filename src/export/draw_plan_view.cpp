@@ -85,9 +85,11 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   };
   const auto any = [&](auto wanted) { return std::ranges::any_of(view.stations, wanted); };
   swatch(kSurveyedTint, "surveyed");
-  if (std::ranges::any_of(view.scene.meshes(), [](const MeshInfo& m) { return m.role == Role::blocking; }))
+  const auto some = [&](auto wanted) { return std::ranges::any_of(view.scene.meshes(), wanted); };
+  if (some([](const MeshInfo& m) { return m.role == Role::blocking && !m.glass; }))
     swatch(kBlockingTint, "not surveyed");
   if (content.cut) swatch(kCutTint, "cut through");
+  if (content.cut && some(&MeshInfo::glass)) swatch(kGlassTint, "glass");
   canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
   canvas.fill({at.x, at.y - 7, 24, 14}, kSearchTint, kSearchOpacity);
   canvas.rectangle({at.x + 0.5, at.y - 6.5, 23, 13}, {.colour = kSearchTint, .width = 1, .opacity = kSearchRim});

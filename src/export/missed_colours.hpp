@@ -22,6 +22,7 @@ inline constexpr std::array<MissedStyle, why_missed_count> kMissedStyles{
      {WhyMissed::hidden, {0.29, 0.27, 0.33}, "hidden from everywhere"},
      {WhyMissed::far, {0.04, 0.48, 0.36}, "out of range"},
      {WhyMissed::flat, {0.79, 0.41, 0.63}, "seen only too flatly"},
+     {WhyMissed::dark, {0.35, 0.10, 0.00}, "too dark at that distance"},
      {WhyMissed::sparse, {0.94, 0.83, 0.23}, "too sparse"},
      {WhyMissed::not_chosen, {0.85, 0.34, 0.04}, "other stations would capture it"}}};
 

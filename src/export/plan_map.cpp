@@ -34,20 +34,24 @@ SearchMesh mesh_of(const SearchMesh& mesh, const PlanLevel& level) {
 }
 
 void paint_section(std::vector<std::uint32_t>& pixels, const Section& section, const MapWindow& window, double line) {
-  const auto c = to_bytes(kCutTint);
-  const std::uint32_t fill = 0xFF000000u | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+  const auto packed = [](const Colour& colour) {
+    const auto c = to_bytes(colour);
+    return 0xFF000000u | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+  };
+  const std::uint32_t cut = packed(kCutTint), glass = packed(kGlassTint);
   for (std::size_t k = 0; k < pixels.size(); ++k)
-    if (section.solid[k]) pixels[k] = fill;
-  for (const auto& [a, b] : section.outlines) {
-    const int steps = static_cast<int>(std::ceil(std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)))) + 1;
-    for (int s = 0; s <= steps; ++s) {
-      const double t = static_cast<double>(s) / steps, x = a.x + t * (b.x - a.x), y = a.y + t * (b.y - a.y);
-      const auto [x0, x1] = pixels_between(x - line / 2, x + line / 2, window.columns);
-      const auto [y0, y1] = pixels_between(y - line / 2, y + line / 2, window.rows);
-      for (std::size_t j = y0; j < y1; ++j)
-        for (std::size_t i = x0; i < x1; ++i) pixels[j * window.columns + i] = fill;
+    if (section.solid[k]) pixels[k] = section.solid[k] == 1 ? cut : glass;
+  for (const bool of_glass : {true, false})
+    for (const auto& [a, b] : of_glass ? section.glass_outlines : section.outlines) {
+      const int steps = static_cast<int>(std::ceil(std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)))) + 1;
+      for (int s = 0; s <= steps; ++s) {
+        const double t = static_cast<double>(s) / steps, x = a.x + t * (b.x - a.x), y = a.y + t * (b.y - a.y);
+        const auto [x0, x1] = pixels_between(x - line / 2, x + line / 2, window.columns);
+        const auto [y0, y1] = pixels_between(y - line / 2, y + line / 2, window.rows);
+        for (std::size_t j = y0; j < y1; ++j)
+          for (std::size_t i = x0; i < x1; ++i) pixels[j * window.columns + i] = of_glass ? glass : cut;
+      }
     }
-  }
 }
 
 // `above` the ground that lies nearest to each pixel, local frame: where ground rises, what is cut off rises with it.

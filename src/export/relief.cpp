@@ -103,7 +103,8 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
   heights.triangle.assign(window.columns * window.rows, kNothing);
   Painter painter(heights, z_cut - scene.origin.z, cuts);
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+  // What lies below a glass roof is looked for.
+  for (std::uint32_t t = 0; t < scene.opaque_triangles().size(); ++t) {
     std::array<MapPoint, 3> c;
     std::array<double, 3> z;
     const auto p = corners_of(scene, t);

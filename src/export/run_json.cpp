@@ -110,7 +110,11 @@ ordered_json registration_json(const RegistrationError& error, const Estimate& w
 
 ordered_json dropped_json(const std::vector<DroppedPoints>& dropped) {
   const DroppedPoints all = std::accumulate(dropped.begin(), dropped.end(), DroppedPoints{});
-  return {{"points", all.points}, {"incidence", all.incidence}, {"footprint", all.footprint}, {"noise", all.noise}};
+  return {{"points", all.points},
+          {"incidence", all.incidence},
+          {"footprint", all.footprint},
+          {"noise", all.noise},
+          {"echo", all.echo}};
 }
 
 // `number`: of the entry, from 1.

@@ -59,8 +59,8 @@ struct Crossing {
   int winding;  // added to the right of it
 };
 
-// Fills a row of pixels by the crossings of its middle line.
-void fill_row(std::vector<Crossing>& row, std::uint8_t* solid, std::size_t columns) {
+// Fills a row of pixels with `kind` by the crossings of its middle line.
+void fill_row(std::vector<Crossing>& row, std::uint8_t kind, std::uint8_t* solid, std::size_t columns) {
   std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) {
     return a.surface != b.surface ? a.surface < b.surface : a.column < b.column;
   });
@@ -81,7 +81,7 @@ void fill_row(std::vector<Crossing>& row, std::uint8_t* solid, std::size_t colum
     winding += row[k].winding;
     if (winding <= 0) continue;
     const auto [x0, x1] = pixels_between(row[k].column, row[k + 1].column, columns);
-    for (std::size_t x = x0; x < x1; ++x) solid[x] = 1;
+    for (std::size_t x = x0; x < x1; ++x) solid[x] = kind;
   }
 }
 
@@ -110,24 +110,30 @@ Section section_at(const SceneData& scene, const MapWindow& window, double z) {
 Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z) {
   Section section;
   section.solid.assign(window.columns * window.rows, 0);
-  std::vector<std::vector<Crossing>> rows(window.rows);
-  std::vector<Cut> cuts;
-  for_each_cut(scene, z, [&](const Triangle& t, const Vec3& from, const Vec3& to) {
-    cuts.push_back({window.at(from), window.at(to), surfaces[t[0]]});
-  });
-  for (const Cut& cut : cuts) {
-    section.outlines.push_back({cut.from, cut.to});
-    // Rows count downward: the solid lies to the left of the cut, so to the right of a downward one.
-    const double top = std::min(cut.from.y, cut.to.y), bottom = std::max(cut.from.y, cut.to.y);
-    const auto first =
-        static_cast<std::size_t>(std::clamp(std::ceil(top - 0.5), 0.0, static_cast<double>(window.rows)));
-    for (std::size_t y = first; y < window.rows && static_cast<double>(y) + 0.5 < bottom; ++y) {
-      const double share = (static_cast<double>(y) + 0.5 - cut.from.y) / (cut.to.y - cut.from.y);
-      rows[y].push_back({cut.surface, cut.from.x + share * (cut.to.x - cut.from.x), cut.to.y > cut.from.y ? 1 : -1});
+  // Glass first, so that what it touches is drawn over it.
+  const std::size_t opaque = scene.opaque_triangles().size();
+  for (const bool glass : {true, false}) {
+    if (glass && opaque == scene.triangles.size()) continue;
+    std::vector<std::vector<Crossing>> rows(window.rows);
+    std::vector<Cut> cuts;
+    for_each_cut(scene, z, [&](const Triangle& t, const Vec3& from, const Vec3& to) {
+      const auto number = static_cast<std::size_t>(&t - scene.triangles.data());
+      if ((number >= opaque) == glass) cuts.push_back({window.at(from), window.at(to), surfaces[t[0]]});
+    });
+    for (const Cut& cut : cuts) {
+      (glass ? section.glass_outlines : section.outlines).push_back({cut.from, cut.to});
+      // Rows count downward: the solid lies to the left of the cut, so to the right of a downward one.
+      const double top = std::min(cut.from.y, cut.to.y), bottom = std::max(cut.from.y, cut.to.y);
+      const auto first =
+          static_cast<std::size_t>(std::clamp(std::ceil(top - 0.5), 0.0, static_cast<double>(window.rows)));
+      for (std::size_t y = first; y < window.rows && static_cast<double>(y) + 0.5 < bottom; ++y) {
+        const double share = (static_cast<double>(y) + 0.5 - cut.from.y) / (cut.to.y - cut.from.y);
+        rows[y].push_back({cut.surface, cut.from.x + share * (cut.to.x - cut.from.x), cut.to.y > cut.from.y ? 1 : -1});
+      }
     }
+    for (std::size_t y = 0; y < window.rows && !cuts.empty(); ++y)
+      fill_row(rows[y], glass ? 2 : 1, section.solid.data() + y * window.columns, window.columns);
   }
-  for (std::size_t y = 0; y < window.rows; ++y)
-    fill_row(rows[y], section.solid.data() + y * window.columns, window.columns);
   return section;
 }
 

@@ -12,8 +12,9 @@
 namespace vantage {
 
 struct Section {
-  std::vector<std::uint8_t> solid;                // one for each pixel of the window: 1 within a solid
-  std::vector<std::array<MapPoint, 2>> outlines;  // lines where surfaces cross the plane, in pixels
+  using Lines = std::vector<std::array<MapPoint, 2>>;
+  std::vector<std::uint8_t> solid;  // one for each pixel of the window: 1 within a solid, 2 within one of glass
+  Lines outlines, glass_outlines;   // lines where surfaces cross the plane, in pixels
 };
 
 // Number of the connected surface of each point.

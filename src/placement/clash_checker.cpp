@@ -20,6 +20,7 @@ struct ClashChecker::Impl {
   Vec3 origin;
   SecurityVolume volume;
   MeshTree tree;
+  std::optional<MeshTree> opaque;  // set if some meshes are of glass
 };
 
 ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
@@ -37,7 +38,11 @@ ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
          << " m, or the ground itself would clash; 0 switches the check off";
     throw Error(Errc::invalid_argument, what.str());
   }
-  impl_ = std::make_shared<const Impl>(Impl{scene.data().origin, volume, MeshTree(scene.data())});
+  const SceneData& data = scene.data();
+  const std::span<const Triangle> opaque = data.opaque_triangles();
+  impl_ = std::make_shared<const Impl>(
+      Impl{data.origin, volume, MeshTree(data),
+           opaque.size() < data.triangles.size() ? std::optional<MeshTree>(MeshTree(data, opaque)) : std::nullopt});
 }
 
 bool ClashChecker::clashes(const Vec3& ground) const {
@@ -77,6 +82,11 @@ std::optional<Vec3> ClashChecker::ground_below(const Vec3& point, double limit_m
 
 bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
   return !impl_->tree.between(to_glm(a - impl_->origin), to_glm(b - impl_->origin));
+}
+
+bool ClashChecker::ray_passes(const Vec3& a, const Vec3& b) const {
+  const MeshTree& tree = impl_->opaque ? *impl_->opaque : impl_->tree;
+  return !tree.between(to_glm(a - impl_->origin), to_glm(b - impl_->origin));
 }
 
 const SecurityVolume& ClashChecker::volume() const noexcept { return impl_->volume; }

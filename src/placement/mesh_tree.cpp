@@ -170,25 +170,24 @@ struct MeshTree::Impl {
   embree::Scene tree;
   Buffers buffers{};  // buffers of the geometry, which live as long as the tree
 
-  explicit Impl(const SceneData& scene) : tree(rtcNewScene(device.get())) {
+  Impl(const SceneData& scene, std::span<const Triangle> used) : tree(rtcNewScene(device.get())) {
     rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
-    if (!scene.triangles.empty()) {
+    if (!used.empty()) {
       const embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
       auto* positions = static_cast<Float3*>(rtcSetNewGeometryBuffer(
           geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), scene.positions.size()));
       auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
-          geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), scene.triangles.size()));
+          geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), used.size()));
       embree::check(device.get(), "taking the scene's triangles for distances");
       std::copy(scene.positions.begin(), scene.positions.end(), positions);
-      std::copy(scene.triangles.begin(), scene.triangles.end(), triangles);
+      std::copy(used.begin(), used.end(), triangles);
       buffers = {positions, triangles};
       rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_nearest);
       rtcCommitGeometry(geometry.get());
       rtcAttachGeometry(tree.get(), geometry.get());
     }
     rtcCommitScene(tree.get());
-    embree::check(device.get(),
-                  "building the tree for distances over " + std::to_string(scene.triangles.size()) + " triangles");
+    embree::check(device.get(), "building the tree for distances over " + std::to_string(used.size()) + " triangles");
   }
 
   Nearest first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
@@ -222,7 +221,8 @@ Nearest MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way
   return nearest;
 }
 
-MeshTree::MeshTree(const SceneData& scene) : impl_(std::make_unique<Impl>(scene)) {}
+MeshTree::MeshTree(const SceneData& scene, std::span<const Triangle> triangles)
+    : impl_(std::make_unique<Impl>(scene, triangles)) {}
 MeshTree::~MeshTree() = default;
 MeshTree::MeshTree(MeshTree&&) noexcept = default;
 MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;

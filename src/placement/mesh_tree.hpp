@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/glm.hpp"
 #include "scene/scene_data.hpp"
@@ -15,7 +16,9 @@ namespace vantage {
 class MeshTree {
  public:
   // Keeps no reference to `scene`. Throws Error: out_of_memory, device_failure.
-  explicit MeshTree(const SceneData& scene);
+  explicit MeshTree(const SceneData& scene) : MeshTree(scene, scene.triangles) {}
+  // Of some of its triangles.
+  MeshTree(const SceneData& scene, std::span<const Triangle> triangles);
   ~MeshTree();
   MeshTree(MeshTree&&) noexcept;
   MeshTree& operator=(MeshTree&&) noexcept;

@@ -54,7 +54,9 @@ class Judge {
     std::vector<std::pair<double, std::size_t>> order(candidates_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
     std::sort(order.begin(), order.end());
-    bool free_line = false, in_range = false, steep = false;
+    bool free_line = false, in_range = false, steep = false, bright = false;
+    const double reach_square = scanner.detection_range_m * scanner.detection_range_m *
+                                simulator_.scene().meshes()[patch.mesh].diffuse / scanner.detection_reflectivity;
     const double goal = simulator_.goal_density(rank);
     double best = 0;
     for (const auto& [range, k] : order) {
@@ -62,13 +64,15 @@ class Judge {
       const bool reached = range >= scanner.min_range_m && range <= scanner.max_range_m;
       // A line that cannot change the answer is not traced.
       if (free_line && !reached) continue;
-      if (!clash_.sees(head, head + way * entry(head, patch.point, centre, half))) continue;
+      if (!clash_.ray_passes(head, head + way * entry(head, patch.point, centre, half))) continue;
       free_line = true;
       if (!reached) continue;
       in_range = true;
       const double incidence = range > 0 ? std::abs(dot(way, patch.normal)) / range : 1;
       if (incidence < steepest_) continue;
       steep = true;
+      if (scanner.detection_range_m > 0 && range * range > reach_square * incidence) continue;
+      bright = true;
       if (!in_field_of_view(scanner, way, range)) continue;
       const double across = std::sqrt(std::max(way.x * way.x + way.y * way.y, 1e-12)) / range;  // sin zenith
       best = std::max(best, patch.area_m2 * incidence / (range * range) * per_steradian_ / across);
@@ -78,6 +82,7 @@ class Judge {
                           : !free_line ? WhyMissed::hidden
                           : !in_range  ? WhyMissed::far
                           : !steep     ? WhyMissed::flat
+                          : !bright    ? WhyMissed::dark
                                        : WhyMissed::sparse;
     return {why, static_cast<float>(captured), static_cast<float>(std::max(captured, std::min(best / goal, 1.0)))};
   }
@@ -97,6 +102,7 @@ std::string to_string(WhyMissed why) {
     case WhyMissed::hidden: return "hidden";
     case WhyMissed::far: return "out_of_range";
     case WhyMissed::flat: return "too_flat";
+    case WhyMissed::dark: return "too_dark";
     case WhyMissed::sparse: return "too_sparse";
     case WhyMissed::not_chosen: return "not_chosen";
   }

@@ -92,7 +92,8 @@ void add(Hash& hash, const TraceScanner& scanner) {
   if (!scanner.limits) return;
   const LimitModel& limits = *scanner.limits;
   for (const LimitModel::Limits& limit : limits.meshes)
-    hash.add(limit.least_cosine_square), hash.add(limit.largest_footprint_square), hash.add(limit.largest_sigma);
+    hash.add(limit.least_cosine_square), hash.add(limit.largest_footprint_square), hash.add(limit.largest_sigma),
+        hash.add(limit.largest_reach_square);
   hash.add(limits.exit_diameter), hash.add(limits.divergence);
   if (limits.noise) add(hash, *limits.noise);
 }

@@ -239,6 +239,7 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
                {"hidden", 50},
                {"too far", 50},
                {"too flat", 50},
+               {"too dark", 50},
                {"too sparse", 60}},
               nodes.size(), rows, "missed.csv has all", [&](std::size_t k) -> std::vector<std::string> {
                 const MissedShare& s = *nodes[k];
@@ -248,6 +249,7 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
                         share(s, WhyMissed::hidden),
                         share(s, WhyMissed::far),
                         share(s, WhyMissed::flat),
+                        share(s, WhyMissed::dark),
                         share(s, WhyMissed::sparse)};
               });
 }

@@ -31,6 +31,7 @@ Welded weld(const SceneData& scene) {
   std::vector<Corner> corners;
   corners.reserve(3 * scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
+    if (scene.meshes[m].glass) continue;  // it would hide what is behind it
     const MeshRange& range = scene.ranges[m];
     const std::uint8_t kind = scene.meshes[m].role == Role::surveyed ? kSurveyedVertex : 0;
     for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)

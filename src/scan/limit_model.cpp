@@ -19,6 +19,15 @@ const MeshInfo* first_with(const SceneData& scene, double MeshInfo::*wish) {
   return found == scene.meshes.end() ? nullptr : &*found;
 }
 
+// The received power of a matt surface that is larger than the beam is proportional to ρ·cos α / R² (laser radar
+// equation of extended targets). 0 if every echo is detected.
+float reach_square(const Scanner& scanner, double reflectivity) {
+  constexpr float kNowhere = 1e-20f;  // a black surface: nearer than any scanner measures, and not 0
+  if (scanner.detection_range_m == 0) return 0;
+  const double square = scanner.detection_range_m * scanner.detection_range_m;
+  return std::max(static_cast<float>(square * reflectivity / scanner.detection_reflectivity), kNowhere);
+}
+
 }  // namespace
 
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config) {
@@ -27,9 +36,11 @@ std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConf
   return std::nullopt;
 }
 
-LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config) {
+LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config,
+                            bool always) {
   LimitModel model;
-  const std::optional<Angle> incidence = incidence_limit(scene, config);
+  std::optional<Angle> incidence = incidence_limit(scene, config);
+  if (!incidence && (always || scanner.detection_range_m > 0)) incidence = Angle::degrees(90);
   if (!incidence) return model;
   const double degrees = incidence->in_degrees();
   if (!(degrees > 0 && degrees <= 90 + 1e-9))
@@ -52,10 +63,10 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
   model.exit_diameter = static_cast<float>(scanner.exit_diameter_m);
   model.divergence = static_cast<float>(scanner.beam_divergence.in_radians());
   for (const MeshInfo& mesh : scene.meshes) {
-    model.meshes.push_back({});
+    model.meshes.push_back({.largest_reach_square = reach_square(scanner, mesh.diffuse)});
     if (mesh.role != Role::surveyed) continue;
     model.meshes.back() = {least, static_cast<float>(mesh.detail_m * mesh.detail_m),
-                           static_cast<float>(mesh.accuracy_m)};
+                           static_cast<float>(mesh.accuracy_m), model.meshes.back().largest_reach_square};
   }
   if (model.noise && !model.noise->enabled()) {  // a table of zeros, which no point misses
     model.noise = nullptr;

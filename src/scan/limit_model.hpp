@@ -14,8 +14,10 @@ namespace vantage {
 // Largest angle between ray and normal at which a point counts; empty if points have no limits.
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config);
 
-// Not enabled if points have no limits. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail without
-// the scanner's beam, an accuracy without its noise.
-LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config);
+// Not enabled if points have no limits. `always`: enabled even then, since another scanner of the simulator limits its
+// own. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail without the scanner's beam, an accuracy
+// without its noise.
+LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config,
+                            bool always = false);
 
 }  // namespace vantage

@@ -170,7 +170,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
   node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
              "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
-             "default_setting", "noise"});
+             "default_setting", "noise", "detection"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -186,7 +186,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   }
   const Node chosen = settings.member(setting);
   chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "points_per_second",
-               "source", "note"});
+               "detection_range_m", "source", "note"});
   chosen.sourced();
 
   Scanner scanner;
@@ -207,6 +207,14 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
     scanner.beam_divergence = Angle::radians(node.member("beam_divergence_mrad").figure() * 1e-3);
   if (node.has("exit_diameter_mm")) scanner.exit_diameter_m = node.member("exit_diameter_mm").figure() * 1e-3;
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
+  if (node.has("detection")) {
+    const Node detection = node.member("detection");
+    detection.only({"range_m", "reflectivity", "source", "note"});
+    detection.sourced();
+    scanner.detection_range_m =
+        (chosen.has("detection_range_m") ? chosen.member("detection_range_m") : detection.member("range_m")).number();
+    scanner.detection_reflectivity = detection.member("reflectivity").number();
+  }
   try {
     scanner.check();
   } catch (const Error& e) {

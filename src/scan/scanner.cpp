@@ -97,6 +97,10 @@ void Scanner::check() const {
   if (!(divergence >= 0 && divergence < 100)) refuse("beam_divergence in mrad", divergence, "in [0, 100)");
   if (!(std::isfinite(exit_diameter_m) && exit_diameter_m >= 0))
     refuse("exit_diameter_m", exit_diameter_m, "0 or more");
+  if (!(detection_range_m >= 0 && detection_range_m <= 1e6))
+    refuse("detection_range_m", detection_range_m, "from 0 to 1e6");
+  if (!(detection_reflectivity > 0 && detection_reflectivity <= 1))
+    refuse("detection_reflectivity", detection_reflectivity, "above 0 and at most 1");
   if (!(std::isfinite(points_per_second) && points_per_second > 0))
     refuse("points_per_second", points_per_second, "finite and above 0");
   check_noise(noise);

@@ -8,8 +8,8 @@
 namespace vantage {
 
 Settings settings(const Scanner& scanner) {
-  return SettingList()
-      .add("name", scanner.name, {.decides = false})
+  SettingList list;
+  list.add("name", scanner.name, {.decides = false})
       .add("heading_deg", scanner.heading, {"heading"})
       .add("horizontal_angle_deg", scanner.horizontal_angle, {"horizontal"})
       .add("vertical_angle_deg", scanner.vertical_angle, {"vertical"})
@@ -24,8 +24,11 @@ Settings settings(const Scanner& scanner) {
                                            {"reflectivities", scanner.noise.reflectivities},
                                            {"sigma_m", scanner.noise.sigma_m}})
       .add("beam_divergence_mrad", scanner.beam_divergence.in_radians() * 1e3, {"beam"})
-      .add("exit_diameter_mm", scanner.exit_diameter_m * 1e3, {"beam"})
-      .take();
+      .add("exit_diameter_mm", scanner.exit_diameter_m * 1e3, {"beam"});
+  if (scanner.detection_range_m > 0)
+    list.add("detection_range_m", scanner.detection_range_m, {"detection"})
+        .add("detection_reflectivity", scanner.detection_reflectivity, {"detection"});
+  return list.take();
 }
 
 Settings settings(const SimulatorConfig& config) {

@@ -140,7 +140,9 @@ struct Simulator::Impl {
     if (!grid) return;
     const double wide = grid->voxel_size() / finest_spacing(data(), spacings);
     goal = wide * wide;
-    for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
+    const bool some_echo_is_lost =
+        std::ranges::any_of(scanners, [](const Scanner& scanner) { return scanner.detection_range_m > 0; });
+    for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner, some_echo_is_lost));
     registered = scanners;
     // Shares ownership of the scene's storage for as long as the engine needs it.
     const auto kept = std::make_shared<const Scene>(scene);
@@ -157,15 +159,15 @@ struct Simulator::Impl {
     tracer->set_goal_density(goal);
   }
 
-  TraceScanner trace_scanner(const Scanner& scanner) const {
+  TraceScanner trace_scanner(const Scanner& scanner, bool some_echo_is_lost) const {
     const auto noise =
         config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
     return {.pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
             .noise = std::make_shared<const NoiseModel>(noise),
-            .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config))};
+            .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config, some_echo_is_lost))};
   }
 
-  // All scanners use the same point limits.
+  // Either all scanners have point limits or none.
   bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }

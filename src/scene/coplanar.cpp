@@ -112,6 +112,7 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
                        std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
+    if (meshes[m].glass) continue;  // it hides nothing
     std::vector<std::uint32_t>& chosen = (meshes[m].role == Role::surveyed ? surveyed : blocking).chosen;
     for (std::uint32_t t = 0; t < ranges[m].triangle_count; ++t) chosen.push_back(ranges[m].first_triangle + t);
   }

@@ -46,6 +46,12 @@ std::span<const std::string> Scene::notes() const noexcept { return data_->notes
 const std::string& Scene::defaults_json() const noexcept { return data_->defaults_json; }
 const SceneOptions& Scene::options() const noexcept { return data_->options; }
 
+std::span<const Triangle> SceneData::opaque_triangles() const {
+  std::size_t count = triangles.size();
+  for (std::size_t m = meshes.size(); m > 0 && meshes[m - 1].glass; --m) count = ranges[m - 1].first_triangle;
+  return std::span(triangles).first(count);
+}
+
 std::uint32_t SceneData::mesh_of(std::uint32_t triangle) const {
   const auto after = std::ranges::upper_bound(ranges, triangle, {}, &MeshRange::first_triangle);
   return static_cast<std::uint32_t>(after - ranges.begin()) - 1;

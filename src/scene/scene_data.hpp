@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ struct SceneData {
   std::vector<Float2> texcoords;       // empty, or one per position
   std::vector<std::uint32_t> colours;  // empty, or one per position, 0xAABBGGRR, linear; white if the file has none
   std::vector<Triangle> triangles;     // no degenerate, no non-finite triangle: dropped on load, counted in notes
-  std::vector<MeshRange> ranges;       // consecutive: ranges[m].first_triangle ascends
+  std::vector<MeshRange> ranges;       // consecutive: ranges[m].first_triangle ascends; those of glass come last
   std::vector<MeshInfo> meshes;        // as long as ranges
   std::vector<Material> materials;     // at least one
   std::vector<Image> images;
@@ -63,6 +64,7 @@ struct SceneData {
   SceneOptions options = {};  // how the file was read
 
   std::uint32_t mesh_of(std::uint32_t triangle) const;  // by binary search over ranges
+  std::span<const Triangle> opaque_triangles() const;   // those that stop rays: all but the last, of glass
 };
 
 }  // namespace vantage

@@ -54,6 +54,10 @@ Scanner site_scanner(const SiteOptions& options, double scale) {
     scanner.beam_divergence = Angle::radians((*options.beam)[0] * 1e-3);
     scanner.exit_diameter_m = (*options.beam)[1] * 1e-3;
   }
+  if (options.detection) {
+    scanner.detection_range_m = (*options.detection)[0];
+    scanner.detection_reflectivity = (*options.detection)[1];
+  }
   scanner.check();
   return scanner;
 }

@@ -34,6 +34,10 @@ void add_scene(Rows& rows) {
           [](SiteOptions & o) -> auto& { return o.scene.search; })
       .texts(
           "ignore", "PATTERN", "Nodes to leave out", [](SiteOptions & o) -> auto& { return o.scene.ignore; })
+      .texts(
+          "glass", "PATTERN",
+          "Nodes of glass, besides those whose material is: rays pass it, people do not; opaque: none is",
+          [](SiteOptions & o) -> auto& { return o.scene.glass; })
       .repeated(
           "weight", "PATTERN=W",
           "Weight of a voxel of these nodes in coverage, 1 to 255; others have 1; may be repeated",
@@ -117,6 +121,20 @@ void add_scanner(Rows& rows) {
       .numbers("beam", "MRAD,MM",
                "Full angle of the beam's divergence, in milliradians, and its diameter at the exit, in millimetres",
                &SiteOptions::beam, 2, not_negative)
+      .by_scene()
+      .by_preset()
+      .optional("detection", "M,R",
+                "Longest distance, in metres, from which the scanner detects a surface of reflectivity R, 0 to 1; off: "
+                "every echo",
+                &SiteOptions::detection,
+                [](const std::string& text, const std::string& what) {
+                  if (text == "off") return std::array{0.0, 1.0};
+                  const auto values = parse_numbers(text, what, 2, 2, positive);
+                  if (values[1] > 1)
+                    throw Error(Errc::invalid_argument, what + ": a reflectivity is at most 1, and " + text +
+                                                            " ends with " + std::to_string(values[1]));
+                  return std::array{values[0], values[1]};
+                })
       .by_scene()
       .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",

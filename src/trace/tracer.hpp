@@ -53,6 +53,9 @@ struct LimitModel {
     float least_cosine_square = 0;       // angle between ray and normal
     float largest_footprint_square = 0;  // major axis of the beam on the surface, metres squared
     float largest_sigma = 0;             // range, metres
+    // Square of the distance, in metres squared, from which an echo at normal incidence is just detected. A scan has no
+    // point where this limit is missed, on blocking meshes too.
+    float largest_reach_square = 0;
     friend bool operator==(const Limits&, const Limits&) = default;
   };
   std::vector<Limits> meshes;                    // one per mesh of the scene; empty: every point counts

@@ -84,6 +84,7 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
         EXPECT_NEAR(static_cast<double>(counts.dropped[s].incidence), static_cast<double>(dropped.incidence), slack);
         EXPECT_NEAR(static_cast<double>(counts.dropped[s].footprint), static_cast<double>(dropped.footprint), slack);
         EXPECT_NEAR(static_cast<double>(counts.dropped[s].noise), static_cast<double>(dropped.noise), slack);
+        EXPECT_NEAR(static_cast<double>(counts.dropped[s].echo), static_cast<double>(dropped.echo), slack);
         all = all + counts.dropped[s];
       }
       EXPECT_LE(static_cast<double>(undecided), most_undecided(rays));
@@ -94,7 +95,8 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
       EXPECT_GT(all.incidence, 100u);
       EXPECT_GT(all.footprint, 100u);
       EXPECT_GT(all.noise, 100u);
-      EXPECT_LT(all.points, all.incidence + all.footprint + all.noise);
+      EXPECT_GT(all.echo, 100u);
+      EXPECT_LT(all.points, all.incidence + all.footprint + all.noise + all.echo);
     }
   }
 }

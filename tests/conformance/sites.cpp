@@ -105,6 +105,8 @@ std::shared_ptr<const SceneData> built_in(const std::string& name) {
 LimitModel some_limits(SceneData scene, Scanner scanner) {
   scanner.beam_divergence = Angle::radians(5e-4);
   scanner.exit_diameter_m = 0.006;
+  scanner.detection_range_m = 6;
+  scanner.detection_reflectivity = 0.5;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     scene.meshes[m].detail_m = m % 2 == 0 ? 0.0105 : 0.0125;
     scene.meshes[m].accuracy_m = m % 3 == 0 ? 0.0004 : 0;

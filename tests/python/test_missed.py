@@ -19,7 +19,8 @@ class AfterASearch(unittest.TestCase):
     def test_missed_voxels_have_a_reason(self):
         seen = self.simulator.evaluate(BEFORE_EACH_WALL[:2], field=True)  # the walls in the north and south are not
         missed = vantage.why_missed(self.site, seen)
-        self.assertEqual(missed.reasons, ["captured", "hidden", "out_of_range", "too_flat", "too_sparse", "not_chosen"])
+        self.assertEqual(missed.reasons,
+                         ["captured", "hidden", "out_of_range", "too_flat", "too_dark", "too_sparse", "not_chosen"])
         np.testing.assert_array_equal(missed.points, seen.voxel_points[missed.voxels])
         np.testing.assert_array_equal(missed.why == 0, missed.points >= seen.goal_density)
         self.assertAlmostEqual(missed.shares[""]["captured"], seen.coverage, delta=1e-9)

@@ -155,7 +155,10 @@ class RayTest {
       hit.dropped.footprint = hold(axis, std::sqrt(static_cast<double>(limits.largest_footprint_square)));
     if (limits.largest_sigma > 0)
       hit.dropped.noise = hold(model_sigma(*model.noise, hit.t, hit.reflectivity), limits.largest_sigma);
-    hit.dropped.points = hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise > 0 ? 1 : 0;
+    if (limits.largest_reach_square > 0)
+      hit.dropped.echo = hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine));
+    hit.dropped.points =
+        hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise + hit.dropped.echo > 0 ? 1 : 0;
   }
 
   Vec3 direction_of(const ReferenceHit& hit) const { return unit(hit.point - origin_); }
@@ -177,7 +180,7 @@ std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) con
     double radius;
   };
   std::vector<Sphere> spheres;
-  for (const Triangle& t : scene.triangles) {
+  for (const Triangle& t : scene.opaque_triangles()) {
     const Vec3 a = widen(scene.positions[t[0]]), b = widen(scene.positions[t[1]]), c = widen(scene.positions[t[2]]);
     const Vec3 centre = (a + b + c) * (1.0 / 3) - origin;
     spheres.push_back(

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <mutex>
 #include <new>
 
 #include "core/text.hpp"
 #include "import/import.hpp"
+#include "scene/cut_masks.hpp"
 #include "scene/gltf/file.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
@@ -46,6 +48,7 @@ struct Job {
   std::uint32_t weight = 1;
   double detail_mm = 0, accuracy_mm = 0;  // 0: any
   const MaterialInfo* material = nullptr;
+  bool glass = false;
 };
 
 // Whether the transform turns right-handed axes into left-handed ones.
@@ -102,11 +105,13 @@ class Loader {
       throw file_.malformed("it holds points or lines alone; a survey is planned on surfaces: export triangles");
     settle_axes();
     find_doors();
+    note_glass();
+    raw_.materials = std::move(materials_.materials);
+    raw_.images = std::move(materials_.images);
+    cut_masks(raw_, materials_.cutoffs, budget_);
     pass_notes_on();
     note_skipped();
     read_rooms();
-    raw_.materials = std::move(materials_.materials);
-    raw_.images = std::move(materials_.images);
     if (const auto& defaults = file_.asset_extras("vantage"); !defaults.is_null()) raw_.defaults_json = defaults.dump();
     return std::move(raw_);
   }
@@ -180,14 +185,27 @@ class Loader {
                                                material.luminance};
         const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
         job.diffuse = first != std::end(given) ? **first : options_.default_diffuse;
-        some_surveyed = some_surveyed || job.role == Role::surveyed;
+        job.glass = is_glass(mesh, mesh_marks, material);
+        some_surveyed = some_surveyed || (job.role == Role::surveyed && !job.glass);
         jobs.push_back(job);
       }
     }
     leave_out_doors(jobs);
-    for (Job& job : jobs)
+    for (Job& job : jobs) {
       if (!job.role) job.role = some_surveyed ? Role::blocking : Role::surveyed;
+      job.glass = job.glass && job.role != Role::ignore && job.role != Role::search;
+      if (job.glass) job.role = Role::blocking;
+    }
+    std::ranges::stable_partition(jobs, [](const Job& job) { return !job.glass; });
     return jobs;
+  }
+
+  bool is_glass(const PlacedMesh& mesh, const Marks& mesh_marks, const MaterialInfo& material) const {
+    if (std::ranges::count(options_.glass, kOpaqueGlass) > 0) return false;
+    if (mesh.glass || mesh.own_role) return mesh.glass;
+    for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
+      if (marks->glass) return *marks->glass;
+    return material.glass;
   }
 
   // Allocates room for all meshes, after checking that it is available.
@@ -242,14 +260,37 @@ class Loader {
     if (!prepared() && std::ranges::count(options_.doors, kClosedDoors) == 0)
       for (std::string& name : open_doors(raw_, may_be_door_)) doors_.push_back(std::move(name));
     if (doors_.empty()) return;
-    constexpr std::size_t kNamed = 3;
-    std::string some;
-    for (std::size_t i = 0; i < std::min(kNamed, doors_.size()); ++i) some += (i ? ", " : "") + gltf::quoted(doors_[i]);
     raw_.notes.push_back(std::to_string(doors_.size()) +
                          (doors_.size() == 1 ? " door is taken as open, its leaf left out: "
                                              : " doors are taken as open, their leaves left out: ") +
-                         some + (doors_.size() > kNamed ? ", …" : "") +
-                         "; the word closed for the setting doors keeps them");
+                         some_of(doors_) + "; the word closed for the setting doors keeps them");
+  }
+
+  // REQUIRES: lengths in metres.
+  void note_glass() {
+    double area = 0;
+    std::vector<std::string> names;
+    for (std::size_t m = 0; m < raw_.meshes.size(); ++m) {
+      if (!raw_.meshes[m].glass) continue;
+      const MeshRange& range = raw_.ranges[m];
+      for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {
+        const auto corner = [&](std::size_t c) { return raw_.positions[raw_.triangles[t][c]]; };
+        area += 0.5 * length(cross(corner(1) - corner(0), corner(2) - corner(0)));
+      }
+      if (std::ranges::find(names, raw_.meshes[m].name) == names.end()) names.push_back(raw_.meshes[m].name);
+    }
+    if (names.empty()) return;
+    char metres[32];
+    std::snprintf(metres, sizeof metres, "%.3g", area);
+    raw_.notes.push_back("rays pass " + std::string(metres) + " m² of glass, each face counted, which stops people: " +
+                         some_of(names) + "; the word opaque for the setting glass stops rays too");
+  }
+
+  static std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t kNamed = 3;
+    std::string some;
+    for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) some += (i ? ", " : "") + gltf::quoted(names[i]);
+    return some + (names.size() > kNamed ? ", …" : "");
   }
 
   void read(const Job& job) {
@@ -278,6 +319,7 @@ class Loader {
                            .weight = job.weight,
                            .door = job.placed->door,
                            .station_area = job.placed->station_area,
+                           .glass = job.glass,
                            .detail_m = job.detail_mm * 1e-3,
                            .accuracy_m = job.accuracy_mm * 1e-3});
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)

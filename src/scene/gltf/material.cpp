@@ -85,8 +85,36 @@ const MaterialInfo& MaterialTable::get(int index) {
     if (material.image < 0) info.texcoord_set = -1;
   }
   info.index = static_cast<std::uint32_t>(materials.size());
+  cutoffs.push_back(index >= 0 ? read_transparency(index, material, info) : 0);
   materials.push_back(material);
   return read_.emplace(index, info).first->second;
+}
+
+// Blended surfaces have no cut-off of their own. With a texture they are mostly leaves, and cut at one half as in
+// practice; where alpha stays below that, light passes all of the surface.
+double MaterialTable::read_transparency(int index, const Material& material, MaterialInfo& info) const {
+  constexpr double kHalf = 0.5, kTransmits = 0.1;
+  const json& transmission = file_.find("materials", index, {"extensions", "KHR_materials_transmission"});
+  info.glass = transmission.is_object() && number_in(transmission, "transmissionFactor", 0) >= kTransmits;
+  if (info.glass) return 0;
+  const json& mode = file_.find("materials", index, {"alphaMode"});
+  if (mode == "MASK") {
+    const bool unread =
+        material.image < 0 && file_.find("materials", index, {"pbrMetallicRoughness", "baseColorTexture"}).is_object();
+    if (unread) return 0;
+    const json& cutoff = file_.find("materials", index, {"alphaCutoff"});
+    return cutoff.is_number() ? std::clamp(cutoff.get<double>(), 0.0, 1.0) : kHalf;
+  }
+  if (mode != "BLEND") return 0;
+  double most = 1;
+  if (material.image >= 0) {
+    const std::vector<std::uint8_t>& rgba = images[static_cast<std::size_t>(material.image)].rgba;
+    std::uint8_t found = 0;
+    for (std::size_t k = 3; k < rgba.size(); k += 4) found = std::max(found, rgba[k]);
+    most = found / 255.0;
+  }
+  info.glass = most * static_cast<double>(material.base_colour[3]) <= kHalf;
+  return info.glass || material.image < 0 ? 0 : kHalf;
 }
 
 std::int32_t MaterialTable::image(int texture) {
@@ -103,7 +131,6 @@ std::int32_t MaterialTable::image(int texture) {
     try {
       place = decode(source, "texture " + std::to_string(texture), problem);
     } catch (const Error& error) {
-      if (error.code() == Errc::out_of_memory) throw;
       problem = error.what();
     }
   }

@@ -18,25 +18,28 @@ namespace vantage::gltf {
 struct MaterialInfo {
   std::uint32_t index = 0;                       // index into the table's materials
   Marks marks;                                   // of its extras
+  bool glass = false;                            // light passes the whole surface
   std::optional<double> luminance;               // of the base colour factor, if the file gives one and no texture
   int texcoord_set = -1;                         // of the base colour texture; -1 without one
   double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)
 };
 
 // Reads each material and each image once, on first use; images with equal bytes are shared. An image that cannot be
-// read costs only colour: it is left out, with a note.
+// read, or does not fit, costs only colour and the holes of a mask: it is left out, with a note.
 class MaterialTable {
  public:
   MaterialTable(const File& file, LoadBudget& budget, std::vector<std::string>& notes)
       : file_(file), budget_(budget), notes_(notes) {}
-  // -1 is the default material. Throws Error: malformed_file; out_of_memory, before decoding an image that does not
-  // fit.
+  // -1 is the default material. Throws Error malformed_file.
   const MaterialInfo& get(int material);
 
   std::vector<Material> materials;
   std::vector<Image> images;
+  std::vector<double> cutoffs;  // per material: alpha below which its surface is empty; 0: nowhere
 
  private:
+  // Sets `info.glass`; returns the material's cut-off.
+  double read_transparency(int index, const Material& material, MaterialInfo& info) const;
   std::int32_t image(int texture);
   std::int32_t decode(int source, const std::string& texture, std::string& problem);
 

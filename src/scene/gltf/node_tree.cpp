@@ -269,10 +269,15 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   };
   length("detail_mm", marks.detail_mm);
   length("accuracy_mm", marks.accuracy_mm);
-  if (const auto door = object.find("door"); door != object.end()) {
-    if (!door->is_boolean()) throw file.malformed(where + ".door is " + quoted(door->dump()) + "; use true or false");
-    marks.door = door->get<bool>();
-  }
+  const auto flag = [&](const char* key, std::optional<bool>& target) {
+    const auto value = object.find(key);
+    if (value == object.end()) return;
+    if (!value->is_boolean())
+      throw file.malformed(where + "." + key + " is " + quoted(value->dump()) + "; use true or false");
+    target = value->get<bool>();
+  };
+  flag("door", marks.door);
+  flag("glass", marks.glass);
   return marks;
 }
 
@@ -287,7 +292,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     std::optional<std::uint32_t> pattern_weight;
     std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
     Marks marks;
-    bool door = false, station_area = false;
+    bool door = false, station_area = false, glass = false;
     std::string name = {};  // of the nearest node above that has one
   };
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
@@ -298,7 +303,10 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   Patterns<std::uint32_t> weights = weight_patterns(options);
   std::vector<std::string> door_names = options.doors;
   std::erase(door_names, kClosedDoors);
-  Patterns<bool> doors = name_patterns(door_names), station_areas = name_patterns(options.station_area);
+  std::vector<std::string> glass_names = options.glass;
+  std::erase(glass_names, kOpaqueGlass);
+  Patterns<bool> doors = name_patterns(door_names), station_areas = name_patterns(options.station_area),
+                 glasses = name_patterns(glass_names);
   Patterns<double> details = length_patterns(options.details_mm, "detail"),
                    accuracies = length_patterns(options.accuracies_mm, "accuracy");
   std::vector<PlacedMesh> placed;
@@ -324,10 +332,12 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       continue;
     }
     names.push_back(name);
-    if (const auto role = roles.find(name)) visit.pattern_role = role;
+    const auto own_role = roles.find(name);
+    if (own_role) visit.pattern_role = own_role;
     if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
     visit.door = doors.find(name).value_or(visit.door);
     visit.station_area = station_areas.find(name).value_or(visit.station_area);
+    visit.glass = glasses.find(name).value_or(visit.glass);
     if (const auto detail = details.find(name)) visit.pattern_detail_mm = detail;
     if (const auto accuracy = accuracies.find(name)) visit.pattern_accuracy_mm = accuracy;
     const Marks own = read_marks(file, "nodes", visit.node, where);
@@ -337,6 +347,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (own.detail_mm) visit.marks.detail_mm = own.detail_mm;
     if (own.accuracy_mm) visit.marks.accuracy_mm = own.accuracy_mm;
     if (own.door) visit.marks.door = own.door;
+    if (own.glass) visit.marks.glass = own.glass;
     const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
@@ -354,7 +365,9 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
                       visit.pattern_accuracy_mm,
                       visit.door,
                       visit.station_area,
-                      visit.marks};
+                      visit.marks,
+                      visit.glass,
+                      own_role.has_value()};
       for (glm::dmat4& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
         if (!finite(transform)) throw file.malformed(where + ": the transform of an instance is not finite");
@@ -364,12 +377,13 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
       stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
                        visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door, visit.station_area,
-                       visit.name});
+                       visit.glass, visit.name});
   }
   roles.check(names);
   weights.check(names);
   doors.check(names);
   station_areas.check(names);
+  glasses.check(names);
   details.check(names);
   accuracies.check(names);
   if (hidden > 0)

@@ -17,13 +17,17 @@ namespace vantage::gltf {
 // Entry of SceneOptions::doors that keeps doors closed, as they are in the file.
 inline constexpr std::string_view kClosedDoors = "closed";
 
+// Entry of SceneOptions::glass that makes all glass opaque.
+inline constexpr std::string_view kOpaqueGlass = "opaque";
+
 // Marks in the extras of an element.
 struct Marks {
   std::optional<Role> role;
   std::optional<double> diffuse;
   std::optional<std::uint32_t> weight;
   std::optional<double> detail_mm, accuracy_mm;
-  std::optional<bool> door;  // a leaf, open unless SceneOptions::doors says otherwise
+  std::optional<bool> door;   // a leaf, open unless SceneOptions::doors says otherwise
+  std::optional<bool> glass;  // rays pass it, unless SceneOptions::glass says otherwise
 };
 // Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, or a
 // detail or accuracy that is not above 0.
@@ -42,6 +46,8 @@ struct PlacedMesh {
   std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
   bool door = false, station_area = false;  // whether a pattern matches it or a node above it
   Marks marks = {};                         // from the nearest node that has them
+  bool glass = false;                       // whether a pattern of glass matches it or a node above it
+  bool own_role = false;                    // whether a role's pattern matches this node itself
 };
 
 // Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),

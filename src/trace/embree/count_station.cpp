@@ -22,7 +22,7 @@ namespace {
 [[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin, const Hits& hits,
                                                 VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift,
                                                 StationTotals& totals) {
-  if (station_rays.limited()) {
+  if (station_rays.limited() && !station_rays.all_count(hits)) {
     voxels.clear();
     for (std::uint32_t k = 0; k < hits.size; ++k) {
       const Float3 point = hits.point(origin, k);
@@ -201,7 +201,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
   std::optional<Picture> picture;
   const WholeScans way = rays.whole_scans();
   if (way == WholeScans::drawn ||
-      (way == WholeScans::faster && Picture::pays(rays.scene().triangles.size(), selected_rays)))
+      (way == WholeScans::faster && Picture::pays(rays.scene().opaque_triangles().size(), selected_rays)))
     picture.emplace(rays, station, ends);
   if (picture && !picture->drawable()) picture.reset();
   tbb::enumerable_thread_specific<Picture::Strip> strips;

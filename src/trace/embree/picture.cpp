@@ -151,11 +151,12 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
 
   tbb::enumerable_thread_specific<std::vector<Item>> found;
   std::atomic<bool> drawable = true;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.scene().triangles.size(), 1024), [&](const auto& range) {
-    std::vector<Item>& items = found.local();
-    for (std::size_t k = range.begin(); k < range.end() && drawable; ++k)
-      if (!place(static_cast<std::uint32_t>(k), items)) drawable = false;
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.scene().opaque_triangles().size(), 1024),
+                    [&](const auto& range) {
+                      std::vector<Item>& items = found.local();
+                      for (std::size_t k = range.begin(); k < range.end() && drawable; ++k)
+                        if (!place(static_cast<std::uint32_t>(k), items)) drawable = false;
+                    });
   drawable_ = drawable;
   if (!drawable_) return;
   std::vector<Item> all;

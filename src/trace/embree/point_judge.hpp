@@ -2,6 +2,8 @@
 // Checks the limits of points, in double precision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -19,6 +21,20 @@ class PointJudge {
 
   bool enabled() const { return model_ && model_->enabled(); }
 
+  // Whether echoes alone are limited.
+  bool judges_echo_alone() const {
+    return enabled() && std::ranges::all_of(model_->meshes, [](const LimitModel::Limits& limits) {
+             return limits == LimitModel::Limits{.largest_reach_square = limits.largest_reach_square};
+           });
+  }
+  // Square of the distance at which an echo at normal incidence is just detected; 0: any. REQUIRES: enabled().
+  double reach_square(std::uint32_t mesh) const {
+    return static_cast<double>(model_->meshes[mesh].largest_reach_square);
+  }
+  static bool detected(double reach_square, double cosine, float t) {
+    return static_cast<double>(t) * static_cast<double>(t) <= reach_square * std::abs(cosine);
+  }
+
   // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either
   // sign; `t` the distance without noise. REQUIRES: enabled().
   DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity) const {
@@ -31,7 +47,8 @@ class PointJudge {
     dropped.footprint = limits.largest_footprint_square > 0 &&
                         diameter * diameter > static_cast<double>(limits.largest_footprint_square) * square;
     dropped.noise = limits.largest_sigma > 0 && noise_.sigma(t, reflectivity) > limits.largest_sigma;
-    dropped.points = dropped.incidence + dropped.footprint + dropped.noise > 0;
+    dropped.echo = limits.largest_reach_square > 0 && !detected(reach_square(mesh), cosine, t);
+    dropped.points = dropped.incidence + dropped.footprint + dropped.noise + dropped.echo > 0;
     return dropped;
   }
 

@@ -103,14 +103,14 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<con
     embree::check(device, "taking the scene's vertices");
     std::memcpy(vertices, scene_->positions.data(), scene_->positions.size() * sizeof(Float3));
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(), 0,
-                               sizeof(Triangle), scene_->triangles.size());
+                               sizeof(Triangle), scene_->opaque_triangles().size());
   }
   rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_least);
   rtcSetGeometryOccludedFilterFunction(geometry.get(), note);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(tree_.get(), geometry.get());
   rtcCommitScene(tree_.get());
-  embree::check(device, "building the tree over " + std::to_string(scene_->triangles.size()) + " triangles");
+  embree::check(device, "building the tree over " + std::to_string(scene_->opaque_triangles().size()) + " triangles");
 }
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {

@@ -21,7 +21,10 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
   for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
     const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
     const std::uint64_t k = ray - first_ray;
-    const std::uint32_t triangle = rays.primitive[slot];
+    std::uint32_t triangle = rays.primitive[slot];
+    const DroppedPoints dropped =
+        triangle != RayBundle::no_hit && station_rays.limited() ? station_rays.dropped(rays, slot) : DroppedPoints();
+    if (dropped.echo > 0) triangle = RayBundle::no_hit;
     const bool hit = triangle != RayBundle::no_hit;
     float range = std::numeric_limits<float>::infinity(), reflectivity = 0;
     Float3 point, normal;
@@ -49,8 +52,7 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     if (outputs & Tracer::barycentric)
       chunk.barycentric[k] = {static_cast<float>(weights[0]), static_cast<float>(weights[1])};
     if (outputs & Tracer::voxel) {
-      const bool counts =
-          hit && surface.surveyed(triangle) && !(station_rays.limited() && station_rays.dropped(rays, slot).points > 0);
+      const bool counts = hit && surface.surveyed(triangle) && dropped.points == 0;
       chunk.voxel[k] = counts ? station_rays.grid().index_of(point) : no_voxel;
     }
   }

@@ -62,7 +62,11 @@ inline void turn_all(const Turn& turn, float* __restrict x, float* __restrict y,
 class StationRays {
  public:
   StationRays(std::shared_ptr<const EmbreeScene> scene, const TraceScanner& scanner)
-      : scene_(std::move(scene)), pattern_(scanner.pattern), noise_(scanner.noise), judge_(scanner.limits) {}
+      : scene_(std::move(scene)),
+        pattern_(scanner.pattern),
+        noise_(scanner.noise),
+        judge_(scanner.limits),
+        echo_alone_(judge_.judges_echo_alone() && scene_->scene->normals.empty()) {}
 
   const SceneData& scene() const { return *scene_->scene; }
   const VoxelGrid& grid() const { return *scene_->grid; }
@@ -107,12 +111,30 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
-  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
-  // surveyed mesh.
+  // Whether all hits count. False where it takes dropped() to know.
+  [[gnu::always_inline]] bool all_count(const Hits& hits) const {
+    if (!echo_alone_) return false;
+    for (std::uint32_t k = 0; k < hits.size;) {
+      const std::uint32_t triangle = hits.primitive[k];
+      std::uint32_t end = k + 1;
+      while (end < hits.size && hits.primitive[end] == triangle) ++end;
+      const Vec3 n = planes().normal(triangle);
+      const double reach_square = judge_.reach_square(surface().mesh(triangle));
+      std::uint32_t missed = 0;
+      for (; k < end; ++k)
+        missed |= PointJudge::detected(reach_square, dot(n, widen(Float3{hits.x[k], hits.y[k], hits.z[k]})), hits.t[k])
+                      ? 0u
+                      : 1u;
+      if (missed && reach_square > 0) return false;
+    }
+    return true;
+  }
+  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit.
   DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
     return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot]);
   }
   DroppedPoints dropped(const Float3& origin, const Float3& d, float t, std::uint32_t triangle) const {
+    if (echo_alone_) return judge_.missed(surface().mesh(triangle), dot(planes().normal(triangle), widen(d)), t, 0);
     const Facet facet = surface().facet(triangle);
     const Vec3 normal = facet.smooth ? facet.smooth_normal(d, facet.weights(origin, d, t)) : facet.flat_normal(d);
     return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal));
@@ -123,6 +145,7 @@ class StationRays {
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;
   PointJudge judge_;
+  bool echo_alone_;  // echoes alone are limited, and the normals of planes decide
 };
 
 }  // namespace vantage

@@ -228,7 +228,7 @@ class VulkanTracer::ExactCount {
       result.points_on_surveyed[bit] = own[counter_counted];
       if (t_.limited())
         result.dropped[bit] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
-                               own[counter_misses + 2]};
+                               own[counter_misses + 2], own[counter_misses + 3]};
     }
     result.rays = options_.skip ? tile_rays_ : all_rays_;
   }

@@ -46,7 +46,8 @@ void DeviceScanner::upload_limits(Device& device, Commands& commands, const Scen
     const auto index = static_cast<std::uint32_t>(found - distinct.begin());
     if (found == distinct.end()) {
       distinct.push_back(own);
-      limits.push_back({own.least_cosine_square, own.largest_footprint_square, own.largest_sigma});
+      limits.push_back(
+          {own.least_cosine_square, own.largest_footprint_square, own.largest_sigma, own.largest_reach_square});
     }
     std::fill_n(of_triangle.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, index);
   }

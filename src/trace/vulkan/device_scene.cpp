@@ -62,7 +62,8 @@ void DeviceScene::upload_triangles() {
 void DeviceScene::upload_neighbours() {
   if (neighbours_ || !watertight_) return;
   neighbours_ = make_device_buffer<std::uint32_t>(
-      device_, commands_, triangle_neighbours(scene_.scene->positions, scene_.scene->triangles), "triangle neighbours");
+      device_, commands_, triangle_neighbours(scene_.scene->positions, scene_.scene->opaque_triangles()),
+      "triangle neighbours");
   parameters_.neighbours = neighbours_.address();
   write_parameters();
 }

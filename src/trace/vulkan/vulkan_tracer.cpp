@@ -34,13 +34,15 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
 
 std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& engine) {
   const SceneData& scene = *scene_.scene;
+  const std::span<const Triangle> triangles = scene.opaque_triangles();
   std::vector<std::uint32_t> ids(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
     const std::uint32_t bit = scene.meshes[m].role == Role::surveyed ? surveyed_bit : 0;
     for (std::uint32_t t = 0; t < scene.ranges[m].triangle_count; ++t)
       ids[scene.ranges[m].first_triangle + t] = (scene.ranges[m].first_triangle + t) | bit;
   }
-  return engine.build(device_, commands_, {scene.positions, scene.triangles, ids, scene_.sort_triangles});
+  return engine.build(device_, commands_,
+                      {scene.positions, triangles, std::span(ids).first(triangles.size()), scene_.sort_triangles});
 }
 
 std::vector<DeviceScanner> VulkanTracer::make_scanners() {

@@ -55,7 +55,7 @@ TEST_F(Bound, EvaluateTellsWhatIsMissed) {
   std::string header, all;
   std::getline(csv, header);
   std::getline(csv, all);
-  EXPECT_EQ(header, "node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen");
+  EXPECT_EQ(header, "node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen");
   ASSERT_TRUE(all.starts_with("(all),")) << all;
   std::istringstream fields(all.substr(6));
   std::string field;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/scene_data.hpp"
+
 namespace vantage {
 namespace {
 
@@ -28,6 +30,18 @@ class Builder {
     const MapPoint at = kWindow.at(Vec3{x, y, 0} + kPlace);
     return section.solid[static_cast<std::size_t>(at.y) * kWindow.columns + static_cast<std::size_t>(at.x)] != 0;
   }
+  // The section at height z if the triangles from `first` on are of glass, and its value at (x, y).
+  std::pair<Section, int> with_glass(std::uint32_t first, double x, double y, double z) const {
+    SceneData data = Scene::from_triangles(positions, triangles).data();
+    const auto count = static_cast<std::uint32_t>(data.triangles.size()) - first;
+    data.meshes = {{.name = "opaque", .triangle_count = first},
+                   {.name = "glass", .role = Role::blocking, .triangle_count = count, .glass = true}};
+    data.ranges = {{0, first, 0}, {first, count, 0}};
+    Section section = section_at(data, kWindow, z + kPlace.z);
+    const MapPoint at = kWindow.at(Vec3{x, y, 0} + kPlace);
+    const int value = section.solid[static_cast<std::size_t>(at.y) * kWindow.columns + static_cast<std::size_t>(at.x)];
+    return {std::move(section), value};
+  }
   std::size_t outlines(double z) const {
     return section_at(Scene::from_triangles(positions, triangles).data(), kWindow, z + kPlace.z).outlines.size();
   }
@@ -50,6 +64,19 @@ TEST(Section, BoxesAreSolidAtTheirOwnHeights) {
   EXPECT_FALSE(site.solid(0, 0, 2.5));
   EXPECT_EQ(site.outlines(1.2), 8u);  // two triangles a side
   EXPECT_EQ(site.outlines(2.5), 0u);
+}
+
+TEST(Section, GlassIsToldFromWhatIsOpaque) {
+  Builder site;
+  site.box(-1, -1, 0, 1, 1, 2), site.box(0.5, -3, 0, 0.7, 3, 2);
+  const auto at = [&](double x, double y) { return site.with_glass(12, x, y, 1.2).second; };
+  EXPECT_EQ(at(-0.5, 0), 1);
+  EXPECT_EQ(at(0.6, 2), 2);
+  EXPECT_EQ(at(0.6, 0), 1) << "what is opaque lies over glass";
+  EXPECT_EQ(at(3, 3), 0);
+  const Section section = site.with_glass(12, 0, 0, 1.2).first;
+  EXPECT_EQ(section.outlines.size(), 8u);
+  EXPECT_EQ(section.glass_outlines.size(), 8u);
 }
 
 TEST(Section, OverlappingBoxesStaySolid) {

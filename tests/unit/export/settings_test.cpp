@@ -65,8 +65,10 @@ const std::vector<Change<Scanner>> kScanner{
     {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }},
     {"points_per_second", [](Scanner& s) { s.points_per_second = 2e6; }},
     {"beam_divergence", [](Scanner& s) { s.beam_divergence = Angle::radians(3e-4); }},
-    {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }}};
-static_assert(member_count<Scanner>() == 14);
+    {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }},
+    {"detection_range_m", [](Scanner& s) { s.detection_range_m = 80; }},
+    {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
+static_assert(member_count<Scanner>() == 16);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
@@ -81,6 +83,7 @@ const std::vector<Change<SceneOptions>> kScene{
      false},
     {"doors", [](SceneOptions& o) { o.doors = {"door*"}; }, false},
     {"station_area", [](SceneOptions& o) { o.station_area = {"floor"}; }, false},
+    {"glass", [](SceneOptions& o) { o.glass = {"nothing"}; }, false},
     {"details_mm",
      [](SceneOptions& o) {
        o.details_mm = {{"wall*", 5}};
@@ -97,7 +100,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SceneOptions>() == 15);
+static_assert(member_count<SceneOptions>() == 16);
 
 struct Alone final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }

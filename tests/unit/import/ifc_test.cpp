@@ -145,6 +145,10 @@ TEST_F(IfcTest, GlassIsMarkedAndEqualProductsShareAMesh) {
   }
   ASSERT_EQ(cupboards.size(), 2u);
   EXPECT_EQ(cupboards[0], cupboards[1]);
+  const Scene scene = Scene::load(write("house.ifc", ifc_house()));
+  EXPECT_EQ(std::ranges::count(scene.meshes(), true, &MeshInfo::glass), 1);
+  EXPECT_TRUE(scene.meshes().back().glass && scene.meshes().back().name.starts_with("IfcWindow"));
+  EXPECT_TRUE(has_note(scene, "m² of glass"));
 }
 
 TEST_F(IfcTest, VersionsUnitsAndOriginsGiveTheSameHouse) {

@@ -26,6 +26,20 @@ TEST(ClashChecker, KeepsTheRadiusFromAWall) {
   EXPECT_FALSE(checker.clashes(origin + Vec3{2.5001, 0, 0}));
 }
 
+TEST(ClashChecker, GlassIsKeptClearOfToo) {
+  SceneData data = wall_and_ground().data();
+  data.meshes = {{.name = "ground", .triangle_count = 2},
+                 {.name = "pane", .role = Role::blocking, .triangle_count = 2, .glass = true}};
+  data.ranges = {{0, 2, 0}, {2, 2, 0}};
+  const ClashChecker checker(Scene(std::make_shared<const SceneData>(data)));
+  EXPECT_FALSE(checker.clashes(origin + Vec3{1.4999, 0, 0}));
+  EXPECT_TRUE(checker.clashes(origin + Vec3{1.5001, 0, 0}));
+  const Vec3 before = origin + Vec3{1, 0, 1}, behind = origin + Vec3{3, 0, 1}, below = origin + Vec3{3, 0, -1};
+  EXPECT_FALSE(checker.sees(before, behind));
+  EXPECT_TRUE(checker.ray_passes(before, behind));
+  EXPECT_FALSE(checker.ray_passes(before, below));
+}
+
 TEST(ClashChecker, EitherSphereCounts) {
   const SecurityVolume volume{.lower_m = 0.6, .upper_m = 1.5, .radius_m = 0.4};
   const Scene beam = test::Builder().box({0, -1, 1.9}, {0.1, 1, 2.5}).scene(),

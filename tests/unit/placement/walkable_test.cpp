@@ -136,6 +136,20 @@ TEST(Walkable, OpeningsLetAPersonThroughWhoIsNotTooWideOrTall) {
   EXPECT_EQ(rooms(0.9, 1.85), 1);
 }
 
+// A pane in the opening, which rays pass: people do not, unless it is a door.
+TEST(Walkable, GlassStopsPeopleAndAGlassDoorDoesNot) {
+  SceneData data = two_rooms(0.9, 2.1, true).data();
+  const auto last = static_cast<std::uint32_t>(data.triangles.size()) - 2;
+  for (const bool glass : {false, true})
+    for (const bool door : {false, true}) {
+      data.meshes = {{.name = "rooms", .triangle_count = last},
+                     {.name = "leaf", .role = Role::blocking, .triangle_count = 2, .door = door, .glass = glass}};
+      data.ranges = {{0, last, 0}, {last, 2, 0}};
+      const SearchArea area = SearchArea::build(Scene(std::make_shared<const SceneData>(data)));
+      EXPECT_EQ(true_area(area.mesh()) > 20, door) << glass;
+    }
+}
+
 TEST(Walkable, OpeningsThatRunAskewLetAPersonThroughToo) {
   for (int k = 0; k < 12; ++k) {
     SceneData data = two_rooms(0.62, 2.1).data();

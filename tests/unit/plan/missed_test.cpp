@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -108,6 +109,33 @@ TEST(WhyMissed, TellsEachReason) {
   EXPECT_NEAR(attainable / sparse, 5.4, 0.3);
   EXPECT_NEAR(points / sparse, attainable / sparse, 0.8);
   for (const std::size_t n : whole) EXPECT_GT(n, 5u);
+}
+
+// The near wall, at 3 m, if it is black; and behind glass it is not hidden.
+TEST(WhyMissed, DarkSurfacesAndGlass) {
+  for (const bool dark : {false, true}) {
+    QuadScene quads;
+    quads.quad({3, -2, -1}, {0, 4, 0}, {0, 0, 2}, Role::surveyed, dark ? 0.02 : 0.5);
+    quads.quad({2, -3, -2}, {0, 6, 0}, {0, 0, 4}, Role::blocking);
+    quads.data().meshes[1].glass = true;
+    Scanner scanner;
+    scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
+    scanner.max_range_m = 10, scanner.detection_range_m = 10;
+    const Simulator simulator(quads.scene(), scanner,
+                              {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.1});
+    const ClashChecker clash(simulator.scene());
+    EXPECT_FALSE(clash.sees({0, 0, 0}, {2.9, 0, 0}));
+    EXPECT_TRUE(clash.ray_passes({0, 0, 0}, {2.9, 0, 0}));
+    EXPECT_FALSE(clash.ray_passes({0, 0, 0}, {3.1, 0, 0}));
+    std::vector<std::uint32_t> ranks(simulator.voxel_count());
+    std::iota(ranks.begin(), ranks.end(), 0u);
+    const std::vector<PlacedStation> candidates{at({0, 0, 0})};
+    const std::vector<std::uint32_t> none(ranks.size());
+    const std::vector<WhyMissed> why = why_missed(simulator, clash, candidates, ranks, none);
+    EXPECT_EQ(std::ranges::count(why, WhyMissed::hidden), 0);
+    EXPECT_EQ(std::ranges::count(why, WhyMissed::dark), dark ? std::ssize(why) : 0);
+    EXPECT_GT(why.size(), 20u);
+  }
 }
 
 TEST(WhyMissed, KnowsWhatIsCaptured) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "scan/noise_model.hpp"
@@ -63,7 +64,7 @@ TEST(LimitModel, OfAWallSquareOnAnIncidenceLeavesADisc) {
     const std::uint64_t within =
         expected(scanner, [&](double cosine) { return std::acos(cosine) <= degrees * pi / 180; });
     EXPECT_EQ(counts.points_on_surveyed[0], within) << degrees;
-    EXPECT_EQ(counts.dropped[0], (DroppedPoints{all - within, all - within, 0, 0})) << degrees;
+    EXPECT_EQ(counts.dropped[0], (DroppedPoints{all - within, all - within, 0, 0, 0})) << degrees;
   }
   const NetworkCounts any = count(scene, scanner, {.max_incidence = Angle::degrees(90)});
   EXPECT_EQ(any.points_on_surveyed[0], all);
@@ -91,6 +92,69 @@ TEST(LimitModel, NoiseIsJudgedWhetherItIsAppliedOrNot) {
   EXPECT_EQ(counts.points_on_surveyed[0], expected(scanner, good));
   EXPECT_GT(counts.points_on_surveyed[0], 1000u);
   EXPECT_GT(counts.dropped[0].noise, 1000u);
+}
+
+// P ∝ ρ cos α / R²: a wall at 5 m is met at 5 / cos α, so cos³ α decides.
+TEST(LimitModel, AWeakEchoIsNoPoint) {
+  Scanner scanner = rtc360_scanner();
+  scanner.detection_reflectivity = 0.4;  // the wall has 0.8
+  for (const double range : {3.6, 4.1, 5.5, 9.0}) {
+    scanner.detection_range_m = range;
+    const double reach = range * std::sqrt(2.0);
+    const auto detected = [&](double cosine) { return 5 / cosine <= reach * std::sqrt(cosine); };
+    const std::uint64_t all = expected(scanner, [](double) { return true; }), strong = expected(scanner, detected);
+    const NetworkCounts counts = count(wall(0, 0), scanner, {});
+    EXPECT_EQ(counts.points_on_surveyed[0], strong) << range;
+    EXPECT_EQ(counts.dropped[0], (DroppedPoints{all - strong, 0, 0, 0, all - strong})) << range;
+    // Nor is it one in a cloud.
+    Simulator simulator(wall(0, 0).scene(), scanner, {.engine = Engine::embree, .user_size_m = 0.5, .noise = false});
+    EXPECT_EQ(simulator.scan_points({Vec3{0, 0, 0}}).position.size(), strong);
+  }
+}
+
+// The ranges that a maker states for some reflectivity, at normal incidence, are those at which a surface vanishes.
+TEST(LimitModel, StatedRangesAreReproduced) {
+  for (const char* key : {"focus-x330", "vz-400i", "x7", "zf5016", "rtc360"}) {
+    Scanner scanner = load_scanner(key);
+    scanner.max_range_m = 2000;
+    const double stated = scanner.detection_range_m, on = scanner.detection_reflectivity;
+    for (const double reflectivity : {0.05, 0.18, 0.9}) {
+      const double reach = stated * std::sqrt(reflectivity / on);
+      for (const double share : {0.999, 1.001}) {
+        test::QuadScene scene;
+        // Small, so that it is met squarely, and wide enough for many rays.
+        const float x = static_cast<float>(reach * share);
+        scene.quad({x, -0.004f * x, -0.004f * x}, {0, 0.008f * x, 0}, {0, 0, 0.008f * x}, Role::surveyed, reflectivity);
+        Scanner narrow = scanner;
+        narrow.horizontal_angle = Angle::degrees(1), narrow.zenith_start = Angle::degrees(89.5);
+        narrow.vertical_angle = Angle::degrees(2);
+        SimulatorConfig config{.engine = Engine::embree, .noise = false};
+        config.user_size_m = 0.5, config.point_spacing_m = 0.1;
+        const NetworkCounts counts = Simulator(scene.scene(), narrow, config).evaluate({{Vec3{0, 0, 0}}});
+        EXPECT_GT(counts.points_on_surveyed[0] + counts.dropped[0].points, 50u) << key;
+        EXPECT_EQ(share < 1 ? counts.dropped[0].points : counts.points_on_surveyed[0], 0u) << key << reflectivity;
+      }
+    }
+  }
+}
+
+TEST(LimitModel, BlackIsNeverDetectedAndOtherScannersKeepTheirEchoes) {
+  test::QuadScene scene = wall(0, 0);
+  scene.data().meshes[0].diffuse = 0;
+  Scanner scanner = rtc360_scanner(), any = scanner;
+  scanner.detection_range_m = 100;
+  EXPECT_EQ(count(scene, scanner, {}).points_on_surveyed[0], 0u);
+  SimulatorConfig config{.engine = Engine::embree, .user_size_m = 0.5, .noise = false};
+  for (const bool first : {false, true}) {
+    const std::array<Scanner, 2> both{first ? scanner : any, first ? any : scanner};
+    Simulator simulator(scene.scene(), both, config);
+    Network network{{Vec3{0, 0, 0}}, {Vec3{0, 0, 0}}};
+    network[1].setup.scanner = 1;
+    const NetworkCounts counts = simulator.evaluate(network);
+    const std::uint64_t all = expected(any, [](double) { return true; });
+    EXPECT_EQ(counts.points_on_surveyed, (std::vector<std::uint64_t>{first ? 0 : all, first ? all : 0}));
+    EXPECT_EQ(simulator.max_incidence(), std::nullopt);
+  }
 }
 
 TEST(LimitModel, OnlySurveyedMeshesHaveLimits) {

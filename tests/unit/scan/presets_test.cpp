@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -75,6 +76,20 @@ TEST(Presets, HaveABeam) {
     EXPECT_LT(scanner.beam_divergence.in_radians(), 1e-3) << preset.key;
     EXPECT_GT(scanner.exit_diameter_m, 0.002) << preset.key;
     EXPECT_LT(scanner.exit_diameter_m, 0.01) << preset.key;
+  }
+}
+
+// What every preset detects is known, or marked as assumed. A range that the maker states for a reflectivity is reached
+// on it, and on no darker surface.
+TEST(Presets, HaveARangeOfDetection) {
+  for (const ScannerPreset& preset : list_scanners(presets)) {
+    const Scanner scanner = load_scanner(preset.key, presets);
+    EXPECT_GE(scanner.detection_range_m / std::sqrt(scanner.detection_reflectivity), scanner.max_range_m) << preset.key;
+  }
+  for (const char* key : {"focus-x330", "vz-400i", "vz-400i@40mdeg-1200khz"}) {
+    const Scanner scanner = load_scanner(key, presets);
+    EXPECT_EQ(scanner.detection_range_m, scanner.max_range_m) << key;
+    EXPECT_EQ(scanner.detection_reflectivity, 0.9) << key;
   }
 }
 
