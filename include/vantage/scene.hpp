@@ -104,12 +104,12 @@ Settings settings(const SceneOptions& options);
 class Scene {
  public:
   /// Loads a glTF file (.glb, .gltf), or a model of another format (IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D, DXF;
-  /// a floor plan in DXF) through the importer for it, a program of its own (docs/scenes.md). Y up becomes Z up: (x, y, z) ↦ (x, −z, y);
-  /// other units become metres. Buffers and images come from the file itself and from regular files below its folder,
-  /// links followed; from elsewhere only if `allow_outside`.
-  /// Throws Error: io (a missing importer included), malformed_file (bad reference, unknown required extension, nothing
-  /// to survey, no model, a file that its importer refuses or crashes on), invalid_argument (a pattern that matches
-  /// nothing, a scene index, weight or coefficient out of range, a setting of floor plans for another file), out_of_memory (estimated to take more than
+  /// a floor plan in DXF) through the importer for it, a program of its own (docs/scenes.md). Y up becomes Z up: (x, y,
+  /// z) ↦ (x, −z, y); other units become metres. Buffers and images come from the file itself and from regular files
+  /// below its folder, links followed; from elsewhere only if `allow_outside`. Throws Error: io (a missing importer
+  /// included), malformed_file (bad reference, unknown required extension, nothing to survey, no model, a file that its
+  /// importer refuses or crashes on), invalid_argument (a pattern that matches nothing, a scene index, weight or
+  /// coefficient out of range, a setting of floor plans for another file), out_of_memory (estimated to take more than
   /// `max_memory_bytes`).
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 

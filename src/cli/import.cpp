@@ -31,7 +31,8 @@ struct ImportOptions {
   bool json = false;
 
   void add(CLI::App& command) {
-    command.add_option("file", file, "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or a floor plan in DXF")
+    command
+        .add_option("file", file, "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or a floor plan in DXF")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, floor_plan_settings(), site, "Floor plan");

@@ -256,7 +256,8 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
 
 // Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
 bool is_drawing(const std::filesystem::path& file) {
-  constexpr std::array kLines{"LINE"sv, "LWPOLYLINE"sv, "ARC"sv, "CIRCLE"sv, "HATCH"sv, "SOLID"sv, "INSERT"sv, "POLYLINE"sv};
+  constexpr std::array kLines{"LINE"sv,  "LWPOLYLINE"sv, "ARC"sv,    "CIRCLE"sv,
+                              "HATCH"sv, "SOLID"sv,      "INSERT"sv, "POLYLINE"sv};
   constexpr int kMeshes = 16 | 64;  // bits of a POLYLINE's group 70: a mesh of polygons, of faces
   std::ifstream stream(file, std::ios::binary);
   const auto next = [&](std::string& line) {
@@ -313,7 +314,7 @@ Recognised recognise(const std::filesystem::path& file) {
   const Format* read_as = format == &kDxf && is_drawing(file) ? &kPlan : format;
   if (!by_extension || by_extension == format) return {read_as};
   return {read_as, std::string("it is named as ") + by_extension->name + ", but holds " + format->name +
-                      ", and is read as that"};
+                       ", and is read as that"};
 }
 
 }  // namespace vantage::importers

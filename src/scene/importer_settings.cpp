@@ -16,7 +16,8 @@ std::vector<std::string> importer_settings(const SceneOptions& options, const im
   std::vector<std::string> words;
   const auto add = [&](const std::string& setting, const std::string& value) {
     if (!takes_setting(format, setting))
-      throw Error(Errc::invalid_argument, name + ": the setting " + setting + " is for floor plans, and this is " + format.name);
+      throw Error(Errc::invalid_argument,
+                  name + ": the setting " + setting + " is for floor plans, and this is " + format.name);
     words.push_back(setting + "=" + value);
   };
   if (options.unit && takes_setting(format, "unit")) words.push_back(std::string("unit=") + to_string(*options.unit));

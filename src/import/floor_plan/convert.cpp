@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "import/floor_plan/drawing.hpp"
-#include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/join_ends.hpp"
 #include "import/floor_plan/solids.hpp"
 #include "import/floor_plan/swings.hpp"
@@ -24,9 +23,8 @@ namespace {
 using importer::Refused;
 using nlohmann::json;
 
-// To metres, and around a point of whole metres: floats hold no map coordinates.
+// To metres, and around a point of whole metres amid the lines: floats hold no map coordinates.
 Point scale_to_metres(Drawing& drawing, double metres) {
-  Point low{1e300, 1e300};
   const auto each = [&](const auto& visit) {
     for (Line& line : drawing.lines) visit(line.a), visit(line.b);
     for (Arc& arc : drawing.arcs) visit(arc.centre), visit(arc.start);
@@ -35,12 +33,18 @@ Point scale_to_metres(Drawing& drawing, double metres) {
         for (Point& p : ring) visit(p);
     for (Text& text : drawing.texts) visit(text.at), visit(text.insertion);
   };
+  std::vector<double> xs, ys;
   each([&](Point& p) {
     p = p * metres;
-    low = lowest(low, p);
+    xs.push_back(p.x), ys.push_back(p.y);
   });
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  };
   for (Text& text : drawing.texts) text.height *= metres;
-  const Point origin{std::floor(low.x), std::floor(low.y)};
+  const Point origin{std::floor(median(xs)), std::floor(median(ys))};
   each([&](Point& p) { p = p - origin; });
   return origin;
 }
@@ -65,16 +69,17 @@ std::string listed(const std::vector<std::string>& names) {
 std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, const Walls& walls, const Scale& scale) {
   std::array<std::size_t, 3> kinds{};
   for (const Opening& opening : plan.openings) ++kinds[opening.kind];
-  const std::size_t named = static_cast<std::size_t>(
-      std::ranges::count_if(plan.rooms.rooms, [](const Room& room) { return !room.name.empty() || !room.number.empty(); }));
-  std::vector<std::string> notes{
-      "floor plan: " + scale.note + "; walls of layer " + listed(walls.layers) +
-          (walls.by_name ? "" : ", whose lines enclose rooms (setting wall-layer)") + ", " + fixed(plan.wall_height_m, 2) +
-          " m high",
-      counted(plan.rooms.rooms.size(), "room") + ", " + std::to_string(named) + " with a name; " +
-          counted(kinds[Opening::door], "door") + " and " + counted(kinds[Opening::passage], "passage") + " open up to " +
-          fixed(kDoorHeight_m, 1) + " m, " + counted(kinds[Opening::window], "window") + " from " + fixed(kSill_m, 1) +
-          " m; " + counted(plan.furniture.size(), "piece") + " of furniture, boxes of " + fixed(kTable_m, 2) + " m"};
+  const std::size_t named = static_cast<std::size_t>(std::ranges::count_if(
+      plan.rooms.rooms, [](const Room& room) { return !room.name.empty() || !room.number.empty(); }));
+  std::vector<std::string> notes{"floor plan: " + scale.note + "; walls of layer " + listed(walls.layers) +
+                                     (walls.by_name ? "" : ", whose lines enclose rooms (setting wall-layer)") + ", " +
+                                     fixed(plan.wall_height_m, 2) + " m high",
+                                 counted(plan.rooms.rooms.size(), "room") + ", " + std::to_string(named) +
+                                     " with a name; " + counted(kinds[Opening::door], "door") + " and " +
+                                     counted(kinds[Opening::passage], "passage") + " open up to " +
+                                     fixed(kDoorHeight_m, 1) + " m, " + counted(kinds[Opening::window], "window") +
+                                     " from " + fixed(kSill_m, 1) + " m; " + counted(plan.furniture.size(), "piece") +
+                                     " of furniture, boxes of " + fixed(kTable_m, 2) + " m"};
   if (walls.joined_ends > 0)
     notes.push_back(counted(walls.joined_ends, "end") + " of wall lines joined to what they missed by up to " +
                     fixed(100 * walls.farthest_join_m, 1) + " cm (" + fixed(100 * kTolerance_m, 0) + " cm at most)");
@@ -187,7 +192,7 @@ std::string convert(const std::filesystem::path& file, const Settings& settings)
   std::vector<Shape> open;
   for (const Opening& opening : plan.openings) open.push_back(clone(opening.area));
   if (!open.empty()) plan.solid = areas(without(walls.solid, united(std::move(open))));
-  plan.furniture = find_furniture(drawing, plan.solid);
+  plan.furniture = find_furniture(drawing, plan.rooms);
   return glb_of(plan, origin, notes_of(plan, drawing, walls, scale));
 }
 

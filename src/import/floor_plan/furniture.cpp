@@ -2,6 +2,9 @@
 #include "import/floor_plan/furniture.hpp"
 
 #include <map>
+#include <set>
+
+#include "import/floor_plan/grid.hpp"
 
 namespace vantage::floor_plan {
 namespace {
@@ -18,7 +21,12 @@ int piece_of(const Drawing& drawing, int symbol) {
 
 }  // namespace
 
-std::vector<Furniture> find_furniture(const Drawing& drawing, const Shape& solid) {
+std::vector<Furniture> find_furniture(const Drawing& drawing, const Rooms& rooms) {
+  Grid grid(4.0);
+  for (std::size_t r = 0; r < rooms.rooms.size(); ++r) {
+    const Bounds box = bounds(rooms.rooms[r].area);
+    grid.add(r, box.low, box.high);
+  }
   // By outermost block, and by innermost for a block that is a whole room's furniture.
   std::map<int, std::map<int, std::vector<Point>>> pieces;
   const auto take = [&](const Origin& from, const std::vector<Point>& points) {
@@ -37,7 +45,11 @@ std::vector<Furniture> find_furniture(const Drawing& drawing, const Shape& solid
     if (corners.size() != 4) return false;
     const double wide = distance(corners[0], corners[1]), deep = distance(corners[1], corners[2]);
     if (std::max(wide, deep) > kLargest_m || std::min(wide, deep) < kSmallest_m) return false;
-    Shape area = areas(without(box, solid));
+    std::set<std::size_t> near;
+    grid.visit(bounds(box).low, bounds(box).high, [&](std::size_t r) { near.insert(r); });
+    std::vector<Shape> parts;
+    for (const std::size_t r : near) parts.push_back(common(box, rooms.rooms[r].area));
+    Shape area = areas(united(std::move(parts)));
     if (!is_empty(area)) out.push_back({drawing.symbols[static_cast<std::size_t>(symbol)].name, std::move(area)});
     return true;
   };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "import/floor_plan/drawing.hpp"
+#include "import/floor_plan/rooms.hpp"
 #include "import/floor_plan/shapes.hpp"
 
 namespace vantage::floor_plan {
@@ -14,7 +15,7 @@ struct Furniture {
   Shape area;
 };
 
-// The smallest rectangle around each block of furniture, without what lies in walls.
-std::vector<Furniture> find_furniture(const Drawing& drawing, const Shape& solid);
+// The smallest rectangle around each block of furniture, as far as it is in rooms.
+std::vector<Furniture> find_furniture(const Drawing& drawing, const Rooms& rooms);
 
 }  // namespace vantage::floor_plan

@@ -12,8 +12,8 @@ inline constexpr double kTolerance_m = 0.05;
 
 struct Joined {
   std::vector<Line> lines;
-  std::size_t ends = 0;    // that were moved by more than a millimetre
-  double farthest_m = 0;   // and how far at most
+  std::size_t ends = 0;   // that were moved by more than a millimetre
+  double farthest_m = 0;  // and how far at most
 };
 
 // Moves loose ends of lines to the end, else to the line, that they miss by kTolerance_m at most. Then closes the ends

@@ -134,11 +134,13 @@ Label::Kind label_of(const std::string& text) {
   }
   constexpr std::size_t kLongestName = 60, kLongestNumber = 8;
   if (text.size() > kLongestName) return Label::nothing;
-  for (const char* measure : {"m²", "m2", "m\u00B2", "sq", "SF", "sf", "qm", "м²", "кв", "㎡", "\u00B1", "\u00D8", "=", "'"})
+  for (const char* measure :
+       {"m²", "m2", "m\u00B2", "sq", "SF", "sf", "qm", "м²", "кв", "㎡", "\u00B1", "\u00D8", "=", "'"})
     if (digits > 0 && text.find(measure) != std::string::npos) return Label::nothing;
   if (longest >= 2 && letters > digits) return Label::name;
   // 12, 1.04, A-12, but no 12.50 or 1,25, which are lengths or areas.
-  if (digits == 0 || text.size() > kLongestNumber || text.find_first_of(", +/") != std::string::npos) return Label::nothing;
+  if (digits == 0 || text.size() > kLongestNumber || text.find_first_of(", +/") != std::string::npos)
+    return Label::nothing;
   const std::size_t point = text.find('.');
   if (letters > 0 || point == std::string::npos) return Label::number;
   return text.size() - point - 1 >= 2 && text[point + 1] == '0' ? Label::number : Label::nothing;

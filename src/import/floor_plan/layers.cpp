@@ -60,12 +60,13 @@ bool has_whole(const std::string& name, Words words) {
 }
 
 bool names_annotation(const std::string& n) {
-  return has(n, {"dim",    "bema",   "maße",  "masse", "cotas",   "cotat", "quote", "maat",  "text",   "txt",  "anno",
-                 "note",   "iden",   "grid",  "axis",  "axes",    "achse", "raster", "title", "border", "frame",
-                 "sheet",  "viewport", "defpoint", "legend", "north",  "elec", "hvac", "light", "leucht", "roof",
-                 "dach",   "ceil",   "clng",  "landsc", "topo",   "contour", "parking", "размер", "текст", "оси",
-                 "标注",   "尺寸",   "轴",    "文字", "寸法"}) ||
-         has_whole(n, {"tag", "tags", "cota", "cotes", "axe", "assi", "ejes", "logo", "hidden", "scale", "tree", "trees"});
+  return has(n, {"dim",   "bema",  "maße",     "masse",    "cotas",  "cotat", "quote",   "maat",    "text",   "txt",
+                 "anno",  "note",  "iden",     "grid",     "axis",   "axes",  "achse",   "raster",  "title",  "border",
+                 "frame", "sheet", "viewport", "defpoint", "legend", "north", "elec",    "hvac",    "light",  "leucht",
+                 "roof",  "dach",  "ceil",     "clng",     "landsc", "topo",  "contour", "parking", "размер", "текст",
+                 "оси",   "标注",  "尺寸",     "轴",       "文字",   "寸法"}) ||
+         has_whole(n,
+                   {"tag", "tags", "cota", "cotes", "axe", "assi", "ejes", "logo", "hidden", "scale", "tree", "trees"});
 }
 
 bool names_a_door(const std::string& n) {
@@ -76,17 +77,18 @@ bool names_a_door(const std::string& n) {
 }
 
 bool names_a_window(const std::string& n) {
-  return has(n, {"window", "windw", "fenster", "fenêtre", "fenetre", "ventana", "janela", "finestr", "serrament",
-                 "fönster", "foenster", "vindu", "ikkun", "okn", "окн", "glaz", "窗", "窓", "창", "παράθυρο"}) ||
+  return has(n, {"window",  "windw",     "fenster", "fenêtre",  "fenetre", "ventana", "janela",
+                 "finestr", "serrament", "fönster", "foenster", "vindu",   "ikkun",   "okn",
+                 "окн",     "glaz",      "窗",      "窓",       "창",      "παράθυρο"}) ||
          has_whole(n, {"win", "wind", "wdw", "raam", "ramen", "glas", "glass", "pencere", "ablak"});
 }
 
 bool names_furniture(const std::string& n) {
-  return has(n, {"furn",   "möb",    "moeb",  "mobil",   "mueble",  "meuble", "meubel", "arred",  "nábyt",
-                 "мебел",  "家具",   "가구",  "table",   "chair",   "sofa",   "couch",  "desk",   "wardrobe",
-                 "cabinet", "cupboard", "casew", "toilet", "shower", "bathtub", "sanit", "plumb", "fixture", "basin",
-                 "stove",  "fridge", "tisch", "stuhl",   "schrank", "wanne",  "dusche", "lavabo", "shelf", "regal",
-                 "洁具",   "衛生"}) ||
+  return has(n,
+             {"furn",  "möb",    "moeb",    "mobil",   "mueble", "meuble", "meubel",  "arred",    "nábyt",   "мебел",
+              "家具",  "가구",   "table",   "chair",   "sofa",   "couch",  "desk",    "wardrobe", "cabinet", "cupboard",
+              "casew", "toilet", "shower",  "bathtub", "sanit",  "plumb",  "fixture", "basin",    "stove",   "fridge",
+              "tisch", "stuhl",  "schrank", "wanne",   "dusche", "lavabo", "shelf",   "regal",    "洁具",    "衛生"}) ||
          has_whole(n, {"bed", "beds", "bett", "wc", "sink", "bath", "lit", "cama", "letto", "mesa", "silla", "oven",
                        "equip", "eqpm"});
 }
@@ -97,10 +99,11 @@ bool names_a_stair(const std::string& n) {
 }
 
 bool names_a_wall(const std::string& n) {
-  return has(n, {"wall", "wand", "wände", "waende", "mauer", "muro", "parede", "paret", "muur", "vägg", "vaegg", "væg",
-                 "vegg", "seinä", "ścian", "scian", "stěn", "стен", "τοίχ", "墙", "牆", "壁", "벽", "cloison",
-                 "tabique", "partition", "tramezz", "column", "säule", "saeule", "stütze", "stuetze", "pillar",
-                 "pilar", "poteau", "kolom", "колонн", "柱"}) ||
+  return has(n,
+             {"wall",   "wand",    "wände",  "waende",  "mauer",   "muro",      "parede",  "paret",  "muur",  "vägg",
+              "vaegg",  "væg",     "vegg",   "seinä",   "ścian",   "scian",     "stěn",    "стен",   "τοίχ",  "墙",
+              "牆",     "壁",      "벽",     "cloison", "tabique", "partition", "tramezz", "column", "säule", "saeule",
+              "stütze", "stuetze", "pillar", "pilar",   "poteau",  "kolom",     "колонн",  "柱"}) ||
          has_whole(n, {"mur", "murs", "prtn", "colu", "cols", "col", "seina", "fal", "falak", "duvar", "zid", "steny",
                        "stena"});
 }

@@ -16,9 +16,9 @@ namespace {
 
 // Widths of gaps. Metres.
 constexpr double kNarrowestGap = 0.45, kWidestGap = 2.6;  // between two ends that face each other
-constexpr double kWidestShown = 12;                 // where a window or swings are drawn in it
-constexpr double kWidestToWall = 1.35;              // between an end and the wall across
-constexpr double kNear = 0.2;                       // by which symbols miss the gaps that they are in
+constexpr double kWidestShown = 12;                       // where a window or swings are drawn in it
+constexpr double kWidestToWall = 1.35;                    // between an end and the wall across
+constexpr double kNear = 0.2;                             // by which symbols miss the gaps that they are in
 
 // The short side in which a wall ends: walls lie to the left of the way from a to b.
 struct Cap {
@@ -117,7 +117,8 @@ class Finder {
       grid.visit(far - Point{0.7, 0.7}, far + Point{0.7, 0.7}, [&](std::size_t d) {
         if (d == c || taken[d] || dot(caps[d].outward(), way) > -0.97) return;
         const Point to = caps[d].middle() - from;
-        if (std::abs(dot(to, way) - hit.at) <= 0.02 && std::abs(cross(way, to)) <= std::max(cap.width(), caps[d].width()) / 2)
+        if (std::abs(dot(to, way) - hit.at) <= 0.02 &&
+            std::abs(cross(way, to)) <= std::max(cap.width(), caps[d].width()) / 2)
           partner = d;
       });
       std::vector<Point> corners{cap.a, cap.b};
@@ -198,9 +199,8 @@ class Finder {
       if (!closed) continue;
       const Point along = (closed->b - closed->a) * (1 / swing.width), across{-along.y, along.x};
       // A band along the leaf, as wide as walls are; what it cuts of walls is the opening.
-      const std::array<Point, 4> band{
-          closed->a - across * kThickestWall_m, closed->b - across * kThickestWall_m,
-          closed->b + across * kThickestWall_m, closed->a + across * kThickestWall_m};
+      const std::array<Point, 4> band{closed->a - across * kThickestWall_m, closed->b - across * kThickestWall_m,
+                                      closed->b + across * kThickestWall_m, closed->a + across * kThickestWall_m};
       const std::array<Point, 4> leaf{closed->a - across * 0.06, closed->b - across * 0.06, closed->b + across * 0.06,
                                       closed->a + across * 0.06};
       Shape cut = touching(common(solid_, polygon(band)), polygon(leaf));
@@ -295,28 +295,36 @@ class Finder {
   }
 
   void cluster(const std::vector<std::pair<Point, Point>>& loose, const std::vector<Kind>& kinds) {
-    // Lines of one window lie side by side, at most a wall's thickness apart.
+    // Lines of one window touch, or lie side by side, at most a wall's thickness apart.
     std::vector<std::size_t> root(loose.size());
     std::iota(root.begin(), root.end(), std::size_t{0});
     const auto find = [&](std::size_t i) {
       while (root[i] != i) i = root[i] = root[root[i]];
       return i;
     };
-    const auto near_line = [](Point p, const std::pair<Point, Point>& line) {
+    const auto to_line = [](Point p, const std::pair<Point, Point>& line) {
       const Point along = line.second - line.first;
       const double t = std::clamp(dot(p - line.first, along) / std::max(dot(along, along), 1e-12), 0.0, 1.0);
       return distance(line.first + along * t, p);
     };
-    constexpr double kApart = 0.12;
+    // The middle of one lies abreast of the other.
+    const auto abreast = [&](const std::pair<Point, Point>& a, const std::pair<Point, Point>& b) {
+      const Point u = a.second - a.first, v = b.second - b.first, middle = (a.first + a.second) * 0.5;
+      const double at = dot(middle - b.first, v) / std::max(dot(v, v), 1e-12);
+      return std::abs(cross(u, v)) <= 0.05 * length(u) * length(v) && at >= 0 && at <= 1 &&
+             to_line(middle, b) <= kThickestWall_m;
+    };
+    constexpr double kTouch = 0.03;
     Grid grid(1.0);
     for (std::size_t i = 0; i < loose.size(); ++i) {
-      const Point margin{kApart, kApart};
+      const Point margin{kThickestWall_m, kThickestWall_m};
       grid.add(i, lowest(loose[i].first, loose[i].second) - margin, highest(loose[i].first, loose[i].second) + margin);
     }
     for (std::size_t i = 0; i < loose.size(); ++i)
-      for (const Point& p : {loose[i].first, loose[i].second})
+      for (const Point& p : {loose[i].first, loose[i].second, (loose[i].first + loose[i].second) * 0.5})
         grid.visit(p, p, [&](std::size_t j) {
-          if (kinds[j] == kinds[i] && near_line(p, loose[j]) <= kApart) root[find(i)] = find(j);
+          if (kinds[j] == kinds[i] && (to_line(p, loose[j]) <= kTouch || abreast(loose[i], loose[j])))
+            root[find(i)] = find(j);
         });
     std::map<std::size_t, std::size_t> groups;
     for (std::size_t i = 0; i < loose.size(); ++i) {

@@ -285,12 +285,14 @@ class Reader : public DL_CreationAdapter {
       case 2: {
         double sweep = edge.angle2 - edge.angle1;
         if (sweep <= 0) sweep += kTurn;
-        for (const Point& p : chain(arc_of({edge.cx, edge.cy}, edge.radius, turn * edge.angle1, turn * sweep), edge.radius / 50))
+        for (const Point& p :
+             chain(arc_of({edge.cx, edge.cy}, edge.radius, turn * edge.angle1, turn * sweep), edge.radius / 50))
           loop.push_back(p);
         break;
       }
       case 3:
-        for (const Point& p : ellipse({edge.cx, edge.cy}, {edge.mx, edge.my}, turn * edge.ratio, edge.angle1, edge.angle2))
+        for (const Point& p :
+             ellipse({edge.cx, edge.cy}, {edge.mx, edge.my}, turn * edge.ratio, edge.angle1, edge.angle2))
           loop.push_back(p);
         break;
       default:

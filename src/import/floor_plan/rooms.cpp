@@ -37,7 +37,8 @@ struct Names {
   void add(const Text& next) {
     constexpr std::size_t kMostLabels = 3, kLongest = 60;
     constexpr double kLine = 2.5;  // heights of a text
-    const bool goes_on = last && distance(last->insertion, next.insertion) <= kLine * std::max(last->height, next.height);
+    const bool goes_on =
+        last && distance(last->insertion, next.insertion) <= kLine * std::max(last->height, next.height);
     last = &next;
     if (text.size() + next.text.size() > kLongest || (!goes_on && labels >= kMostLabels)) return;
     labels += !goes_on;

@@ -19,7 +19,8 @@ std::string& last_error() {
 GEOSContextHandle_t context() {
   static const GEOSContextHandle_t handle = [] {
     GEOSContextHandle_t made = GEOS_init_r();
-    GEOSContext_setErrorMessageHandler_r(made, [](const char* text, void*) { last_error() = text; }, nullptr);
+    GEOSContext_setErrorMessageHandler_r(
+        made, [](const char* text, void*) { last_error() = text; }, nullptr);
     return made;
   }();
   return handle;

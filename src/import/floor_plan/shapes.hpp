@@ -29,15 +29,15 @@ Shape united(std::vector<Shape> shapes);     // lines are cut where they meet
 Shape united(const Shape& a, const Shape& b);
 Shape common(const Shape& a, const Shape& b);
 Shape without(const Shape& a, const Shape& b);
-Shape grown(const Shape& shape, double by);            // shrunk if negative; corners stay sharp
-Shape strip(const Shape& lines, double half_width);    // ends are cut off flat
-Shape around(std::span<const Point> points);           // the smallest rectangle, turned as it may be
+Shape grown(const Shape& shape, double by);          // shrunk if negative; corners stay sharp
+Shape strip(const Shape& lines, double half_width);  // ends are cut off flat
+Shape around(std::span<const Point> points);         // the smallest rectangle, turned as it may be
 Shape hull(std::span<const Point> points);
 Shape clone(const Shape& shape);
-std::vector<Shape> faces(const Shape& cut_lines);      // areas that lines enclose
-Shape areas(Shape shape);                               // its polygons alone
+std::vector<Shape> faces(const Shape& cut_lines);  // areas that lines enclose
+Shape areas(Shape shape);                          // its polygons alone
 std::vector<Shape> polygons(const Shape& shape);
-std::vector<Line> pieces(const Shape& lines);          // straight pieces of lines or of boundaries
+std::vector<Line> pieces(const Shape& lines);  // straight pieces of lines or of boundaries
 // Rings of a polygon or of several; what they enclose lies to the left.
 std::vector<std::vector<Point>> rings(const Shape& shape);
 std::vector<Point> outer_ring(const Shape& polygon);

@@ -33,7 +33,8 @@ struct Plan {
 // A name for each room: that of its texts, else `room N`.
 std::string room_name(const Rooms& rooms, std::size_t room);
 
-// Walls, floor and ceiling of each room, the walls' outsides, furniture. Faces are turned to the space in front of them.
+// Walls, floor and ceiling of each room, the walls' outsides, furniture. Faces are turned to the space in front of
+// them.
 std::vector<Mesh> meshes_of(const Plan& plan);
 
 }  // namespace vantage::floor_plan

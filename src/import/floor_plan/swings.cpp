@@ -14,8 +14,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNarrowestLeaf = 0.45, kWidestLeaf = 1.6;  // leaves, cabinets' left out
 constexpr double kLeafThickness = 0.08;
 
-// A leaf is a line from the hinge to an end, open or closed, or the other long side beside it. A wall's line is one only
-// if it is as long as the door.
+// A leaf is a line from the hinge to an end, open or closed, or the other long side beside it. A wall's line is one
+// only if it is as long as the door.
 bool is_leaf(const Line& line, const Swing& swing) {
   constexpr double kExact = 0.03;
   return std::ranges::any_of(swing.ends, [&](const Point& end) {

@@ -78,11 +78,13 @@ Scale scale_of(const Drawing& drawing, const std::string& unit) {
   if (stated == kUnits.end() && doors)
     return {doors->metres, std::string("unit ") + doors->name + ", as its doors are " + number(*width) + " wide"};
   if (stated == kUnits.end())
-    throw importer::Refused("the drawing's unit is not clear: its header ($INSUNITS) states none, and no door's swing tells "
-                            "it; give the setting unit: " + sizes(drawing));
+    throw importer::Refused(
+        "the drawing's unit is not clear: its header ($INSUNITS) states none, and no door's swing tells "
+        "it; give the setting unit: " +
+        sizes(drawing));
   if (doors && doors != &*stated)
-    throw importer::Refused(std::string("the drawing's unit is not clear: its header ($INSUNITS) states ") + stated->name +
-                            ", but its doors are " + number(*width) + " wide, as in " + doors->name +
+    throw importer::Refused(std::string("the drawing's unit is not clear: its header ($INSUNITS) states ") +
+                            stated->name + ", but its doors are " + number(*width) + " wide, as in " + doors->name +
                             "; give the setting unit: " + sizes(drawing));
   return {stated->metres, std::string("unit ") + stated->name + ", by its header"};
 }

@@ -12,7 +12,7 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kCurve_m = 0.005;                   // by how much chords stray from arcs
+constexpr double kCurve_m = 0.005;                        // by how much chords stray from arcs
 constexpr double kSmallest_m2 = 1.2, kLargest_m2 = 2000;  // rooms, where layers are judged by them
 
 std::vector<Line> lines_of(const Drawing& drawing, const auto& wanted) {

@@ -14,9 +14,9 @@ namespace vantage::floor_plan {
 inline constexpr double kThinnestWall_m = 0.03, kThickestWall_m = 0.62, kSingleLine_m = 0.1;
 
 struct Walls {
-  Shape solid;                       // what walls and columns cover
-  std::vector<std::string> layers;   // that they are drawn on
-  bool by_name = false;              // whether names tell these
+  Shape solid;                      // what walls and columns cover
+  std::vector<std::string> layers;  // that they are drawn on
+  bool by_name = false;             // whether names tell these
   std::size_t joined_ends = 0;
   double farthest_join_m = 0;
 };
