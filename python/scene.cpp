@@ -28,6 +28,8 @@ Options<SceneOptions> scene_options() {
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
       .add("up", &SceneOptions::up, "'y' or 'z'; None: recognised.")
+      .add("wall_layers", &SceneOptions::wall_layers, "Patterns of the layers of a floor plan's walls; []: recognised.")
+      .add("wall_height_m", &SceneOptions::wall_height_m, "Height of a floor plan's walls, metres; None: 2.7.")
       .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Memory limit of the load; 0: half of the free memory.")
       .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside its own folder.");
 }

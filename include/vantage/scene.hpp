@@ -92,6 +92,10 @@ struct SceneOptions {
   /// any `vantage` extras are always read in metres.
   std::optional<Unit> unit = std::nullopt;
   std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
+  /// Of a floor plan: patterns (case does not matter) of the layers that its walls are on. Empty: those named as walls,
+  /// else those whose lines enclose rooms.
+  std::vector<std::string> wall_layers = {};
+  std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
   /// read. 0: half of what is free.
   std::uint64_t max_memory_bytes = 0;
@@ -103,13 +107,14 @@ Settings settings(const SceneOptions& options);
 /// Immutable triangle scene. Copies share storage. Safe to read from any thread.
 class Scene {
  public:
-  /// Loads a glTF file (.glb, .gltf), or a model (IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D, DXF) or points (E57, LAS,
-  /// PLY, XYZ, PTS, PTX, PCD) through an importer, a program of its own (docs/scenes.md, docs/clouds.md). Y up becomes
-  /// Z up: (x, y, z) ↦ (x, −z, y); other units become metres. Buffers and images come from the file itself and from
-  /// regular files below its folder, links followed; from elsewhere only if `allow_outside`. Throws Error: io (a
+  /// Loads a glTF file (.glb, .gltf), or a model (IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D, DXF), a floor plan (DXF)
+  /// or points (E57, LAS, PLY, XYZ, PTS, PTX, PCD) through an importer, a program of its own (docs/scenes.md). Y up
+  /// becomes Z up: (x, y, z) ↦ (x, −z, y); other units become metres. Buffers and images come from the file itself and
+  /// from regular files below its folder, links followed; from elsewhere only if `allow_outside`. Throws Error: io (a
   /// missing importer included), malformed_file (bad reference, unknown required extension, nothing to survey, no
   /// model, a file that its importer refuses or crashes on), invalid_argument (a pattern that matches nothing, a scene
-  /// index, weight or coefficient out of range), out_of_memory (estimated to take more than `max_memory_bytes`).
+  /// index, weight or coefficient out of range, a setting of floor plans for another file), out_of_memory (estimated to
+  /// take more than `max_memory_bytes`).
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
   /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or

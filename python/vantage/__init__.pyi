@@ -64,6 +64,8 @@ class Scene:
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
         up: Optional[Literal["y", "z"]] = None,
+        wall_layers: Sequence[str] = [],
+        wall_height_m: Optional[float] = None,
         max_memory_bytes: int = 0,
         allow_outside: bool = False,
     ) -> Scene: ...
@@ -147,6 +149,8 @@ def load_gltf(
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
     up: Optional[Literal["y", "z"]] = None,
+    wall_layers: Sequence[str] = [],
+    wall_height_m: Optional[float] = None,
     max_memory_bytes: int = 0,
     allow_outside: bool = False,
 ) -> Scene: ...
@@ -698,6 +702,8 @@ class Site:
         accuracy: Setting = None,
         unit: Setting = None,
         up: Setting = None,
+        wall_layer: Setting = None,
+        wall_height: Setting = None,
         scene_index: Setting = None,
         diffuse: Setting = None,
         allow_outside: Setting = None,

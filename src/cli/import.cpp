@@ -6,24 +6,38 @@
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "core/atomic_file.hpp"
+#include "scene/importer_settings.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage::cli {
 namespace {
 
+const SettingTable<SiteOptions>& floor_plan_settings() {
+  static const SettingTable<SiteOptions> table = [] {
+    SettingTable<SiteOptions> rows;
+    for (const auto& row : site_settings())
+      if (row.name == "unit" || row.name == "wall-layer" || row.name == "wall-height") rows.push_back(row);
+    return rows;
+  }();
+  return table;
+}
+
 struct ImportOptions {
   std::string file;
   std::optional<std::string> output;
+  SiteOptions site;  // as far as an importer takes them
   bool json = false;
 
   void add(CLI::App& command) {
     command
         .add_option("file", file,
-                    "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or points: E57, LAS, PLY, XYZ, PTS, "
-                    "PTX or PCD")
+                    "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, "
+                    "LAS, PLY, XYZ, PTS, PTX or PCD")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
+    add_settings(command, floor_plan_settings(), site, "Floor plan");
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -31,11 +45,13 @@ struct ImportOptions {
 int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (options.file.empty()) throw Error(Errc::invalid_argument, "import: no model given; see vantage import --help");
   if (!options.output) throw Error(Errc::invalid_argument, "import: no file to write; give one with -o site.glb");
-  const Scene scene = Scene::load(options.file, {.doors = {"closed"}});  // reports what is wrong with it
+  SceneOptions read = options.site.scene;
+  read.doors = {"closed"};
+  const Scene scene = Scene::load(options.file, read);  // reports what is wrong with it
   const importers::Format& format = *importers::recognise(options.file).format;
   if (!format.importer)
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
-  const auto glb = importers::as_glb(options.file, format);
+  const auto glb = importers::as_glb(options.file, format, {}, importer_settings(read, format, options.file));
   write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
   if (options.json)

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -28,6 +30,7 @@ constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{
 constexpr Format kE57{"E57", ".e57 ", kCloud}, kLas{"LAS", ".las .laz ", kCloud},
     kPlyPoints{"PLY of points", ".ply ", kCloud}, kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud},
     kPcd{"PCD", ".pcd ", kCloud};
+constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "unit wall-layer wall-height"};
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
                               &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
 
@@ -258,6 +261,42 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
   return mentions(stream, json, kWords);
 }
 
+// Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
+bool is_drawing(const std::filesystem::path& file) {
+  constexpr std::array kLines{"LINE"sv,  "LWPOLYLINE"sv, "ARC"sv,    "CIRCLE"sv,
+                              "HATCH"sv, "SOLID"sv,      "INSERT"sv, "POLYLINE"sv};
+  constexpr int kMeshes = 16 | 64;  // bits of a POLYLINE's group 70: a mesh of polygons, of faces
+  std::ifstream stream(file, std::ios::binary);
+  const auto next = [&](std::string& line) {
+    std::array<char, 64> text{};  // longer lines are texts
+    stream.getline(text.data(), text.size());
+    if (stream.fail() && !stream.eof() && stream.gcount() > 0) {
+      stream.clear();
+      stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    }
+    line = without_blanks(text.data());
+    while (!line.empty() && is_space(line.back())) line.pop_back();
+    return !stream.fail();
+  };
+  bool lines = false;
+  std::string code, value, entity;
+  double lowest = 0, highest = 0;
+  bool any = false;
+  while (next(code) && next(value)) {
+    if (code == "0") {
+      if (entity == "3DFACE" && any && highest - lowest > 1e-6) return false;
+      entity = value, any = false;
+      lines = lines || std::ranges::find(kLines, entity) != kLines.end();
+    } else if (entity == "POLYLINE" && code == "70" && (std::atoi(value.c_str()) & kMeshes) != 0) {
+      return false;
+    } else if (entity == "3DFACE" && (code == "30" || code == "31" || code == "32" || code == "33")) {
+      const double z = std::atof(value.c_str());
+      lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 Recognised recognise(const std::filesystem::path& file) {
@@ -279,9 +318,10 @@ Recognised recognise(const std::filesystem::path& file) {
     throw Error(Errc::malformed_file,
                 file.string() + ": this is no model that vantage knows; it reads " + names + ": export one of these");
   }
-  if (!by_extension || is_named_as(file, *format)) return {format};
-  return {format, std::string("it is named as ") + by_extension->name + ", but holds " + format->name +
-                      ", and is read as that"};
+  const Format* read_as = format == &kDxf && is_drawing(file) ? &kPlan : format;
+  if (!by_extension || is_named_as(file, *format)) return {read_as};
+  return {read_as, std::string("it is named as ") + by_extension->name + ", but holds " + format->name +
+                       ", and is read as that"};
 }
 
 }  // namespace vantage::importers

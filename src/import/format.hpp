@@ -9,8 +9,9 @@ namespace vantage::importers {
 // A model format, and the program that converts it to GLB.
 struct Format {
   const char* name;
-  const char* extensions;  // each with its dot, separated by spaces
-  const char* importer;    // null: the loader reads it
+  const char* extensions;     // each with its dot, separated by spaces
+  const char* importer;       // null: the loader reads it
+  const char* settings = "";  // names of the settings that the importer takes, separated by spaces
 };
 
 struct Recognised {

@@ -59,12 +59,14 @@ void add_material_tables(Hash& hash, const fs::path& file) {
   }
 }
 
-// Changes with the model, the importer and this program.
-std::string cache_key(const fs::path& file, const Format& format, const Importer& importer) {
+// Changes with the model, the importer, what it is told, and this program.
+std::string cache_key(const fs::path& file, const Format& format, const Importer& importer,
+                      const std::vector<std::string>& settings) {
   Hash hash;
   const std::string_view version = vantage::version(), name = format.name;
   hash.add_bytes(version.data(), version.size());
   hash.add_bytes(name.data(), name.size());
+  for (const std::string& setting : settings) hash.add_bytes(setting.c_str(), setting.size() + 1);
   std::error_code failure;  // then both are -1
   hash.add(fs::file_size(importer.program, failure));
   hash.add(fs::last_write_time(importer.program, failure).time_since_epoch().count());
@@ -146,7 +148,8 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 
 }  // namespace
 
-std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits) {
+std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits,
+                                 const std::vector<std::string>& settings) {
   limits.memory = memory_limit(limits.memory);
   limits.memory -= std::min(limits.memory / 8, kCode);
   limits.cpu_s = std::min(limits.cpu_s, seconds_for(file));
@@ -164,9 +167,10 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();
-  const fs::path entry = folder / (cache_key(absolute, format, importer) + ".glb");
+  const fs::path entry = folder / (cache_key(absolute, format, importer, settings) + ".glb");
   if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);
+  importer.words.insert(importer.words.end(), settings.begin(), settings.end());
   importer.words.push_back(absolute.string());
   importer.readable.push_back(absolute.parent_path());
   std::error_code failure;

@@ -61,10 +61,12 @@ Importer find_importer(const Format& format) {
   const bool ifc = std::string_view(format.importer) == "vantage-import-ifc";
   const bool gltf = std::string_view(format.importer) == "vantage-import-gltf";
   const bool cloud = std::string_view(format.importer) == "vantage-import-cloud";
+  const bool plan = std::string_view(format.importer) == "vantage-import-plan";
   const std::string remedy = ifc ? "install node and web-ifc with setup.sh --ifc"
                                  : std::string("install ") +
                                        (gltf    ? "libdraco-dev and libmeshoptimizer-dev"
                                         : cloud ? "libexpat1-dev"
+                                        : plan  ? "libdxflib-dev and libgeos-dev"
                                                 : "libassimp-dev") +
                                        " and build vantage again (setup.sh does both)";
   for (const fs::path& folder : folders()) {

@@ -26,6 +26,8 @@ Settings settings(const SceneOptions& options) {
       .add("default_diffuse", options.default_diffuse, {"diffuse", false})
       .add("unit", options.unit ? std::optional<std::string>(to_string(*options.unit)) : std::nullopt, {"unit", false})
       .add("up", options.up ? std::optional<std::string>(to_string(*options.up)) : std::nullopt, {"up", false})
+      .add("wall_layers", options.wall_layers, {"wall-layer", false})
+      .add("wall_height_m", options.wall_height_m, {"wall-height", false})
       .add("allow_outside", options.allow_outside, {options.allow_outside ? "allow-outside" : "", false})
       .take();
 }

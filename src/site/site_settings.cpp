@@ -66,6 +66,15 @@ void add_scene(Rows& rows) {
             o.scene.up = named(what, [&] { return up_axis_from_string(text); });
           },
           [](const SiteOptions& o) { return o.scene.up.has_value(); })
+      .texts(
+          "wall-layer", "PATTERN", "Layers of a floor plan's walls; recognised by default",
+          [](SiteOptions & o) -> auto& { return o.scene.wall_layers; })
+      .custom(
+          "wall-height", "M", "Height of a floor plan's walls; 2.7",
+          [](SiteOptions& o, const std::string& text, const std::string& what) {
+            o.scene.wall_height_m = parse_number(text, what, positive);
+          },
+          [](const SiteOptions& o) { return o.scene.wall_height_m.has_value(); })
       .custom(
           "scene-index", "N", "Scene of the file; its own default otherwise",
           [](SiteOptions& o, const std::string& text, const std::string& what) {

@@ -18,6 +18,7 @@
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
 #include "scene/gltf/primitive.hpp"
+#include "scene/importer_settings.hpp"
 #include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
@@ -90,9 +91,10 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  // Borrows all arguments.
-  Loader(const File& file, const SceneOptions& options, LoadBudget& budget)
-      : file_(file), options_(options), budget_(budget), materials_(file, budget, raw_.notes) {
+  // Borrows all arguments. `converted`: the file is in metres with Y up, and the options' unit is another one's, from
+  // which it was made.
+  Loader(const File& file, const SceneOptions& options, LoadBudget& budget, bool converted)
+      : file_(file), options_(options), converted_(converted), budget_(budget), materials_(file, budget, raw_.notes) {
     raw_.options = options;
   }
 
@@ -138,6 +140,7 @@ class Loader {
   }
 
   void settle_axes() {
+    if (converted_) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
     std::optional<Unit> unit = options_.unit;
     std::optional<UpAxis> up = options_.up;
     try {
@@ -473,6 +476,7 @@ class Loader {
 
   const File& file_;
   const SceneOptions& options_;
+  const bool converted_;
   LoadBudget& budget_;
   RawScene raw_;
   MaterialTable materials_;
@@ -488,16 +492,17 @@ class Loader {
 
 namespace {
 
-// `open` returns the glTF file; `note`, unless empty, becomes the scene's first.
+// `open` returns the glTF file; `note`, unless empty, becomes the scene's first. `converted` as of Loader.
 template <class Open>
-Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options, const std::string& note = {}) {
+Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options, const std::string& note = {},
+                 bool converted = false) {
   if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))
     throw Error(Errc::invalid_argument,
                 "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
   try {
     LoadBudget budget(options.max_memory_bytes, name);
     const gltf::File file = open(budget);
-    RawScene raw = gltf::Loader(file, options, budget).load();
+    RawScene raw = gltf::Loader(file, options, budget, converted).load();
     if (!note.empty()) raw.notes.insert(raw.notes.begin(), note);
     return Scene(finish_scene(std::move(raw), name));
   } catch (const std::bad_alloc&) {
@@ -511,13 +516,14 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
 
 Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
   const importers::Recognised recognised = importers::recognise(file);
+  const auto settings = importer_settings(options, *recognised.format, file.string());
   if (!recognised.format->importer)
     return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); },
                       file.string(), options, recognised.note);
   const std::vector<std::uint8_t> glb =
-      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes});
+      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes}, settings);
   return load_scene([&](LoadBudget& budget) { return gltf::File(glb, file.string(), budget); }, file.string(), options,
-                    recognised.note);
+                    recognised.note, takes_setting(*recognised.format, "unit"));
 }
 
 Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options, const std::string& name) {

@@ -52,6 +52,11 @@ TEST_F(FormatTest, IsToldByContent) {
       {"points.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n", "PLY of points"},
       {"no_faces.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 0\nend_header\n", "PLY of points"},
       {"a.dxf", "999\nby hand\n  0\r\nSECTION\r\n  2\r\nHEADER\r\n", "DXF"},
+      {"lines.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\nENDSEC\n0\nEOF\n", "a floor plan in DXF"},
+      {"faces.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\n3DFACE\n30\n0\n31\n2.5\n0\nENDSEC\n0\nEOF\n", "DXF"},
+      {"flat_faces.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\n3DFACE\n30\n0\n31\n0\n0\nENDSEC\n0\nEOF\n",
+       "a floor plan in DXF"},
+      {"polyface.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\nPOLYLINE\n70\n64\n0\nENDSEC\n0\nEOF\n", "DXF"},
   };
   for (const Sample& sample : samples) {
     const auto recognised = importers::recognise(write(sample.file, sample.content));

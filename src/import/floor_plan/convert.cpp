@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/floor_plan/convert.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "import/floor_plan/drawing.hpp"
+#include "import/floor_plan/join_ends.hpp"
+#include "import/floor_plan/solids.hpp"
+#include "import/floor_plan/swings.hpp"
+#include "import/floor_plan/unit.hpp"
+#include "import/floor_plan/walls.hpp"
+#include "import/glb_bytes.hpp"
+#include "import/program.hpp"
+
+namespace vantage::floor_plan {
+namespace {
+
+using importer::Refused;
+using nlohmann::json;
+
+// To metres, and around a point of whole metres amid the lines: floats hold no map coordinates.
+Point scale_to_metres(Drawing& drawing, double metres) {
+  const auto each = [&](const auto& visit) {
+    for (Line& line : drawing.lines) visit(line.a), visit(line.b);
+    for (Arc& arc : drawing.arcs) visit(arc.centre), visit(arc.start);
+    for (Area& area : drawing.areas)
+      for (auto& ring : area.rings)
+        for (Point& p : ring) visit(p);
+    for (Text& text : drawing.texts) visit(text.at), visit(text.insertion);
+  };
+  std::vector<double> xs, ys;
+  each([&](Point& p) {
+    p = p * metres;
+    xs.push_back(p.x), ys.push_back(p.y);
+  });
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  };
+  for (Text& text : drawing.texts) text.height *= metres;
+  const Point origin{std::floor(median(xs)), std::floor(median(ys))};
+  each([&](Point& p) { p = p - origin; });
+  return origin;
+}
+
+std::string fixed(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) out += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kMost ? out + ", …" : out;
+}
+
+std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, const Walls& walls, const Scale& scale) {
+  std::array<std::size_t, 3> kinds{};
+  for (const Opening& opening : plan.openings) ++kinds[opening.kind];
+  const std::size_t named = static_cast<std::size_t>(std::ranges::count_if(
+      plan.rooms.rooms, [](const Room& room) { return !room.name.empty() || !room.number.empty(); }));
+  std::vector<std::string> notes{"floor plan: " + scale.note + "; walls of layer " + listed(walls.layers) +
+                                     (walls.by_name ? "" : ", whose lines enclose rooms (setting wall-layer)") + ", " +
+                                     fixed(plan.wall_height_m, 2) + " m high",
+                                 counted(plan.rooms.rooms.size(), "room") + ", " + std::to_string(named) +
+                                     " with a name; " + counted(kinds[Opening::door], "door") + " and " +
+                                     counted(kinds[Opening::passage], "passage") + " open up to " +
+                                     fixed(kDoorHeight_m, 1) + " m, " + counted(kinds[Opening::window], "window") +
+                                     " from " + fixed(kSill_m, 1) + " m; " + counted(plan.furniture.size(), "piece") +
+                                     " of furniture, boxes of " + fixed(kTable_m, 2) + " m"};
+  if (walls.joined_ends > 0)
+    notes.push_back(counted(walls.joined_ends, "end") + " of wall lines joined to what they missed by up to " +
+                    fixed(100 * walls.farthest_join_m, 1) + " cm (" + fixed(100 * kTolerance_m, 0) + " cm at most)");
+  if (plan.rooms.open)
+    notes.push_back("the walls enclose little; the ground is all that lies between them, without a ceiling");
+  else if (plan.rooms.closed_m > 0)
+    notes.push_back("the outer walls do not close; gaps of up to " + fixed(plan.rooms.closed_m, 1) +
+                    " m are closed to find the rooms");
+  if (!drawing.hidden.empty()) notes.push_back("layers that are off or frozen are left out: " + listed(drawing.hidden));
+  if (drawing.not_read > 0) notes.push_back(counted(drawing.not_read, "spline or face") + " of the drawing left out");
+  return notes;
+}
+
+// Triangles of a node, Y up, without a point twice.
+json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
+  std::map<std::array<float, 3>, std::uint32_t> known;
+  std::vector<float> positions;
+  std::vector<std::uint32_t> indices;
+  for (const auto& [x, y, z] : mesh.points) {
+    const std::array<float, 3> p{static_cast<float>(x), static_cast<float>(z), static_cast<float>(-y)};
+    const auto [found, is_new] = known.try_emplace(p, static_cast<std::uint32_t>(known.size()));
+    if (is_new) positions.insert(positions.end(), p.begin(), p.end());
+    indices.push_back(found->second);
+  }
+  json primitive{{"attributes", {{"POSITION", buffer.add_positions(positions)}}}};
+  primitive["indices"] = buffer.add_indices(indices);
+  return primitive;
+}
+
+json room_node(const Rooms& rooms, std::size_t r, Point origin, double height) {
+  const Room& room = rooms.rooms[r];
+  const Bounds box = bounds(room.area);
+  const Point low = box.low + origin, high = box.high + origin;
+  json vantage{{"class", "room"}, {"box", {{low.x, 0.0, -high.y}, {high.x, height, -low.y}}}};
+  if (!room.number.empty()) vantage["name"] = room.number;
+  if (!room.name.empty()) vantage[room.number.empty() ? "name" : "long_name"] = room.name;
+  vantage["footprint"] = json::array();
+  for (const auto& ring : rings(room.area)) {
+    json loop = json::array();
+    for (const Point& p : ring) loop.push_back({p.x + origin.x, -p.y - origin.y});
+    vantage["footprint"].push_back(loop);
+  }
+  return {{"name", room_name(rooms, r)}, {"extras", {{"vantage", vantage}}}};
+}
+
+std::string glb_of(const Plan& plan, Point origin, const std::vector<std::string>& notes) {
+  importer::Buffer buffer;
+  json nodes = json::array(), meshes = json::array(), children = json::array();
+  for (const Mesh& mesh : meshes_of(plan)) {
+    meshes.push_back({{"primitives", {primitive_of(mesh, buffer)}}});
+    children.push_back(nodes.size());
+    nodes.push_back({{"name", mesh.name},
+                     {"mesh", meshes.size() - 1},
+                     {"extras", {{"vantage", {{"role", mesh.surveyed ? "surveyed" : "blocking"}}}}}});
+  }
+  for (std::size_t r = 0; r < plan.rooms.rooms.size(); ++r) {
+    if (plan.rooms.rooms[r].name.empty() && plan.rooms.rooms[r].number.empty()) continue;
+    children.push_back(nodes.size());
+    nodes.push_back(room_node(plan.rooms, r, origin, plan.wall_height_m));
+  }
+  const std::size_t root = nodes.size();
+  nodes.push_back({{"name", "floor plan"}, {"translation", {origin.x, 0.0, -origin.y}}, {"children", children}});
+  return buffer.finish({{"asset",
+                         {{"version", "2.0"},
+                          {"generator", "vantage-import-plan"},
+                          {"extras", {{"vantage", {{"unit", "m"}, {"up", "y"}}}, {"notes", notes}}}}},
+                        {"scene", 0},
+                        {"scenes", {{{"nodes", {root}}}}},
+                        {"nodes", nodes},
+                        {"meshes", meshes}});
+}
+
+}  // namespace
+
+void read_setting(Settings& settings, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals), value = equals == std::string::npos ? "" : text.substr(equals + 1);
+  if (name == "unit") {
+    settings.unit = value;
+  } else if (name == "wall-layer") {
+    settings.wall_layers.push_back(value);
+  } else if (name == "wall-height") {
+    const auto [end, failure] = std::from_chars(value.data(), value.data() + value.size(), settings.wall_height_m);
+    if (failure != std::errc() || end != value.data() + value.size() || !(settings.wall_height_m > 0))
+      throw Refused("the wall height \"" + value + "\" is not a number above 0");
+  } else {
+    throw Refused("there is no setting \"" + name + "\"");
+  }
+}
+
+std::string convert(const std::filesystem::path& file, const Settings& settings) {
+  Drawing drawing = read_drawing(file, settings.wall_layers);
+  if (drawing.lines.empty() && drawing.arcs.empty() && drawing.areas.empty())
+    throw Refused("it holds no lines in its model space; export the floor plan with its lines");
+  const Scale scale = scale_of(drawing, settings.unit);
+  const Point origin = scale_to_metres(drawing, scale.metres);
+  const std::vector<Swing> swings = take_swings(drawing);
+  Walls walls = find_walls(drawing);
+  constexpr double kSmallest_m = 1, kLargest_m = 3000;
+  const Bounds box = bounds(walls.solid);
+  const double wide = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  if (!(wide >= kSmallest_m && wide <= kLargest_m))
+    throw Refused("its walls would be " + fixed(wide, wide < 1 ? 3 : 0) + " m wide (" + scale.note +
+                  "); give the setting unit, or wall-layer if something far away is on their layer");
+  Plan plan;
+  plan.wall_height_m = settings.wall_height_m;
+  plan.openings = find_openings(walls.solid, drawing, swings);
+  plan.rooms = find_rooms(walls.solid, plan.openings, drawing.texts);
+  plan.solid = clone(walls.solid);
+  std::vector<Shape> open;
+  for (const Opening& opening : plan.openings) open.push_back(clone(opening.area));
+  if (!open.empty()) plan.solid = areas(without(walls.solid, united(std::move(open))));
+  plan.furniture = find_furniture(drawing, plan.rooms);
+  return glb_of(plan, origin, notes_of(plan, drawing, walls, scale));
+}
+
+}  // namespace vantage::floor_plan

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vantage::floor_plan {
+
+struct Settings {
+  std::string unit;                      // empty: as the drawing tells
+  std::vector<std::string> wall_layers;  // patterns; empty: as names or lines tell
+  double wall_height_m = 2.7;
+};
+
+// NAME=VALUE of unit, wall-layer (which may be repeated) and wall-height. Throws Refused.
+void read_setting(Settings& settings, const std::string& text);
+
+// Returns the bytes of a GLB: the floor plan of a DXF as rooms of that height. Throws Refused.
+std::string convert(const std::filesystem::path& file, const Settings& settings);
+
+}  // namespace vantage::floor_plan

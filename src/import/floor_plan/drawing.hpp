@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a floor plan's drawing holds, with blocks placed and curves as arcs.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vantage::floor_plan {
+
+struct Point {
+  double x = 0, y = 0;
+  friend Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
+  friend Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
+  friend Point operator*(Point a, double by) { return {a.x * by, a.y * by}; }
+  friend bool operator==(const Point&, const Point&) = default;
+};
+inline double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
+inline double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
+inline double length(Point a) { return std::hypot(a.x, a.y); }
+inline double distance(Point a, Point b) { return length(b - a); }
+
+// What a layer or a block is of, by its name.
+enum class Kind { other, wall, door, window, furniture, stair, annotation };
+
+// Where a piece of the drawing comes from.
+struct Origin {
+  int layer = 0;  // in Drawing::layers
+  Kind kind = Kind::other;
+  int symbol = -1;  // the innermost placed block, in Drawing::symbols; -1: none
+};
+
+struct Line {
+  Point a, b;
+  Origin from;
+};
+
+// From `start` around `centre` by `sweep` radians, counter-clockwise if positive.
+struct Arc {
+  Point centre, start;
+  double sweep = 0;
+  Origin from;
+  double radius() const { return distance(centre, start); }
+  Point at(double share) const;
+  Point end() const { return at(1); }
+};
+
+// A filled area: rings of a hatch or a solid.
+struct Area {
+  std::vector<std::vector<Point>> rings;
+  Origin from;
+};
+
+struct Text {
+  Point at;         // its middle, as far as can be told
+  Point insertion;  // and the point that the file gives
+  double height = 0;
+  std::string text;
+  Origin from;
+};
+
+// A placed block.
+struct Symbol {
+  std::string name;
+  Kind kind = Kind::other;
+  int parent = -1;  // the block that it is in
+};
+
+struct Drawing {
+  std::vector<std::string> layers;
+  std::vector<Kind> layer_kinds;
+  std::vector<Symbol> symbols;
+  std::vector<Line> lines;
+  std::vector<Arc> arcs;
+  std::vector<Area> areas;
+  std::vector<Text> texts;
+  int unit_code = 0;                // $INSUNITS
+  std::vector<std::string> hidden;  // layers that are off or frozen and hold something
+  std::size_t not_read = 0;         // entities of other kinds that draw something
+};
+
+// Reads the model space of a DXF; coordinates are the file's. Layers that match `wall_layers` (shell patterns, case
+// does not matter), if there are any, are the walls, whatever names say. Throws Refused.
+Drawing read_drawing(const std::filesystem::path& file, const std::vector<std::string>& wall_layers);
+
+// An arc as a chain of points that stray from it by at most `error`.
+std::vector<Point> chain(const Arc& arc, double error);
+
+}  // namespace vantage::floor_plan

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/floor_plan/join_ends.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "import/floor_plan/grid.hpp"
+#include "import/floor_plan/walls.hpp"
+
+namespace vantage::floor_plan {
+namespace {
+
+constexpr double kSame = 1e-3;  // ends closer than this are joined already
+
+Point nearest_on(const Line& line, Point p) {
+  const Point along = line.b - line.a;
+  const double t = std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
+  return line.a + along * t;
+}
+
+// Where the line would go on to meet the other.
+std::optional<Point> crossing(const Line& line, const Line& other) {
+  const Point a = line.b - line.a, b = other.b - other.a;
+  const double turn = cross(a, b);
+  if (std::abs(turn) <= 1e-3 * length(a) * length(b)) return std::nullopt;
+  return line.a + a * (cross(other.a - line.a, b) / turn);
+}
+
+class Ends {
+ public:
+  explicit Ends(std::vector<Line> lines) : lines_(std::move(lines)) {
+    Grid grid(1.0);
+    for (std::size_t l = 0; l < lines_.size(); ++l) {
+      const Point margin{kTolerance_m, kTolerance_m};
+      grid.add(l, lowest(lines_[l].a, lines_[l].b) - margin, highest(lines_[l].a, lines_[l].b) + margin);
+    }
+    for (std::size_t e = 0; e < 2 * lines_.size(); ++e)
+      if (loose(e, grid)) loose_.push_back(e);
+    find_moves(grid);
+  }
+
+  Joined join() {
+    std::ranges::sort(moves_, {}, &Move::by);
+    std::vector<bool> done(2 * lines_.size());
+    Joined out;
+    for (const Move& move : moves_) {
+      if (done[move.end]) continue;
+      done[move.end] = true;
+      if (move.onto) done[*move.onto] = true;  // which stays where it is
+      const Point target = move.onto ? at(*move.onto) : move.to;
+      if (distance(target, other(move.end)) < kSame) continue;  // would make a point of it
+      at(move.end) = target;
+      ++out.ends;
+      out.farthest_m = std::max(out.farthest_m, move.by);
+    }
+    close_walls(done);
+    out.lines = std::move(lines_);
+    return out;
+  }
+
+ private:
+  struct Move {
+    std::size_t end;
+    std::optional<std::size_t> onto;  // another end
+    Point to;
+    double by;
+  };
+
+  Point& at(std::size_t end) { return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b; }
+  Point other(std::size_t end) { return at(end ^ 1U); }
+
+  bool loose(std::size_t end, const Grid& grid) {
+    const Point p = at(end);
+    bool meets = false;
+    grid.visit(p, p, [&](std::size_t l) {
+      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kSame);
+    });
+    return !meets;
+  }
+
+  void find_moves(const Grid& grid) {
+    for (const std::size_t end : loose_) {
+      const Point p = at(end);
+      std::optional<Move> to_end, to_line;
+      const auto better = [](std::optional<Move>& best, const Move& move) {
+        if (!best || move.by < best->by) best = move;
+      };
+      grid.visit(p, p, [&](std::size_t l) {
+        if (l == end / 2) return;
+        for (const std::size_t e : {2 * l, 2 * l + 1})
+          if (const double by = distance(at(e), p); by <= kTolerance_m) better(to_end, {end, e, at(e), by});
+        if (distance(nearest_on(lines_[l], p), p) > kTolerance_m) return;
+        const auto meeting = crossing(lines_[end / 2], lines_[l]);
+        const bool straight_on = meeting && distance(*meeting, p) <= kTolerance_m &&
+                                 distance(nearest_on(lines_[l], *meeting), *meeting) <= kSame;
+        const Point to = straight_on ? *meeting : nearest_on(lines_[l], p);
+        better(to_line, {end, std::nullopt, to, distance(to, p)});
+      });
+      if (to_end)
+        moves_.push_back(*to_end);
+      else if (to_line)
+        moves_.push_back(*to_line);
+    }
+  }
+
+  void close_walls(const std::vector<bool>& done) {
+    Grid grid(1.0);
+    for (const std::size_t end : loose_)
+      if (!done[end]) grid.add(end, at(end), at(end));
+    std::vector<bool> closed(2 * lines_.size());
+    for (const std::size_t end : loose_) {
+      if (done[end] || closed[end]) continue;
+      const Point p = at(end), outward = (p - other(end)) * (1 / distance(p, other(end)));
+      std::optional<std::size_t> best;
+      const Point reach{kThickestWall_m, kThickestWall_m};
+      grid.visit(p - reach, p + reach, [&](std::size_t e) {
+        if (e / 2 == end / 2 || closed[e] || done[e]) return;
+        const Point to = at(e) - p, way = (at(e) - other(e)) * (1 / distance(at(e), other(e)));
+        const double wide = length(to);
+        const bool side_by_side = wide >= kThinnestWall_m && wide <= kThickestWall_m && dot(way, outward) > 0.98 &&
+                                  std::abs(dot(to, outward)) <= 0.35 * wide;
+        if (side_by_side && (!best || wide < distance(at(*best), p))) best = e;
+      });
+      if (!best) continue;
+      closed[end] = closed[*best] = true;
+      lines_.push_back({p, at(*best), lines_[end / 2].from});
+    }
+  }
+
+  std::vector<Line> lines_;
+  std::vector<std::size_t> loose_;  // ends that meet nothing: 2 l is the first of line l, 2 l + 1 the second
+  std::vector<Move> moves_;
+};
+
+}  // namespace
+
+Joined join_ends(std::vector<Line> lines) {
+  std::erase_if(lines, [](const Line& line) { return distance(line.a, line.b) < kSame; });
+  return Ends(std::move(lines)).join();
+}
+
+}  // namespace vantage::floor_plan

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "import/floor_plan/drawing.hpp"
+
+namespace vantage::floor_plan {
+
+// By how much ends of hand-drawn lines may miss what they should meet. Metres.
+inline constexpr double kTolerance_m = 0.05;
+
+struct Joined {
+  std::vector<Line> lines;
+  std::size_t ends = 0;   // that were moved by more than a millimetre
+  double farthest_m = 0;  // and how far at most
+};
+
+// Moves loose ends of lines to the end, else to the line, that they miss by kTolerance_m at most. Then closes the ends
+// of walls that are drawn as two lines alone: two loose ends side by side get a line between them.
+Joined join_ends(std::vector<Line> lines);
+
+}  // namespace vantage::floor_plan

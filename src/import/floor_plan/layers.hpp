@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/floor_plan/drawing.hpp"
+
+namespace vantage::floor_plan {
+
+// By words of some fifteen languages in the name of a layer or block (UTF-8).
+Kind kind_of(const std::string& name);
+
+// Whether a name matches a shell pattern (*, ?); case does not matter.
+bool matches(const std::string& name, const std::string& pattern);
+
+}  // namespace vantage::floor_plan

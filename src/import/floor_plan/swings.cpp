@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/floor_plan/swings.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "import/floor_plan/grid.hpp"
+
+namespace vantage::floor_plan {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kNarrowestLeaf = 0.45, kWidestLeaf = 1.6;  // leaves, cabinets' left out
+constexpr double kLeafThickness = 0.08;
+
+// A leaf is a line from the hinge to an end, open or closed, or the other long side beside it. A wall's line is one
+// only if it is as long as the door.
+bool is_leaf(const Line& line, const Swing& swing) {
+  constexpr double kExact = 0.03;
+  return std::ranges::any_of(swing.ends, [&](const Point& end) {
+    if (line.from.kind == Kind::wall) {
+      const auto joins = [&](Point a, Point b) {
+        return distance(a, swing.hinge) <= kExact && distance(b, end) <= kExact;
+      };
+      return joins(line.a, line.b) || joins(line.b, line.a);
+    }
+    const Point along = (end - swing.hinge) * (1 / swing.width);
+    const auto beside = [&](Point p) {
+      const double at = dot(p - swing.hinge, along);
+      return std::abs(cross(along, p - swing.hinge)) <= kLeafThickness && at >= -kLeafThickness &&
+             at <= swing.width + kLeafThickness;
+    };
+    return beside(line.a) && beside(line.b);
+  });
+}
+
+// The line from the hinge to about where the arc begins or ends: a door that is drawn half open.
+std::optional<std::size_t> leaf_of(const Drawing& drawing, const Arc& arc) {
+  constexpr double kNear = 0.15;
+  const auto from_hinge = [&](Point a, Point b) {
+    return distance(a, arc.centre) <= kNear && (distance(b, arc.start) <= kNear || distance(b, arc.end()) <= kNear);
+  };
+  for (std::size_t l = 0; l < drawing.lines.size(); ++l)
+    if (const Line& line = drawing.lines[l]; from_hinge(line.a, line.b) || from_hinge(line.b, line.a)) return l;
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool may_swing(const Arc& arc) {
+  const double sweep = std::abs(arc.sweep);
+  return sweep >= 55 * kDegree && sweep <= 100 * kDegree;
+}
+
+std::vector<Swing> take_swings(Drawing& drawing) {
+  constexpr std::size_t kMostLooked = 2000;
+  std::size_t looked = 0;
+  std::vector<Swing> swings;
+  std::vector<bool> is_taken(drawing.lines.size());
+  std::erase_if(drawing.arcs, [&](const Arc& arc) {
+    const double radius = arc.radius(), sweep = std::abs(arc.sweep);
+    const Kind kind = arc.from.kind;
+    if (radius < kNarrowestLeaf || radius > kWidestLeaf || kind == Kind::furniture || kind == Kind::annotation ||
+        kind == Kind::stair)
+      return false;
+    if (!may_swing(arc)) {
+      if (sweep < 10 * kDegree || sweep > 55 * kDegree || looked++ >= kMostLooked) return false;
+      const auto leaf = leaf_of(drawing, arc);
+      if (!leaf) return false;
+      is_taken[*leaf] = true;
+    }
+    swings.push_back({arc.centre, {arc.start, arc.end()}, radius});
+    return true;
+  });
+  Grid grid(1.0);
+  for (std::size_t s = 0; s < swings.size(); ++s) {
+    const Point reach{swings[s].width + kLeafThickness, swings[s].width + kLeafThickness};
+    grid.add(s, swings[s].hinge - reach, swings[s].hinge + reach);
+  }
+  std::size_t next = 0;
+  std::erase_if(drawing.lines, [&](const Line& line) {
+    bool leaf = is_taken[next++];
+    grid.visit(line.a, line.a, [&](std::size_t s) { leaf = leaf || is_leaf(line, swings[s]); });
+    return leaf;
+  });
+  return swings;
+}
+
+}  // namespace vantage::floor_plan

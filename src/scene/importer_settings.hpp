@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/format.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+
+bool takes_setting(const importers::Format& format, const std::string& name);
+
+// The settings among `options` that the importer of `format` takes, as words NAME=VALUE. Throws Error invalid_argument
+// for given settings of floor plans if it is none; messages begin with `name`.
+std::vector<std::string> importer_settings(const SceneOptions& options, const importers::Format& format,
+                                           const std::string& name);
+
+}  // namespace vantage
