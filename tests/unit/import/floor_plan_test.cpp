@@ -6,6 +6,7 @@
 #include "drawing.hpp"
 #include "import_fixture.hpp"
 #include "scene/scene_data.hpp"
+#include "support/site_of.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
 
@@ -228,13 +229,13 @@ TEST_F(FloorPlanTest, WallsThatEncloseLittleStandOnOpenGround) {
 // A room is entered, or captured from its door nearly as well as the whole.
 TEST_F(FloorPlanTest, DefaultPlanCapturesEveryRoom) {
   const Scene scene = load(small_flat());
-  const SearchArea area = SearchArea::build(scene);
-  EXPECT_TRUE(area.not_entered().empty());
-  const ClashChecker clash(scene);
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.6);
-  Simulator simulator(scene, scanner, {.engine = Engine::embree, .user_size_m = 0.3, .point_spacing_m = 0.1});
-  const PlanResult result = plan(simulator, area, clash, fewest_stations(), {.iterations = 0, .sample_voxels = 4000});
+  Site site =
+      test::site_of(Simulator(scene, scanner, {.engine = Engine::embree, .user_size_m = 0.3, .point_spacing_m = 0.1}));
+  Simulator& simulator = site.simulator();
+  EXPECT_TRUE(site.area().not_entered().empty());
+  const PlanResult result = plan(site, fewest_stations(), {.iterations = 0, .sample_voxels = 4000});
   EXPECT_TRUE(met(result));
   const PlanEntry& entry = result.front[answer(result)];
   const auto within = [](const Room& room, const Vec3& p) {

@@ -121,17 +121,18 @@ TEST(WhyMissed, DarkSurfacesAndGlass) {
     Scanner scanner;
     scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
     scanner.max_range_m = 10, scanner.detection_range_m = 10;
-    const Simulator simulator(quads.scene(), scanner,
-                              {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.1});
-    const ClashChecker clash(simulator.scene());
+    Site site = test::site_of(
+        Simulator(quads.scene(), scanner, {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.1}));
+    const ClashChecker& clash = site.clash();
     EXPECT_FALSE(clash.sees({0, 0, 0}, {2.9, 0, 0}));
     EXPECT_TRUE(clash.ray_passes({0, 0, 0}, {2.9, 0, 0}));
     EXPECT_FALSE(clash.ray_passes({0, 0, 0}, {3.1, 0, 0}));
-    std::vector<std::uint32_t> ranks(simulator.voxel_count());
+    std::vector<std::uint32_t> ranks(site.simulator().voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
     const std::vector<PlacedStation> candidates{at({0, 0, 0})};
     const std::vector<std::uint32_t> none(ranks.size());
-    const std::vector<WhyMissed> why = why_missed(simulator, clash, candidates, ranks, none);
+    std::vector<WhyMissed> why;
+    for (const VoxelStatus& status : why_missed(site, candidates, ranks, none)) why.push_back(status.why);
     EXPECT_EQ(std::ranges::count(why, WhyMissed::hidden), 0);
     EXPECT_EQ(std::ranges::count(why, WhyMissed::dark), dark ? std::ssize(why) : 0);
     EXPECT_GT(why.size(), 20u);
