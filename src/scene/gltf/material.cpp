@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "image/decode.hpp"
 
@@ -97,7 +98,9 @@ double MaterialTable::read_transparency(int index, const Material& material, Mat
   const json& transmission = file_.find("materials", index, {"extensions", "KHR_materials_transmission"});
   info.glass = transmission.is_object() && number_in(transmission, "transmissionFactor", 0) >= kTransmits;
   if (info.glass) return 0;
-  const json& mode = file_.find("materials", index, {"alphaMode"});
+  // As text: comparing JSON with a literal allocates where it may not throw.
+  const auto* const named = file_.find("materials", index, {"alphaMode"}).get_ptr<const std::string*>();
+  const std::string_view mode = named ? *named : std::string_view();
   if (mode == "MASK") {
     const bool unread =
         material.image < 0 && file_.find("materials", index, {"pbrMetallicRoughness", "baseColorTexture"}).is_object();

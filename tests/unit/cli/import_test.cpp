@@ -73,7 +73,7 @@ TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
                "--engine", "embree", "--no-report", "-o", path("more"), "--stations", "1", "--iterations", "2"});
   const auto& all = more["front"][0]["stations"];
   ASSERT_EQ(all.size(), 4u);
-  EXPECT_TRUE(all[2]["kept"].get<bool>() && !all[3]["kept"].get<bool>());
+  EXPECT_TRUE(all[2]["existing"].get<bool>() && !all[3]["existing"].get<bool>());
   EXPECT_EQ(all[1]["position"], (nlohmann::json{5.0, 3.0, 1.6}));
 }
 
