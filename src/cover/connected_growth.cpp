@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/connected_growth.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -74,6 +76,16 @@ class Growth {
     return true;
   }
 
+  // Gains of all free candidates that may stand; 0 of others.
+  std::vector<double> gains() const {
+    std::vector<double> gains(none_, 0);
+    tbb::parallel_for(std::size_t{0}, free_.size(), [&](std::size_t i) {
+      const std::size_t k = free_[i];
+      if (may_stand(problem_, k, network_)) gains[k] = cover_.gain(k);
+    });
+    return gains;
+  }
+
   std::optional<std::size_t> first_candidate() const;
   std::optional<std::size_t> best_anywhere() const;
   Path best_path() const;
@@ -108,21 +120,18 @@ std::optional<std::size_t> Growth::first_candidate() const {
 }
 
 std::optional<std::size_t> Growth::best_anywhere() const {
+  const std::vector<double> gain = gains();
   std::optional<std::size_t> best;
-  double gain = 0;
-  for (const std::size_t k : free_) {
-    if (!may_stand(problem_, k, network_)) continue;
-    if (const double own = cover_.gain(k); own > gain) gain = own, best = k;
-  }
+  double most = 0;
+  for (const std::size_t k : free_)
+    if (gain[k] > most) most = gain[k], best = k;
   return best;
 }
 
 // The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
 Path Growth::best_path() const {
   std::vector<std::size_t> hops(none_, none_), from(none_, none_), now = network_, next;
-  std::vector<double> gain(none_, 0);
-  for (const std::size_t k : free_)
-    if (may_stand(problem_, k, network_)) gain[k] = cover_.gain(k);
+  const std::vector<double> gain = gains();
   for (const std::size_t k : network_) hops[k] = 0;
   struct End {
     double score;  // upper bound of the path's gain for each candidate
@@ -131,14 +140,17 @@ Path Growth::best_path() const {
   std::vector<End> ends;
   for (std::size_t hop = 1; hop <= kLongestPath && !now.empty(); ++hop) {
     next.clear();
-    for (const std::size_t k : free_) {
-      if (hops[k] < none_ || !may_stand(problem_, k, network_)) continue;
+    // Ways back from `now` lead over earlier hops, which stay as they are.
+    tbb::parallel_for(std::size_t{0}, free_.size(), [&](std::size_t i) {
+      const std::size_t k = free_[i];
+      if (hops[k] < none_ || !may_stand(problem_, k, network_)) return;
       for (const std::size_t before : now)
         if (linked(problem_, before, k) && (from[k] == none_ || gain[before] > gain[from[k]]) &&
             may_follow(k, before, from))
           from[k] = before;
-      if (from[k] < none_) next.push_back(k);
-    }
+    });
+    for (const std::size_t k : free_)
+      if (hops[k] == none_ && from[k] < none_) next.push_back(k);
     for (const std::size_t k : next) {
       hops[k] = hop;
       double sum = 0;

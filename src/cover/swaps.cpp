@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/swaps.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,6 +14,8 @@ namespace {
 
 // Least gain of a swap, so that rounding does not keep a search going.
 constexpr double kLeastGain = 1e-9;
+// Candidates whose gains are computed side by side.
+constexpr std::size_t kAtOnce = 64;
 
 // Local search over swaps. An upper bound of each candidate's gain, kept from swap to swap, spares most evaluations.
 class SwapSearch {
@@ -24,7 +28,7 @@ class SwapSearch {
         bound_(in_.size()),
         known_(in_.size()) {
     for (const std::size_t k : chosen_) in_[k] = 1;
-    for (std::size_t k = 0; k < bound_.size(); ++k) bound_[k] = cover_.gain(k);
+    tbb::parallel_for(std::size_t{0}, bound_.size(), [&](std::size_t k) { bound_[k] = cover_.gain(k); });
   }
 
   // Runs until no candidate can be replaced, or stopped.
@@ -50,8 +54,11 @@ class SwapSearch {
     double most = lost + kLeastGain;
     // F(S − out + k) − F(S − out) is at most F(S + k) − F(S − out): the gain of k and the loss of `out`.
     for (; looked_at < order.size() && bound_[order[looked_at]] + lost > most; ++looked_at) {
+      if (looked_at % kAtOnce == 0)
+        tbb::parallel_for(looked_at, std::min(looked_at + kAtOnce, order.size()), [&](std::size_t i) {
+          if (bound_[order[i]] + lost > most) known_[order[i]] = cover_.gain(order[i]);
+        });
       const std::size_t k = order[looked_at];
-      known_[k] = cover_.gain(k);
       if (known_[k] > most && may_join(problem_, k, others)) most = known_[k], best = k;
     }
     cover_.add(best);
