@@ -666,6 +666,7 @@ class Site:
         range: Setting = None,
         noise: Setting = None,
         beam: Setting = None,
+        detection: Setting = None,
         rate: Setting = None,
         user_size: Setting = None,
         incidence: Setting = None,

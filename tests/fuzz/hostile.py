@@ -450,10 +450,10 @@ def scanners():
 STATION = ["--station", "1,-1,1.5"]
 # name: what makes it, whether it may be read
 FILES = {
-    "one_view_many_images.glb": (one_view_many_images, False),
-    "many_images.glb": (many_images, False),
+    "one_view_many_images.glb": (one_view_many_images, True),
+    "many_images.glb": (many_images, True),
     "inflates.glb": (picture(lambda: png(64, 64, 8, 6, zeros(1 << 30))), True),
-    "jpeg_claims.glb": (picture(lambda: jpeg(16384, 0)[:2000]), False),
+    "jpeg_claims.glb": (picture(lambda: jpeg(16384, 0)[:2000]), True),
     "jpeg_scans.glb": (picture(lambda: jpeg(4096, 400)), True),
     "instances_without_view.glb": (instances_without_view, False),
     "vertices_without_view.glb": (vertices_without_view, False),

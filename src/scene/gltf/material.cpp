@@ -156,7 +156,12 @@ std::int32_t MaterialTable::decode(int source, const std::string& texture, std::
   const std::string what = "decoding " + texture + ", of " + std::to_string(header.width) + " × " +
                            std::to_string(header.height) + " pixels,";
   budget_.require(header.decoding_bytes, what);
-  budget_.keep(std::uint64_t{4} * header.width * header.height, what);
+  const std::uint64_t pixels = std::uint64_t{4} * header.width * header.height;
+  if (pixels > budget_.left() / 2) {
+    problem = "it would take more than half of the memory that is left for the scene";
+    return -1;
+  }
+  budget_.keep(pixels, what);
   Image decoded = decode_image(bytes, problem);
   std::int32_t place = -1;
   if (decoded.width > 0) {
