@@ -19,6 +19,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
+#include "core/seconds_since.hpp"
 #include "import/scans.hpp"
 #include "plan/limits.hpp"
 
@@ -28,8 +29,10 @@ namespace {
 // A first network is chosen by no more voxels than this.
 constexpr std::uint64_t kStartSample = 20'000;
 
-// Of the time limit, for all but cartography and files.
-constexpr double kPlanShare = 0.9;
+// Of the time limit: until then for all but cartography and files, and for all but files.
+constexpr double kPlanShare = 0.9, kMapShare = 0.95;
+// Pictures that took longer than this tell that the report takes as long.
+constexpr double kLongToDraw_s = 2;
 
 struct PlanOptions {
   SiteArguments site;
@@ -237,12 +240,14 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
 }
 
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
-                   const PlanResult& result, Program& program, const Deadline& all_by) {
+                   const PlanResult& result, Program& program, const Deadline& map_by, const Deadline& all_by) {
   const PlanEntry& chosen = result.front[answer(result)];
-  const auto field = cartography(site.simulator(), chosen, program, all_by.stop());
+  const auto field = cartography(site.simulator(), chosen, program, map_by.stop());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
+  const auto begun = std::chrono::steady_clock::now();
   write_plan(folder, result, site, field ? &*field : nullptr);
+  const bool late = all_by.passed() && seconds_since(begun) > kLongToDraw_s;
   std::optional<MissedVoxels> judged;
   if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, *field, program);
   if (judged)
@@ -250,7 +255,10 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
         *judged, site, chosen.stations);
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
-  if (!options.no_report && why_no_report().empty())
+  if (!options.no_report && late)
+    spdlog::warn("no report: the time was over; vantage evaluate SITE --stations {} --report report.html makes one",
+                 (folder / "front.json").string());
+  else if (!options.no_report && why_no_report().empty())
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, site,
                   options.report_head.with({.field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}),
                   program, all_by.stop());
@@ -281,7 +289,8 @@ EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::js
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   options.report_head.check();
   const double limit = options.config.max_seconds;
-  const Deadline plan_by(kPlanShare * limit, program.stop), all_by(limit, program.abort);
+  const Deadline plan_by(kPlanShare * limit, program.stop), map_by(kMapShare * limit, program.abort),
+      all_by(limit, program.abort);
   // The paper's problems are posed for a scanner that detects every echo.
   if (!options.site.given.detection && options.question.problem &&
       std::ranges::count(problem_names(), *options.question.problem) > 0)
@@ -335,7 +344,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   make_folder(folder);  // it may have been removed meanwhile
   write_text(folder / "config.json", as_given.dump(2) + "\n");
-  write_results(folder, site, options, result, program, all_by);
+  write_results(folder, site, options, result, program, map_by, all_by);
   return show();
 }
 
