@@ -99,7 +99,7 @@ struct Objective {
   enum class Kind { other, coverage, link, distance, time };
   Kind kind = Kind::other;
   double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 has at least, for `Kind::coverage`.
-  /// What helps if a requirement on it is not met: "allow more stations".
+  /// Advice if a requirement on it is not met: "allow more stations".
   std::string advice = "search longer";
   /// Its parameters as text. Results state them, and a run is resumed only under the same ones.
   std::string parameters = {};

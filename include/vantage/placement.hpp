@@ -168,7 +168,7 @@ class ClashChecker {
   std::optional<Vec3> ground_below(const Vec3& point, double limit_m) const;
   /// Whether the line between two points (survey frame), e.g. two heads, is free.
   bool sees(const Vec3& a, const Vec3& b) const;
-  /// Whether a scanner's ray gets from `a` to `b`: as `sees`, but through glass.
+  /// Tells whether a scanner's ray gets from `a` to `b`: as `sees`, but through glass.
   bool ray_passes(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.
   double distance(const Vec3& point, double limit_m) const;

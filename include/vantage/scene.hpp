@@ -92,7 +92,7 @@ struct SceneOptions {
   /// any `vantage` extras are always read in metres.
   std::optional<Unit> unit = std::nullopt;
   std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
-  /// Of a floor plan: patterns (case does not matter) of the layers that its walls are on. Empty: those named as walls,
+  /// Patterns (case does not matter) of the layers that a floor plan has its walls on. Empty: those named as walls,
   /// else those whose lines enclose rooms.
   std::vector<std::string> wall_layers = {};
   std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.

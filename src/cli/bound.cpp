@@ -10,6 +10,7 @@
 #include "cli/prove.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
+#include "core/text.hpp"
 #include "vantage/candidates.hpp"
 
 namespace vantage::cli {
@@ -75,8 +76,6 @@ nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::s
   }
   return heads;
 }
-
-std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
 std::string text_of(const CoverSolution& best, std::size_t stations, const Estimate& captured) {
   const std::string at_most = fmt::format("{:>3} stations  capture at most {} of what is attainable", stations,

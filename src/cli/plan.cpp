@@ -29,7 +29,7 @@ namespace {
 // A first network is chosen by no more voxels than this.
 constexpr std::uint64_t kStartSample = 20'000;
 
-// Of the time limit: until then for all but cartography and files, and for all but files.
+// Shares of the time limit: the plan itself ends by the first, the map of what is captured by the second.
 constexpr double kPlanShare = 0.9, kMapShare = 0.95;
 // Pictures that took longer than this tell that the report takes as long.
 constexpr double kLongToDraw_s = 2;
@@ -176,7 +176,7 @@ std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& ent
   return field;
 }
 
-// What a phase does, in words.
+// Returns what a phase does, in words.
 const char* doing(const std::string& phase) {
   if (phase == "look") return "looking at what can be captured";
   if (phase == "choose") return "choosing stations";

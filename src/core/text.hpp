@@ -28,4 +28,7 @@ inline std::string grouped(std::uint64_t value) {
   return text;
 }
 
+// "85.3 %" of a share of 0.853.
+inline std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
+
 }  // namespace vantage

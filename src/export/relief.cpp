@@ -103,7 +103,7 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
   heights.triangle.assign(window.columns * window.rows, kNothing);
   Painter painter(heights, z_cut - scene.origin.z, cuts);
-  // What lies below a glass roof is looked for.
+  // The search goes on below a glass roof.
   for (std::uint32_t t = 0; t < scene.opaque_triangles().size(); ++t) {
     std::array<MapPoint, 3> c;
     std::array<double, 3> z;

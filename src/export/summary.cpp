@@ -10,8 +10,6 @@
 namespace vantage {
 namespace {
 
-std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
-
 // "S1, S2 and S5"
 std::string listed(const std::vector<std::size_t>& stations, const std::vector<std::string>& names) {
   std::string text;

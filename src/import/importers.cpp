@@ -4,6 +4,8 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
@@ -55,20 +57,24 @@ std::string missing(const Format& format, const std::string& why, const std::str
          remedy + ", or export glTF";
 }
 
+// Advice where an importer is missing. REQUIRES: that of a format.
+std::string remedy_for(std::string_view importer) {
+  if (importer == "vantage-import-ifc") return "install node and web-ifc with setup.sh --ifc";
+  struct Needs {
+    std::string_view importer, packages;
+  };
+  constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev"},
+                              Needs{"vantage-import-gltf", "libdraco-dev and libmeshoptimizer-dev"},
+                              Needs{"vantage-import-cloud", "libexpat1-dev"},
+                              Needs{"vantage-import-plan", "libdxflib-dev and libgeos-dev"}};
+  const auto needs = std::ranges::find(kNeeds, importer, &Needs::importer);
+  return "install " + std::string(needs->packages) + " and build vantage again (setup.sh does both)";
+}
+
 }  // namespace
 
 Importer find_importer(const Format& format) {
-  const bool ifc = std::string_view(format.importer) == "vantage-import-ifc";
-  const bool gltf = std::string_view(format.importer) == "vantage-import-gltf";
-  const bool cloud = std::string_view(format.importer) == "vantage-import-cloud";
-  const bool plan = std::string_view(format.importer) == "vantage-import-plan";
-  const std::string remedy = ifc ? "install node and web-ifc with setup.sh --ifc"
-                                 : std::string("install ") +
-                                       (gltf    ? "libdraco-dev and libmeshoptimizer-dev"
-                                        : cloud ? "libexpat1-dev"
-                                        : plan  ? "libdxflib-dev and libgeos-dev"
-                                                : "libassimp-dev") +
-                                       " and build vantage again (setup.sh does both)";
+  const std::string remedy = remedy_for(format.importer);
   for (const fs::path& folder : folders()) {
     std::error_code failure;
     // A program, or a folder with a script for node.

@@ -84,7 +84,7 @@ std::string to_string(const Requirement& requirement) {
 
 std::string value_text(const Objective& objective, double value) {
   if (std::isnan(value)) return "not known";
-  if (objective.percent) return fixed(100 * value, 1) + " %";
+  if (objective.percent) return percent(value);
   return fixed(value, 3) + (objective.unit.empty() ? "" : " " + objective.unit);
 }
 

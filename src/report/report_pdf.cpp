@@ -21,8 +21,6 @@
 namespace vantage {
 namespace {
 
-std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
-
 // At the right of the head, no wider and higher than that.
 void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
   constexpr double kWidth = 130, kHeight = 52;

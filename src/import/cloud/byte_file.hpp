@@ -40,7 +40,7 @@ class ByteFile {
   void seek(std::uint64_t place);
   // Bytes up to the file's end.
   std::uint64_t left() const { return size_ - std::min(size_, place()); }
-  // So many next bytes, valid until the next call. Throws Refused if the file ends before.
+  // Returns so many next bytes, valid until the next call. Throws Refused if the file ends before.
   const char* take(std::size_t bytes);
   // Next line without its end, valid until the next call; empty at the end. Throws Refused for absurdly long ones.
   std::optional<std::string_view> line();

@@ -186,7 +186,7 @@ class Converter {
     });
   }
 
-  // Whether the space of a person there was seen.
+  // Tells whether the space of a person there was seen.
   bool known_above(const FreeSpace& free, const Eigen::Vector3d& ground) const {
     int known = 0, all = 0;
     for (double z = kFromGround_m / grid_->cell_m(); z < kHeight_m / grid_->cell_m(); z += free.coarse_cells(), ++all)

@@ -17,9 +17,7 @@ class PcdSource final : public PointSource {
   explicit PcdSource(const std::filesystem::path& path) : file_(path) {
     read_header();
     for (const char* name : {"x", "y", "z"}) place_.push_back(index_of(name));
-    for (const char* name : {"normal_x", "normal_y", "normal_z"})
-      if (find(name) < fields_.size()) normal_.push_back(find(name));
-    if (normal_.size() < 3) normal_.clear();
+    normal_ = find_fields(fields_, {"normal_x", "normal_y", "normal_z"});
     data_at_ = file_.place();
     scans_.push_back({});
   }
@@ -85,11 +83,8 @@ class PcdSource final : public PointSource {
     }
   }
 
-  std::size_t find(std::string_view name) const {
-    return static_cast<std::size_t>(std::ranges::find(fields_, name, &ScalarField::name) - fields_.begin());
-  }
   std::size_t index_of(const char* name) const {
-    const std::size_t k = find(name);
+    const std::size_t k = find_field(fields_, name);
     if (k == fields_.size() || times_[k] != 1)
       throw Refused("its points have no " + std::string(name) + "; export it again");
     return k;

@@ -42,9 +42,7 @@ class PlySource final : public PointSource {
     for (std::size_t k = 0; k <= vertex_; ++k)
       if (elements_[k].lists) throw Refused("it has lists before or in its vertices; export its points alone");
     for (const char* name : {"x", "y", "z"}) place_.push_back(index_of(name));
-    for (const char* name : {"nx", "ny", "nz"})
-      if (find(name) < elements_[vertex_].fields.size()) normal_.push_back(find(name));
-    if (normal_.size() < 3) normal_.clear();
+    normal_ = find_fields(elements_[vertex_].fields, {"nx", "ny", "nz"});
     data_ = file_.place();
     scans_.push_back({});
   }
@@ -124,12 +122,8 @@ class PlySource final : public PointSource {
     throw Refused("its header does not end; copy or export it again");
   }
 
-  std::size_t find(std::string_view name) const {
-    const auto& fields = elements_[vertex_].fields;
-    return static_cast<std::size_t>(std::ranges::find(fields, name, &ScalarField::name) - fields.begin());
-  }
   std::size_t index_of(const char* name) const {
-    const std::size_t k = find(name);
+    const std::size_t k = find_field(elements_[vertex_].fields, name);
     if (k == elements_[vertex_].fields.size())
       throw Refused("its vertices have no " + std::string(name) + "; export it again");
     return k;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "import/cloud/byte_file.hpp"
 #include "import/program.hpp"
@@ -33,6 +37,22 @@ struct ScalarField {
     return static_cast<double>(value_at<T>(from, big_endian));
   }
 };
+
+// Place of the field of this name; fields.size() if there is none.
+inline std::size_t find_field(std::span<const ScalarField> fields, std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(fields, name, &ScalarField::name) - fields.begin());
+}
+
+// Places of three fields; empty unless all are there.
+inline std::vector<std::size_t> find_fields(std::span<const ScalarField> fields,
+                                            const std::array<std::string_view, 3>& names) {
+  std::vector<std::size_t> places;
+  for (const std::string_view name : names) {
+    places.push_back(find_field(fields, name));
+    if (places.back() == fields.size()) return {};
+  }
+  return places;
+}
 
 // Next word of a line, which it leaves without; empty at the end.
 inline std::string_view next_word(std::string_view& line) {

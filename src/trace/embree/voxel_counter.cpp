@@ -17,7 +17,6 @@
 #include <limits>
 
 #include "core/target_clones.hpp"
-#include "trace/embree/seen_triangle.hpp"
 
 namespace vantage {
 namespace {
@@ -201,6 +200,13 @@ Box SampledVoxelCounter::box_of(const Look& look) const {
   return {{x_[i] - half, y_[i] - half, z_[i] - half}, {x_[i] + half, y_[i] + half, z_[i] + half}};
 }
 
+SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
+  const SceneData& scene = rays_->scene();
+  const Triangle& t = scene.triangles[triangle];
+  return {relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
+          relative(scene.positions[t[2]], head_)};
+}
+
 // Drops voxels that one triangle hides whole.
 void SampledVoxelCounter::drop_hidden_boxes() {
   probes_.clear();
@@ -213,15 +219,10 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   }
   rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
   traced_ += probes_.size();
-  const SceneData& scene = rays_->scene();
   std::size_t kept = 0;
   for (std::size_t k = 0; k < looks_.size(); ++k) {
-    if (probes_[k].hit != RayBundle::no_hit) {
-      const Triangle& t = scene.triangles[probes_[k].hit];
-      const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
-                                  relative(scene.positions[t[2]], head_));
-      if (triangle.hides(box_of(looks_[k]), static_cast<double>(bundle_.start))) continue;
-    }
+    const std::uint32_t by = probes_[k].hit;
+    if (by != RayBundle::no_hit && seen(by).hides(box_of(looks_[k]), static_cast<double>(bundle_.start))) continue;
     looks_[kept++] = looks_[k];
   }
   looks_.resize(kept);
@@ -335,10 +336,7 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
 // Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.
 void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
   if (rays.begin == rays.end) return;
-  const SceneData& scene = rays_->scene();
-  const Triangle& t = scene.triangles[by];
-  const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
-                              relative(scene.positions[t[2]], head_));
+  const SeenTriangle triangle = seen(by);
   // Nearer triangles may lie before the ray's start.
   const double nearest = static_cast<double>(bundle_.start) * (1 + SeenTriangle::distance_doubt);
   std::uint32_t kept = rays.begin;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trace/embree/sampled_voxels.hpp"
+#include "trace/embree/seen_triangle.hpp"
 #include "trace/embree/station_rays.hpp"
 #include "trace/rays_of_box.hpp"
 
@@ -87,6 +88,7 @@ class SampledVoxelCounter {
   bool look_at(std::uint32_t i, Look& look);
   float height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const;
   Box box_of(const Look& look) const;
+  SeenTriangle seen(std::uint32_t triangle) const;  // from the current head
   void drop_hidden_boxes();
   // Points that are still to be counted in voxel number i of the block, or more.
   std::uint32_t wanted(std::uint32_t i) const;
