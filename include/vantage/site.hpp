@@ -103,6 +103,9 @@ class Site {
   /// Index of a scanner in `scanners()`, which it joins if it is new. Throws Error invalid_argument if it fails
   /// `Scanner::check`, or is new once the simulator exists.
   std::uint32_t place_of(const Scanner& scanner);
+  /// Lets the scanners detect every echo, unless the options say what they detect. The paper's problems are posed for
+  /// such scanners. Throws Error invalid_argument if the simulator exists with scanners that do not.
+  void detect_every_echo();
   /// Factor of default lengths for scenes smaller than a site; 1 from 2 m.
   double length_scale() const noexcept;
   const SimulatorConfig& simulator_config() const noexcept;

@@ -291,10 +291,6 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const double limit = options.config.max_seconds;
   const Deadline plan_by(kPlanShare * limit, program.stop), map_by(kMapShare * limit, program.abort),
       all_by(limit, program.abort);
-  // The paper's problems are posed for a scanner that detects every echo.
-  if (!options.site.given.detection && options.question.problem &&
-      std::ranges::count(problem_names(), *options.question.problem) > 0)
-    options.site.given.detection = {0.0, 1.0};
   Site site = open_site(command, options.site);
   const std::filesystem::path folder = options.output ? *options.output : site.name() + "-plan";
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))

@@ -151,6 +151,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   const auto stations = station_range(question);
   if (!question.objectives.empty() && question.problem && !survey)
     throw Error(Errc::invalid_argument, "objectives: " + *question.problem + " has its own; give one of them");
+  if (!survey && question.objectives.empty()) site.detect_every_echo();
   const double least = linked_from(question);
   const double apart = question.apart_m.value_or(default_apart_m * site.length_scale());
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)

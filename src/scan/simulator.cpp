@@ -234,9 +234,10 @@ struct Simulator::Impl {
   }
 
   // Planes of a sample, or of all voxels, which is the one from 0. Uses the scanner's range noise, whether it is
-  // simulated or not.
-  RegistrationJob registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
-                                  const RegistrationModel& model, bool groups) {
+  // simulated or not. None if stopped: planes of millions of voxels take seconds.
+  std::optional<RegistrationJob> registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
+                                                 const RegistrationModel& model, bool groups,
+                                                 const std::stop_token& stop) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
@@ -249,8 +250,10 @@ struct Simulator::Impl {
         },
         [&] {
           return SamplePatches{from, std::make_shared<Patches>(make_patches(data(), *grid, voxel_indices,
-                                                                            make_pattern(registered.front()), model))};
+                                                                            make_pattern(registered.front()), model,
+                                                                            stop))};
         });
+    if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
         return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
@@ -259,7 +262,7 @@ struct Simulator::Impl {
         patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
                                   static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
     }
-    return {own.patches, patch_scanners, groups};
+    return RegistrationJob{own.patches, patch_scanners, groups};
   }
 
   // Runs `work` alone. The isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call
@@ -443,8 +446,12 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> voxel_indices(grid->size());
     std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
-    const RegistrationJob job = registration_of(voxel_indices, 0, *options.registration, false);
-    take_registration(counts, sum_patches(job, active, size, field->stations, 0));
+    const std::optional<RegistrationJob> job =
+        registration_of(voxel_indices, 0, *options.registration, false, progress.stop);
+    if (job)
+      take_registration(counts, sum_patches(*job, active, size, field->stations, 0));
+    else
+      counts.cancelled = true;
   }
   return counts;
 }
@@ -530,7 +537,13 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
     options.points(places[k], counted);
   };
   std::optional<RegistrationJob> registration;
-  if (options.registration) registration = registration_of(sample, taken.from, *options.registration, options.groups);
+  if (options.registration) {
+    registration = registration_of(sample, taken.from, *options.registration, options.groups, progress.stop);
+    if (!registration) {
+      for (NetworkCounts& counts : all) counts.cancelled = true;
+      return all;
+    }
+  }
   const Tracer::SampleJob job{.sample = sample,
                               .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,

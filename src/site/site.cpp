@@ -286,6 +286,9 @@ Site::Site(Simulator simulator, SearchArea area, ClashChecker clash, std::string
   impl_->scanners.assign(simulator.scanners().begin(), simulator.scanners().end());
   impl_->config = simulator.config();
   impl_->options.seed = simulator.config().seed;
+  // Whoever makes the scanners says what they detect.
+  impl_->options.detection = {impl_->scanners.front().detection_range_m,
+                              impl_->scanners.front().detection_reflectivity};
   impl_->security = clash.volume();
   impl_->walkable = area.options();
   impl_->area = std::move(area);
@@ -316,6 +319,16 @@ std::uint32_t Site::place_of(const Scanner& scanner) {
   impl_->scanners.pop_back();
   throw Error(Errc::invalid_argument,
               "the site's simulator is made, and \"" + scanner.name + "\" is none of its scanners");
+}
+
+void Site::detect_every_echo() {
+  const auto limited = [](const Scanner& scanner) { return scanner.detection_range_m > 0; };
+  if (impl_->options.detection || std::ranges::none_of(impl_->scanners, limited)) return;
+  if (impl_->simulator)
+    throw Error(Errc::invalid_argument,
+                "detection: the problems by name are posed for a scanner that detects every echo, and the site's "
+                "simulator is made with one that does not; open the site with the setting detection, off or as it is");
+  for (Scanner& scanner : impl_->scanners) scanner.detection_range_m = 0, scanner.detection_reflectivity = 1;
 }
 
 Settings Site::settings() const {

@@ -300,10 +300,11 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
 }
 
 Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
-                     const RayPattern& pattern, const RegistrationModel& model) {
+                     const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop) {
   const double side = std::ldexp(grid.voxel_size(), grid.depth());
   const auto middle = [&](int axis) { return grid.min()[static_cast<std::size_t>(axis)] + side / 2; };
-  return make_patches(voxel_surfaces(scene, grid, voxel_indices, std::min(flat_part * model.patch_m, widest_fit_m)),
+  const double window_m = std::min(flat_part * model.patch_m, widest_fit_m);
+  return make_patches(voxel_surfaces(scene, grid, voxel_indices, window_m, stop),
                       {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()}, pattern, model);
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "shared/registration_types.h"
@@ -39,9 +40,9 @@ struct PatchFrame {
 // REQUIRES: model.rho_m > 0, model.patch_m > 0; surfaces within the cube.
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model);
-// For voxels of a grid; indices as for `voxel_surfaces`.
+// For voxels of a grid; indices as for `voxel_surfaces`. A stop ends it early, with no patches.
 Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
-                     const RayPattern& pattern, const RegistrationModel& model);
+                     const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop = {});
 
 // Scanner properties that the sums need.
 struct PatchScanner {

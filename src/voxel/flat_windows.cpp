@@ -191,13 +191,33 @@ void add_large(std::span<Window> windows, const SceneData& scene, const VoxelGri
   });
 }
 
+// Cells of a block, per side, as a power of two. Windows from one block share the cells around it.
+constexpr int block_bits = 3;
+constexpr std::int64_t block_side = std::int64_t{1} << block_bits;
+
+// Calls visit(block) for each block within `reach` blocks of one, along every axis, that the grid has.
+template <class Visit>
+void for_each_near(const Cell& block, std::int64_t reach, std::int64_t a_side, const Visit& visit) {
+  for (std::int64_t x = std::max<std::int64_t>(block[0] - reach, 0); x <= std::min(block[0] + reach, a_side - 1); ++x)
+    for (std::int64_t y = std::max<std::int64_t>(block[1] - reach, 0); y <= std::min(block[1] + reach, a_side - 1); ++y)
+      for (std::int64_t z = std::max<std::int64_t>(block[2] - reach, 0); z <= std::min(block[2] + reach, a_side - 1);
+           ++z)
+        visit(Cell{x, y, z});
+}
+
+Cell cell_of_key(std::uint64_t key) {
+  const auto [x, y, z] = morton_decode(key);
+  return {x, y, z};
+}
+
 // A small triangle, local frame.
 struct Small {
   Float3 middle, along;
   float area;
+  std::uint32_t cell;  // Morton key within its block
 };
 
-// Finds each small triangle, with the cell of its middle.
+// Finds each small triangle, with the block that holds its middle.
 class SmallFinder {
  public:
   SmallFinder(const SceneData& scene, const Cells& cells, const Numbers& number, double small_m)
@@ -207,8 +227,8 @@ class SmallFinder {
     for_each_surveyed(scene_, [&](std::uint32_t t) {
       const Corners p = corners_of(scene_, t);
       if (!is_small(p, small_)) return;
-      const auto cell = number_.find(Cells::key(cells_.holding((p[0] + p[1] + p[2]) / 3.0)));
-      if (cell != number_.end()) found(cell->second, t);
+      const auto block = number_.find(Cells::key(cells_.holding((p[0] + p[1] + p[2]) / 3.0)) >> 3 * block_bits);
+      if (block != number_.end()) found(block->second, t);
     });
   }
 
@@ -219,68 +239,119 @@ class SmallFinder {
   double small_;
 };
 
+std::vector<Small> small_triangles(const SceneData& scene, const Cells& cells, std::span<const std::uint32_t> list) {
+  std::vector<Small> smalls(list.size());
+  const auto rounded = [](const dvec3& p) {
+    return Float3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, smalls.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                        const Corners p = corners_of(scene, list[k]);
+                        const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
+                        const double area = 0.5 * length(twice);
+                        const std::uint64_t cell = Cells::key(cells.holding(middle));
+                        smalls[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{},
+                                     static_cast<float>(area),
+                                     static_cast<std::uint32_t>(cell & ((1u << 3 * block_bits) - 1))};
+                      }
+                    });
+  return smalls;
+}
+
+// The small triangles in and around one block, by cell.
+class SmallsAround {
+ public:
+  // The cube reaches `reach` cells beyond the block on every side.
+  SmallsAround(const Cell& block, std::int64_t reach) : side_(block_side + 2 * reach) {
+    for (int axis = 0; axis < 3; ++axis) low_[axis] = block[axis] * block_side - reach;
+  }
+  // In ascending order of triangles, so that the result does not depend on the other windows.
+  void add(const Cell& block, std::span<const Small> smalls) {
+    for (const Small& small : smalls) {
+      const Cell within = cell_of_key(small.cell);
+      std::int64_t place = 0;
+      bool around = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t at = block[axis] * block_side + within[axis] - low_[axis];
+        around = around && at >= 0 && at < side_;
+        place = place * side_ + at;
+      }
+      if (around) found_.push_back({static_cast<std::uint32_t>(place), &small});
+    }
+  }
+  bool empty() const { return found_.empty(); }
+  void sort() {
+    first_.assign(static_cast<std::size_t>(side_ * side_ * side_) + 1, 0);
+    for (const Found& one : found_) ++first_[one.place + 1];
+    for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
+    sorted_.resize(found_.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (const Found& one : found_) sorted_[next[one.place]++] = one.small;
+  }
+  // REQUIRES: sorted; the cell lies in the cube.
+  std::span<const Small* const> in(const Cell& cell) const {
+    std::int64_t place = 0;
+    for (int axis = 0; axis < 3; ++axis) place = place * side_ + cell[axis] - low_[axis];
+    const std::uint32_t first = first_[static_cast<std::size_t>(place)];
+    return std::span(sorted_).subspan(first, first_[static_cast<std::size_t>(place) + 1] - first);
+  }
+
+ private:
+  struct Found {
+    std::uint32_t place;
+    const Small* small;
+  };
+  std::int64_t side_;
+  Cell low_;  // first cell of the cube, also below 0
+  std::vector<Found> found_;
+  std::vector<std::uint32_t> first_;  // of each cell, then the end
+  std::vector<const Small*> sorted_;
+};
+
 void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
                std::span<const std::uint32_t> voxel_indices, double window_m) {
   const Cells cells = cells_of(grid, window_m / 4);
-  const Runs runs(grid, voxel_indices, cells.shift);
-  // Neighbours that a window from within a cell reaches, by their position in a cube of cells.
-  const auto reach = static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size));
-  const auto neighbours = [&](std::size_t run, const auto& visit) {
-    const auto [x, y, z] = morton_decode(runs.cells[run]);
-    std::size_t place = 0;
-    for (std::int64_t i = -reach; i <= reach; ++i)
-      for (std::int64_t j = -reach; j <= reach; ++j)
-        for (std::int64_t k = -reach; k <= reach; ++k, ++place) {
-          const Cell cell{x + i, y + j, z + k};
-          if (std::ranges::all_of(cell, [&](std::int64_t c) { return c >= 0 && c < cells.a_side; }))
-            visit(place, Cells::key(cell));
-        }
+  const Runs blocks(grid, voxel_indices, cells.shift + block_bits);
+  const auto reach = std::min(static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size)),
+                              cells.a_side - 1);  // in cells
+  const auto near = [&](std::size_t run, const auto& visit) {
+    for_each_near(cell_of_key(blocks.cells[run]), (reach + block_side - 1) / block_side,
+                  (cells.a_side + block_side - 1) / block_side, visit);
   };
   Numbers number;
-  for (std::size_t run = 0; run < runs.cells.size(); ++run)
-    neighbours(run,
-               [&](std::size_t, std::uint64_t key) { number.emplace(key, static_cast<std::uint32_t>(number.size())); });
-  const VoxelTriangles lists = triangle_lists(SmallFinder(scene, cells, number, window_m * small_share), number.size());
-  if (lists.triangle.empty()) return;
-  std::vector<Small> smalls(lists.triangle.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, smalls.size()),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      const auto rounded = [](const dvec3& p) {
-                        return Float3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-                      };
-                      for (std::size_t k = range.begin(); k != range.end(); ++k) {
-                        const Corners p = corners_of(scene, lists.triangle[k]);
-                        const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
-                        const double area = 0.5 * length(twice);
-                        smalls[k] = {rounded((p[0] + p[1] + p[2]) / 3.0),
-                                     area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area)};
-                      }
-                    });
-  const std::int64_t side = 2 * reach + 1;
-  runs.for_each([&](std::size_t run) {
-    std::vector<std::span<const Small>> around(static_cast<std::size_t>(side * side * side));
-    neighbours(run, [&](std::size_t place, std::uint64_t key) {
-      const std::uint32_t n = number.at(key);
-      around[place] = std::span(smalls).subspan(lists.offset[n], lists.offset[n + 1] - lists.offset[n]);
+  for (std::size_t run = 0; run < blocks.cells.size(); ++run)
+    near(run, [&](const Cell& block) {
+      number.emplace(Cells::key(block), static_cast<std::uint32_t>(number.size()));
     });
-    const auto [x, y, z] = morton_decode(runs.cells[run]);
-    const Cell base{x - reach, y - reach, z - reach};
-    for (std::uint32_t i = runs.first[run]; i < runs.first[run + 1]; ++i) {
+  const VoxelTriangles lists = triangle_lists(SmallFinder(scene, cells, number, window_m * small_share), number.size());
+  const std::vector<Small> smalls = small_triangles(scene, cells, lists.triangle);
+  blocks.for_each([&](std::size_t run) {
+    SmallsAround around(cell_of_key(blocks.cells[run]), reach);
+    near(run, [&](const Cell& block) {
+      const std::uint32_t n = number.at(Cells::key(block));
+      around.add(block, std::span(smalls).subspan(lists.offset[n], lists.offset[n + 1] - lists.offset[n]));
+    });
+    if (around.empty()) return;
+    around.sort();
+    for (std::uint32_t i = blocks.first[run]; i < blocks.first[run + 1]; ++i) {
       Window& window = windows[i];
+      const Cell own = cell_of_key(grid.key(voxel_indices[i]) >> 3 * cells.shift);
       const dvec3 low = cells.place(window.point - window.half), high = cells.place(window.point + window.half);
       Cell from, to;
       for (int axis = 0; axis < 3; ++axis) {
         const auto within = [&](double at) {
-          return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)) - base[axis], 0, side - 1);
+          return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)), own[axis] - reach,
+                                          own[axis] + reach);
         };
         from[axis] = within(low[axis]), to[axis] = within(high[axis]);
       }
       for (std::int64_t a = from[0]; a <= to[0]; ++a)
         for (std::int64_t b = from[1]; b <= to[1]; ++b)
           for (std::int64_t c = from[2]; c <= to[2]; ++c)
-            for (const Small& small : around[static_cast<std::size_t>((a * side + b) * side + c)])
-              if (const dvec3 middle = point_of(small.middle); window.holds(middle))
-                window.add(middle, point_of(small.along), static_cast<double>(small.area));
+            for (const Small* small : around.in({a, b, c}))
+              if (const dvec3 middle = point_of(small->middle); window.holds(middle))
+                window.add(middle, point_of(small->along), static_cast<double>(small->area));
     }
   });
 }
@@ -289,11 +360,11 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
 
 std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
                                std::span<const std::uint32_t> voxel_indices, std::span<const VoxelSurface> surfaces,
-                               double window_m) {
+                               double window_m, const std::stop_token& stop) {
   std::vector<float> shares;
   shares.reserve(voxel_indices.size());
   std::vector<Window> windows;
-  for (std::size_t first = 0; first < voxel_indices.size(); first += windows_at_once) {
+  for (std::size_t first = 0; first < voxel_indices.size() && !stop.stop_requested(); first += windows_at_once) {
     const std::size_t some = std::min(windows_at_once, voxel_indices.size() - first);
     const std::span<const std::uint32_t> here = voxel_indices.subspan(first, some);
     windows.clear();

@@ -148,13 +148,14 @@ VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transf
 }  // namespace
 
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
-                                         std::span<const std::uint32_t> voxel_indices, double window_m) {
+                                         std::span<const std::uint32_t> voxel_indices, double window_m,
+                                         const std::stop_token& stop) {
   const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
   const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
   std::vector<VoxelSurface> surfaces(voxel_indices.size());
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, voxel_indices.size()), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (std::size_t i = range.begin(); i != range.end() && !stop.stop_requested(); ++i) {
           const auto [x, y, z] = morton_decode(grid.key(voxel_indices[i]));
           const Point low(x, y, z);
           const auto triangles =
@@ -163,8 +164,10 @@ std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid
           if (surfaces[i].extent == 0 && !triangles.empty()) surfaces[i].mesh = scene.mesh_of(triangles.front());
         }
       });
+  if (stop.stop_requested()) return {};
   if (window_m > grid.voxel_size()) {
-    const std::vector<float> shares = flat_shares(scene, grid, voxel_indices, surfaces, window_m);
+    const std::vector<float> shares = flat_shares(scene, grid, voxel_indices, surfaces, window_m, stop);
+    if (stop.stop_requested()) return {};
     for (std::size_t i = 0; i < voxel_indices.size(); ++i) surfaces[i].share = std::min(surfaces[i].share, shares[i]);
   }
   return surfaces;

@@ -405,6 +405,21 @@ TEST(Evaluate, StoppedLargeNetworksAreAllSaidToBe) {
   for (const NetworkCounts& one : counts) EXPECT_TRUE(one.cancelled);
 }
 
+TEST(Evaluate, StopsBeforeThePlanesOfRegistrationAndMakesThemLater) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config()),
+      fresh(wall_and_floor().scene(), coarse_scanner(), config());
+  const std::vector<Network> networks{{Station{{0, 0, 0}}, Station{{0.3, 0, 0}}}};
+  const SampleOptions options{.voxels = 20, .overlap = true, .registration = RegistrationModel{}};
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(simulator.evaluate_sampled(networks, options, {.report = {}, .stop = stop.get_token()})[0].cancelled);
+  const NetworkCounts later = simulator.evaluate_sampled(networks, options)[0],
+                      expected = fresh.evaluate_sampled(networks, options)[0];
+  EXPECT_FALSE(later.cancelled);
+  EXPECT_FALSE(expected.registration.pairs.empty());
+  EXPECT_EQ(later.registration.pairs, expected.registration.pairs);
+}
+
 TEST(Scan, InactiveAndImpossibleStations) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
   const ScanSummary summary =

@@ -211,6 +211,55 @@ TEST(FlatWindows, DoNotDependOnOtherVoxelsOrThreads) {
   }
 }
 
+// Many blocks of cells, so that windows reach small triangles of other blocks.
+TEST(FlatWindows, HoldTheSmallTrianglesOfTheirNeighbours) {
+  std::mt19937 rng(9);
+  SceneData scene;
+  const auto small = test::random_triangles(rng, 6000, 4.0f, 0.02f);
+  test::add_mesh(scene, small, test::separate_triangles(small.size()));
+  const VoxelGrid grid = VoxelGrid::build(scene, 0.04);
+  const double side = 0.4;
+  const auto voxel_indices = every_index(grid, 29);
+  const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
+  const auto shares = flat_shares(scene, grid, voxel_indices, surfaces, side);
+  std::size_t of_several = 0;
+  for (std::size_t k = 0; k < voxel_indices.size(); ++k) {
+    if (surfaces[k].area == 0) continue;
+    const auto& [px, py, pz] = surfaces[k].point;
+    const Vec3 point{px, py, pz}, normal{surfaces[k].normal.x, surfaces[k].normal.y, surfaces[k].normal.z};
+    double within = 0, other = 0;
+    int held = 0;
+    for (std::size_t t = 0; t < small.size() / 3; ++t) {
+      const auto corner = [&](std::size_t c) {
+        const Float3& p = scene.positions[3 * t + c];
+        return Vec3{p.x, p.y, p.z};
+      };
+      const Vec3 twice = cross(corner(1) - corner(0), corner(2) - corner(0));
+      const Vec3 off = (corner(0) + corner(1) + corner(2)) * (1.0 / 3) - point;
+      const double area = std::sqrt(dot(twice, twice)) / 2;
+      if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > side / 2) continue;
+      ++held;
+      if (std::abs(dot(twice, normal)) <= one_plane * 2 * area)
+        other += area;
+      else if (std::abs(dot(off, normal)) <= side / 8)
+        within += area;
+    }
+    of_several += held > 1;
+    if (within + other > 0) ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << voxel_indices[k];
+  }
+  EXPECT_GT(of_several, 100u);
+}
+
+TEST(FlatWindows, EndEarlyWhenStopped) {
+  SceneData scene;
+  test::add_patch(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 3, 50);
+  const VoxelGrid grid = VoxelGrid::build(scene, 0.03);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(voxel_surfaces(scene, grid, every_index(grid), window_m, stop.get_token()).empty());
+  EXPECT_EQ(voxel_surfaces(scene, grid, every_index(grid), window_m).size(), grid.size());
+}
+
 // The window is wider than the whole scene.
 TEST(FlatWindows, MayBeWiderThanTheGrid) {
   SceneData scene;
