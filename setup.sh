@@ -68,6 +68,7 @@ if [ "$mode" = tests ] || [ "$mode" = packages ]; then
   wanted+=("${test_packages[@]}")
   command -v chromium >/dev/null || wanted+=(chromium)
 fi
+[ "$mode" != packages ] || wanted+=(patchelf python3-wheel)
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
 

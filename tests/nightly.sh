@@ -8,8 +8,9 @@
 #   address, undefined, thread
 #              every suite under that sanitizer (tests/sanitizers/check.sh)
 #   machine    all tests under each instruction set of Embree and each width of lavapipe's vectors
-#   packages   builds the Debian packages, has lintian look at them, and installs them where nothing else is (needs root, a mirror, lintian and
-#              mmdebstrap); the site of docs (mkdocs and mkdocs-material)
+#   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
+#              (needs root, a mirror, lintian and mmdebstrap)
+#   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -43,15 +44,23 @@ undefined() { tests/sanitizers/check.sh undefined; }
 thread() { tests/sanitizers/check.sh thread; }
 machine() { tests/machine/every_machine.sh build/release; }
 packages() {
-  for program in lintian mmdebstrap mkdocs; do
+  for program in lintian mmdebstrap; do
     command -v $program >/dev/null || { echo "nightly: $program is not installed"; return 1; }
   done
-  run mkdocs build
   packaging/deb.sh
   run lintian --fail-on error build/packages/*.deb
-  local tried=0
-  packaging/try_deb.sh || tried=$?
-  [ $tried = 0 ] || [ $tried = 77 ] # it has said what is missing
+  packaging/wheel.sh
+  local tried
+  for package in deb wheel; do
+    tried=0
+    packaging/try_$package.sh || tried=$?
+    [ $tried = 0 ] || [ $tried = 77 ] || return 1 # 77: it has said what is missing
+  done
+}
+docs() {
+  command -v mkdocs >/dev/null || { echo "nightly: mkdocs is not installed"; return 1; }
+  run mkdocs build
+  run tests/docs/check_commands.py build/release . --night
 }
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
@@ -62,10 +71,10 @@ mutation() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages fuzz mutation)
+[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs fuzz mutation)
 for part in "${parts[@]}"; do
   case $part in
-    sites | faults | address | undefined | thread | machine | packages | fuzz | mutation) "$part" ;;
+    sites | faults | address | undefined | thread | machine | packages | docs | fuzz | mutation) "$part" ;;
     *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
   esac
 done
