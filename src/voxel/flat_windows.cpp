@@ -244,18 +244,17 @@ std::vector<Small> small_triangles(const SceneData& scene, const Cells& cells, s
   const auto rounded = [](const dvec3& p) {
     return Float3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, smalls.size()),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t k = range.begin(); k != range.end(); ++k) {
-                        const Corners p = corners_of(scene, list[k]);
-                        const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
-                        const double area = 0.5 * length(twice);
-                        const std::uint64_t cell = Cells::key(cells.holding(middle));
-                        smalls[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{},
-                                     static_cast<float>(area),
-                                     static_cast<std::uint32_t>(cell & ((1u << 3 * block_bits) - 1))};
-                      }
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, smalls.size()), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k) {
+          const Corners p = corners_of(scene, list[k]);
+          const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
+          const double area = 0.5 * length(twice);
+          const std::uint64_t cell = Cells::key(cells.holding(middle));
+          smalls[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area),
+                       static_cast<std::uint32_t>(cell & ((1u << 3 * block_bits) - 1))};
+        }
+      });
   return smalls;
 }
 
@@ -321,9 +320,7 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
   };
   Numbers number;
   for (std::size_t run = 0; run < blocks.cells.size(); ++run)
-    near(run, [&](const Cell& block) {
-      number.emplace(Cells::key(block), static_cast<std::uint32_t>(number.size()));
-    });
+    near(run, [&](const Cell& block) { number.emplace(Cells::key(block), static_cast<std::uint32_t>(number.size())); });
   const VoxelTriangles lists = triangle_lists(SmallFinder(scene, cells, number, window_m * small_share), number.size());
   const std::vector<Small> smalls = small_triangles(scene, cells, lists.triangle);
   blocks.for_each([&](std::size_t run) {
