@@ -25,8 +25,11 @@ class TabuSearch {
   // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
+  struct Round;
+  struct Scratch;
+  class Ranking;
   Swap best_swap(const State& state) const;
-  Swap best_swap_at(const State& state, std::size_t at, double coverage) const;
+  Swap best_swap_at(const State& state, const Round& round, std::size_t at, Scratch& scratch) const;
 
   const CoverProblem& problem_;
   std::stop_token stop_;
