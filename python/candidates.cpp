@@ -118,7 +118,8 @@ void add_graph(py::module_& m) {
             const std::size_t size = graph.size();
             std::vector<float> all(size * size, 0);
             for (std::size_t i = 0; i < size; ++i)
-              for (const StationGraph::Overlap& other : graph.overlaps(i)) all[i * size + other.candidate] = other.share;
+              for (const StationGraph::Overlap& other : graph.overlaps(i))
+                all[i * size + other.candidate] = other.share;
             const auto n = static_cast<py::ssize_t>(size);
             return adopt<float>(std::move(all), {n, n});
           },

@@ -126,7 +126,7 @@ class StationGraph {
                       const std::function<bool(std::size_t, std::size_t)>& parted, std::size_t first = 0);
 
  private:
-  std::vector<std::vector<Overlap>> overlaps_;         // by candidate, each rising
+  std::vector<std::vector<Overlap>> overlaps_;        // by candidate, each rising
   std::vector<std::vector<std::uint32_t>> excluded_;  // the same
 };
 

@@ -28,7 +28,7 @@ class Growth {
         network_(std::move(network)),
         columns_(problem.matrix),
         gains_(problem.matrix, columns_, network_),
-        joinable_(problem, network_, problem.link) {
+        joinable_(problem, network_) {
     const std::size_t existing = problem.existing.size(), most = problem.most;
     most_ = most < none_ - std::min(existing, none_) ? existing + most : none_;
   }

@@ -24,7 +24,7 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
   check(problem);
   std::vector<std::size_t> chosen = problem.existing;
   PartialCover cover(problem.matrix, chosen);
-  Joinable joinable(problem, chosen, problem.link);
+  Joinable joinable(problem, chosen);
   std::optional<NetworkLinks> links(std::in_place, problem, chosen, problem.link);
   Components components = links->components();
   std::priority_queue<KnownGain> queue;
@@ -36,8 +36,7 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
     const KnownGain best = queue.top();
     queue.pop();
     if (best.gain <= 0) break;
-    if (!joinable.may_stand(best.candidate) ||
-        components_with(problem, *links, components, best.candidate, problem.link) > 1) {
+    if (!joinable.may_stand(best.candidate) || links->count_with(components, best.candidate) > 1) {
       refused.push_back(best);
       continue;
     }

@@ -79,29 +79,34 @@ std::vector<std::size_t> free_candidates(const CoverProblem& problem) {
 }
 
 NetworkLinks::NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link)
-    : all_(link <= 0), size_(network.size()), places_(places_of(problem, network)), offsets_(network.size() + 1, 0) {
-  for (std::size_t at = 0; at < size_; ++at) {
-    if (!all_)
-      for (const StationGraph::Overlap& other : problem.graph->overlaps(network[at]))
-        if (static_cast<double>(other.share) >= link && places_[other.candidate] < size_)
-          linked_.push_back(places_[other.candidate]);
-    offsets_[at + 1] = linked_.size();
-  }
+    : all_(link <= 0), network_(network.begin(), network.end()), offsets_(problem.matrix.candidates() + 1, 0) {
+  if (all_) return;
+  const auto for_links = [&](const auto& with) {
+    for (std::uint32_t at = 0; at < network_.size(); ++at)
+      for (const StationGraph::Overlap& other : problem.graph->overlaps(network_[at]))
+        if (static_cast<double>(other.share) >= link) with(other.candidate, at);
+  };
+  for_links([&](std::uint32_t candidate, std::uint32_t) { ++offsets_[candidate + 1]; });
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  places_.resize(offsets_.back());
+  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+  for_links([&](std::uint32_t candidate, std::uint32_t at) { places_[next[candidate]++] = at; });
 }
 
 Components NetworkLinks::components_without(std::size_t at) const {
-  if (all_) return {.of = std::vector<std::size_t>(size_, 0), .count = 1};
-  Components found{.of = std::vector<std::size_t>(size_, size_)};
+  const std::size_t size = network_.size();
+  if (all_) return {.of = std::vector<std::size_t>(size, 0), .count = 1};
+  Components found{.of = std::vector<std::size_t>(size, size)};
   std::vector<std::size_t> open;
-  for (std::size_t first = 0; first < size_; ++first) {
-    if (first == at || found.of[first] < size_) continue;
+  for (std::size_t first = 0; first < size; ++first) {
+    if (first == at || found.of[first] < size) continue;
     found.of[first] = found.count;
     open.assign(1, first);
     while (!open.empty()) {
       const std::size_t here = open.back();
       open.pop_back();
-      for (const std::uint32_t other : of(here)) {
-        if (other == at || found.of[other] < size_) continue;
+      for (const std::uint32_t other : of(network_[here])) {
+        if (other == at || found.of[other] < size) continue;
         found.of[other] = found.count;
         open.push_back(other);
       }
@@ -112,21 +117,22 @@ Components NetworkLinks::components_without(std::size_t at) const {
 }
 
 std::vector<std::size_t> NetworkLinks::counts_without() const {
-  if (all_) return std::vector<std::size_t>(size_, 1);
+  const std::size_t size = network_.size();
+  if (all_) return std::vector<std::size_t>(size, 1);
   // In the tree of a depth-first search, a member cuts off the subtrees that have no link to a member above it. `low`:
   // the earliest member that a subtree is linked to.
-  std::vector<std::size_t> entered(size_, 0), low(size_, 0), next(size_, 0), parent(size_, size_), cut_off(size_, 0);
+  std::vector<std::size_t> entered(size, 0), low(size, 0), next(size, 0), parent(size, size), cut_off(size, 0);
   std::vector<std::size_t> path;
   std::size_t clock = 0, trees = 0;
-  for (std::size_t root = 0; root < size_; ++root) {
+  for (std::size_t root = 0; root < size; ++root) {
     if (entered[root] > 0) continue;
     ++trees;
     entered[root] = low[root] = ++clock;
     path.assign(1, root);
     while (!path.empty()) {
       const std::size_t at = path.back();
-      if (next[at] < of(at).size()) {
-        const std::size_t other = of(at)[next[at]++];
+      if (next[at] < of(network_[at]).size()) {
+        const std::size_t other = of(network_[at])[next[at]++];
         if (entered[other] == 0) {
           parent[other] = at;
           entered[other] = low[other] = ++clock;
@@ -144,8 +150,8 @@ std::vector<std::size_t> NetworkLinks::counts_without() const {
     }
   }
   // A root has nothing above: its subtrees are all that is left of its tree.
-  std::vector<std::size_t> counts(size_);
-  for (std::size_t at = 0; at < size_; ++at) counts[at] = trees + cut_off[at] - (parent[at] == size_ ? 1 : 0);
+  std::vector<std::size_t> counts(size);
+  for (std::size_t at = 0; at < size; ++at) counts[at] = trees + cut_off[at] - (parent[at] == size ? 1 : 0);
   return counts;
 }
 
@@ -153,8 +159,8 @@ Components components_of(const CoverProblem& problem, std::span<const std::size_
   return NetworkLinks(problem, network, link).components();
 }
 
-Joinable::Joinable(const CoverProblem& problem, std::span<const std::size_t> network, double link)
-    : problem_(problem), link_(link), against_(problem.matrix.candidates(), 0), links_(against_.size(), 0) {
+Joinable::Joinable(const CoverProblem& problem, std::span<const std::size_t> network)
+    : problem_(problem), against_(problem.matrix.candidates(), 0) {
   for (const std::size_t k : network) add(k);
 }
 
@@ -163,23 +169,19 @@ void Joinable::count(std::size_t candidate, int by) {
   against_[candidate] += change;
   if (!problem_.graph) return;
   for (const std::uint32_t other : problem_.graph->excluded(candidate)) against_[other] += change;
-  if (link_ <= 0) return;
-  for (const StationGraph::Overlap& other : problem_.graph->overlaps(candidate))
-    if (static_cast<double>(other.share) >= link_) links_[other.candidate] += change;
 }
 
-std::size_t components_with(const CoverProblem& problem, const NetworkLinks& network, const Components& components,
-                            std::size_t candidate, double link) {
-  if (link <= 0) return 1;
-  std::vector<std::size_t> joined;
-  for (const StationGraph::Overlap& other : problem.graph->overlaps(candidate)) {
-    if (static_cast<double>(other.share) < link) continue;
-    const std::size_t at = network.place(other.candidate);
-    if (at >= components.of.size() || components.of[at] >= components.count) continue;
-    if (std::ranges::find(joined, components.of[at]) == joined.end()) joined.push_back(components.of[at]);
-    if (joined.size() == components.count) break;
+std::size_t NetworkLinks::joined(const Components& components, std::size_t candidate, std::size_t without) const {
+  std::size_t found = 0;
+  const std::span<const std::uint32_t> places = of(candidate);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] == without) continue;
+    const auto same = [&](std::uint32_t before) {
+      return before != without && components.of[before] == components.of[places[k]];
+    };
+    if (std::ranges::none_of(places.first(k), same)) ++found;
   }
-  return components.count + 1 - joined.size();
+  return found;
 }
 
 double violation(const CoverProblem& problem, double coverage, std::size_t components) {

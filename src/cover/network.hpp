@@ -22,41 +22,40 @@ std::vector<std::size_t> free_candidates(const CoverProblem& problem);
 // Components of a network by links of at least `link`; one if `link` is 0.
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link);
 
-// Links of at least `link` among the members of a network, and what is left of them without one member. All are linked
-// if `link` is 0.
+// The members of a network that each candidate is linked to, by at least `link`, and what is left of the network
+// without one of them. All are linked if `link` is 0.
 class NetworkLinks {
  public:
   NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link);
 
-  // Place of a candidate in the network, or the network's size.
-  std::size_t place(std::size_t candidate) const { return places_[candidate]; }
-  // Places of the members that a member is linked to.
-  std::span<const std::uint32_t> of(std::size_t at) const {
-    return std::span(linked_).subspan(offsets_[at], offsets_[at + 1] - offsets_[at]);
+  // Places of the members that a candidate is linked to, rising; none if all are linked.
+  std::span<const std::uint32_t> of(std::size_t candidate) const {
+    return std::span(places_).subspan(offsets_[candidate], offsets_[candidate + 1] - offsets_[candidate]);
   }
   // Components of the network, of all members but one, and by member their number without it (Hopcroft, Tarjan:
   // Efficient Algorithms for Graph Manipulation, 1973).
-  Components components() const { return components_without(size_); }
-  Components components_without(std::size_t at) const;  // the member itself is in none: `of` has its size
+  Components components() const { return components_without(network_.size()); }
+  Components components_without(std::size_t at) const;  // the member itself is in none: `of` has the network's size
   std::vector<std::size_t> counts_without() const;
+  // Number of components that a candidate is linked to. `without`: the place of a member that does not count.
+  std::size_t joined(const Components& components, std::size_t candidate, std::size_t without) const;
+  // Number of components once a candidate has joined; all members count.
+  std::size_t count_with(const Components& components, std::size_t candidate) const {
+    return all_ ? 1 : components.count + 1 - joined(components, candidate, network_.size());
+  }
 
  private:
   bool all_;  // linked
-  std::size_t size_;
-  std::vector<std::uint32_t> places_;   // by candidate
-  std::vector<std::size_t> offsets_;    // by member
-  std::vector<std::uint32_t> linked_;
+  std::vector<std::size_t> network_;
+  std::vector<std::size_t> offsets_;  // by candidate
+  std::vector<std::uint32_t> places_;
 };
-
-// Number of components of a network, or of it without a member, once a further candidate has joined.
-std::size_t components_with(const CoverProblem& problem, const NetworkLinks& network, const Components& components,
-                            std::size_t candidate, double link);
 
 // Which candidates may join a network, kept as members come and go.
 class Joinable {
  public:
-  // `link`: of the links that count. Borrows the problem.
-  Joinable(const CoverProblem& problem, std::span<const std::size_t> network, double link);
+  // Borrows the problem.
+  Joinable(const CoverProblem& problem, std::span<const std::size_t> network);
   void add(std::size_t candidate) { count(candidate, 1); }
   void remove(std::size_t candidate) { count(candidate, -1); }  // REQUIRES: a member
 
@@ -66,15 +65,12 @@ class Joinable {
   bool may_stand_without(std::size_t candidate, bool leaving_excludes) const {
     return against_[candidate] == (leaving_excludes ? 1 : 0);
   }
-  // Number of members that are linked to a candidate, if links are asked for.
-  std::size_t links(std::size_t candidate) const { return links_[candidate]; }
 
  private:
   void count(std::size_t candidate, int by);
 
   const CoverProblem& problem_;
-  double link_;
-  std::vector<std::uint32_t> against_, links_;  // by candidate
+  std::vector<std::uint32_t> against_;  // by candidate: itself, if a member, and members that exclude it
 };
 
 // `CoverSolution::violation` of a network with this coverage and number of components.

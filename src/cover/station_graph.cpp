@@ -131,7 +131,8 @@ void StationGraph::exclude(std::size_t i, std::size_t j) {
 
 void StationGraph::exclude_nearer(std::span<const Vec3> positions, double least_m, std::size_t first) {
   const std::vector<double> least(size(), least_m);
-  exclude_nearer(positions, least, [](std::size_t, std::size_t) { return false; }, first);
+  exclude_nearer(
+      positions, least, [](std::size_t, std::size_t) { return false; }, first);
 }
 
 void StationGraph::exclude_nearer(std::span<const Vec3> positions, std::span<const double> least_m,

@@ -25,7 +25,7 @@ class SwapSearch {
       : problem_(problem),
         chosen_(std::move(chosen)),
         cover_(problem.matrix, chosen_),
-        joinable_(problem, chosen_, problem.link),
+        joinable_(problem, chosen_),
         in_(problem.matrix.candidates(), 0),
         bound_(in_.size()),
         known_(in_.size()) {
@@ -91,7 +91,8 @@ class SwapSearch {
       Components components = links.components_without(leaving_at);
       others = {std::move(links), std::move(components)};
     }
-    return components_with(problem_, others->links, others->components, k, problem_.link) == 1;
+    const std::size_t joined = others->links.joined(others->components, k, leaving_at);
+    return others->components.count + 1 - joined == 1;
   }
 
   std::vector<std::size_t> by_bound() const {

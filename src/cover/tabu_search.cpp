@@ -9,13 +9,6 @@
 #include <utility>
 
 namespace vantage {
-namespace {
-
-// Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
-// return. A candidate that came may leave again after half as many.
-constexpr std::size_t kPatience = 40, kTabu = 7;
-
-}  // namespace
 
 struct TabuSearch::Swap {
   double violation = std::numeric_limits<double>::infinity(), coverage = -1;
@@ -79,8 +72,9 @@ class TabuSearch::Ranking {
 struct TabuSearch::Round {
   double coverage;
   NetworkLinks links;
-  std::vector<std::size_t> components_without;  // by place
-  Ranking linked, unlinked;                     // by whether a member is linked to the candidate
+  Components components;
+  std::vector<std::size_t> components_without;  // their number, by place
+  std::vector<Ranking> rankings;                // by the number of components that a candidate is linked to
   std::vector<std::size_t> tabu;                // candidates that may not return
 };
 
@@ -108,11 +102,11 @@ TabuSearch::TabuSearch(const CoverProblem& problem, std::stop_token stop)
 
 // The best swap of one chosen candidate. A tabu one counts if it leads to less violation than any network so far. Only
 // candidates near the leaving one, and near parts that it cuts off, are looked at one by one: whether the others may
-// join, what they gain and what they are linked to is as in the present network.
+// join, what they gain and how many components they link is as in the present network.
 TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round, std::size_t at,
                                           Scratch& scratch) const {
-  const std::size_t leaving = state.chosen[at], components_count = round.components_without[at];
-  const bool may_leave = state.tabu_until[leaving] <= state.swap;
+  const std::size_t leaving = state.chosen[at], count_without = round.components_without[at];
+  const bool may_leave = state.tabu_until[leaving] <= state.swap, connected = state.link > 0;
   const double left = round.coverage - state.gains.cover().loss(leaving);
   scratch.begin(problem_.matrix.candidates());
   state.gains.for_gains_without(leaving, [&](std::size_t k, double gained) {
@@ -120,24 +114,26 @@ TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round
     scratch.gains[k] += gained;
     scratch.mark(k);
   });
-  const auto for_linked = [&](std::size_t candidate, const auto& with) {
+  const auto mark_linked = [&](std::size_t candidate) {
     for (const StationGraph::Overlap& other : problem_.graph->overlaps(candidate))
-      if (static_cast<double>(other.share) >= state.link) with(other.candidate);
+      if (static_cast<double>(other.share) >= state.link) scratch.mark(other.candidate);
   };
-  std::optional<Components> components;  // without the leaving one, where it cuts the network
   if (problem_.graph)
     for (const std::uint32_t k : problem_.graph->excluded(leaving)) scratch.mark(k);
-  if (state.link > 0) {
-    for_linked(leaving, [&](std::size_t k) { scratch.mark(k); });
-    if (components_count > 1) {
-      components = round.links.components_without(at);
-      std::vector<std::size_t> members(components->count, 0);
-      for (const std::size_t part : components->of)
-        if (part < components->count) ++members[part];
+  std::optional<Components> cut;  // the components without the leaving one, where these are more
+  if (connected) {
+    mark_linked(leaving);
+    if (count_without > round.components.count) {
+      cut = round.links.components_without(at);
+      const auto beside = [&](std::size_t other) {
+        return other != at && round.components.of[other] == round.components.of[at];
+      };
+      std::vector<std::size_t> members(cut->count, 0);
+      for (std::size_t other = 0; other < state.chosen.size(); ++other)
+        if (beside(other)) ++members[cut->of[other]];
       const auto largest = static_cast<std::size_t>(std::ranges::max_element(members) - members.begin());
       for (std::size_t other = 0; other < state.chosen.size(); ++other)
-        if (other != at && components->of[other] != largest)
-          for_linked(state.chosen[other], [&](std::size_t k) { scratch.mark(k); });
+        if (beside(other) && cut->of[other] != largest) mark_linked(state.chosen[other]);
     }
   }
   for (const std::size_t k : round.tabu) scratch.mark(k);
@@ -148,36 +144,33 @@ TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round
     if ((!may_leave || state.tabu_until[k] > state.swap) && now.violation >= state.best.violation) return;
     if (now.better_than(best) || (!best.better_than(now) && k < best.in)) best = now;
   };
-  const std::size_t alone = components_count + 1;  // where the joining one is linked to none
+  const auto count_with = [&](std::size_t joined) { return connected ? count_without + 1 - joined : 1; };
   for (const std::size_t k : scratch.candidates) {
     if (k == leaving || !state.joinable.may_stand_without(k, problem_.graph && problem_.graph->excluded(leaving, k)))
       continue;
-    std::size_t count = 1;
-    if (state.link > 0) {
-      if (components)
-        count = components_with(problem_, round.links, *components, k, state.link);
-      else if (state.joinable.links(k) == (problem_.graph->linked(leaving, k, state.link) ? 1u : 0u))
-        count = alone;
-    }
-    consider(k, scratch.gained[k] == scratch.visit ? scratch.gains[k] : state.gains[k], count);
+    const std::size_t joined = connected ? round.links.joined(cut ? *cut : round.components, k, at) : 0;
+    consider(k, scratch.gained[k] == scratch.visit ? scratch.gains[k] : state.gains[k], count_with(joined));
   }
   const auto unmarked = [&](std::size_t k) { return scratch.marked[k] != scratch.visit; };
-  if (const auto other = round.linked.best(left, unmarked))
-    consider(other->candidate, other->gain, state.link > 0 ? components_count : 1);
-  if (const auto other = round.unlinked.best(left, unmarked)) consider(other->candidate, other->gain, alone);
+  for (std::size_t joined = 0; joined < round.rankings.size(); ++joined)
+    if (const auto other = round.rankings[joined].best(left, unmarked))
+      consider(other->candidate, other->gain, count_with(joined));
   return best;
 }
 
 TabuSearch::Swap TabuSearch::best_swap(const State& state) const {
   const std::size_t first = problem_.existing.size();
   Round round{.coverage = state.gains.cover().value(), .links = {problem_, state.chosen, state.link}};
+  round.components = round.links.components();
   round.components_without = round.links.counts_without();
   for (const std::size_t k : free_) {
     if (!state.joinable.may_stand(k)) continue;
     if (state.tabu_until[k] > state.swap) round.tabu.push_back(k);
-    (state.link <= 0 || state.joinable.links(k) > 0 ? round.linked : round.unlinked).add(state.gains[k], k);
+    const std::size_t joined = state.link > 0 ? round.links.joined(round.components, k, state.chosen.size()) : 0;
+    if (round.rankings.size() <= joined) round.rankings.resize(joined + 1);
+    round.rankings[joined].add(state.gains[k], k);
   }
-  round.linked.sort(), round.unlinked.sort();
+  for (Ranking& ranking : round.rankings) ranking.sort();
   std::vector<Swap> swaps(state.chosen.size());
   tbb::enumerable_thread_specific<Scratch> scratch;
   tbb::parallel_for(first, state.chosen.size(),
@@ -194,7 +187,7 @@ std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double 
   State state{.chosen = std::move(start),
               .link = link,
               .gains = {problem_.matrix, *columns_, best},
-              .joinable = {problem_, best, link},
+              .joinable = {problem_, best},
               .best = {},
               .tabu_until = std::vector<std::size_t>(problem_.matrix.candidates(), 0)};
   state.best.coverage = state.gains.cover().value();

@@ -14,6 +14,10 @@ namespace vantage {
 
 class TabuSearch {
  public:
+  // Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
+  // return. A candidate that came may leave again after half as many.
+  static constexpr std::size_t kPatience = 40, kTabu = 7;
+
   // Keeps a reference to the problem.
   explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
 
