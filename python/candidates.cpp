@@ -101,8 +101,8 @@ void add_graph(py::module_& m) {
                    Errc::invalid_argument,
                    "StationGraph: an array of shape (n, n) is wanted, and this one's is " + shape_text(overlaps));
              const auto* first = overlaps.data();
-             StationGraph graph(static_cast<std::size_t>(overlaps.shape(0)),
-                                std::vector<float>(first, first + overlaps.size()));
+             const std::vector<float> values(first, first + overlaps.size());
+             StationGraph graph(static_cast<std::size_t>(overlaps.shape(0)), values);
              for (const auto& [i, j] : excluded) {
                check_candidates({i, j}, graph.size());
                graph.exclude(i, j);
@@ -114,11 +114,16 @@ void add_graph(py::module_& m) {
       .def("__len__", &StationGraph::size)
       .def_property_readonly(
           "overlaps",
-          [](const py::object& self) {
-            const auto& graph = self.cast<const StationGraph&>();
-            return view<float>(graph.overlaps(), self, std::max<std::size_t>(graph.size(), 1));
+          [](const StationGraph& graph) {
+            const std::size_t size = graph.size();
+            std::vector<float> all(size * size, 0);
+            for (std::size_t i = 0; i < size; ++i)
+              for (const StationGraph::Overlap& other : graph.overlaps(i))
+                all[i * size + other.candidate] = other.share;
+            const auto n = static_cast<py::ssize_t>(size);
+            return adopt<float>(std::move(all), {n, n});
           },
-          "Overlap of each pair: (n, n), read-only.");
+          "Overlap of each pair: (n, n), a copy.");
   m.def(
       "overlap_graph",
       [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,

@@ -82,9 +82,11 @@ std::vector<PlacedStation> candidate_positions(Site& site, std::size_t most);
 
 /// How candidates are found.
 struct CandidateConfig {
-  std::size_t first = 128;               ///< Initial number; it is doubled until a limit holds.
-  std::size_t most = 4096;               ///< Largest number.
-  double change = 0.01;                  ///< Stops once doubling raises attainable coverage by less than this share.
+  std::size_t first = 128;  ///< Initial number; it is doubled until a limit holds.
+  std::size_t most = 4096;  ///< Largest number.
+  /// Stops once doubling raises attainable coverage by less than this share, and no ground is farther than 3 m from a
+  /// candidate.
+  double change = 0.01;
   std::uint64_t sample_voxels = 20'000;  ///< May be `every_voxel`.
   std::uint32_t scanner = 0;             ///< Scanner on each, an index into `Simulator::scanners()`.
   double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
@@ -113,6 +115,10 @@ class Candidates {
 
  private:
   friend Candidates find_candidates(Site&, const CandidateConfig&, const Progress&);
+  static void add_unseen(Candidates& found, Site& site, std::span<const PlacedStation> others,
+                         const Progress& progress);
+  void raise_attainable(std::size_t first);  // by the candidates from `first` on
+
   std::vector<PlacedStation> stations_;
   SampledCoverage coverage_;
   AttainableCounts attainable_counts_;
@@ -123,7 +129,8 @@ class Candidates {
 
 /// Finds allowed positions (`StationStatus::ok`) at the scanner's height, spread evenly over the ground in square
 /// metres. Doubles their number until attainable coverage hardly rises. The first n are spread evenly too, for every n.
-/// Uses no random numbers. Throws Error invalid_argument if no position is allowed, or a setting is out of its range.
+/// The last ones are positions that see no other candidate near them, as in small rooms. Uses no random numbers. Throws
+/// Error invalid_argument if no position is allowed, or a setting is out of its range.
 Candidates find_candidates(Site& site, const CandidateConfig& config = {}, const Progress& progress = {});
 
 }  // namespace vantage

@@ -76,15 +76,22 @@ class CoverageMatrix {
   std::vector<Entry> entries_;
 };
 
-/// Pairs of candidates: how much they overlap, and whether both may be chosen. Dense: at most 5 bytes a pair.
+/// Pairs of candidates: how much they overlap, and whether both may be chosen. Sparse: 16 bytes for each pair that
+/// overlaps, 8 for each excluded one.
 class StationGraph {
  public:
+  /// Another candidate, and how much it overlaps with one.
+  struct Overlap {
+    std::uint32_t candidate = 0;
+    float share = 0;
+  };
+
   StationGraph() = default;
   /// Makes a graph of `size` candidates without overlaps or exclusions.
-  explicit StationGraph(std::size_t size) : size_(size), overlaps_(size * size, 0) {}
+  explicit StationGraph(std::size_t size) : overlaps_(size), excluded_(size) {}
   /// `overlaps`: size × size, row-major, symmetric; the diagonal is not read. Throws Error invalid_argument for any
   /// other number of values.
-  StationGraph(std::size_t size, std::vector<float> overlaps);
+  StationGraph(std::size_t size, std::span<const float> overlaps);
   /// Overlap of two candidates: the elements that both cover in part, as a share of those of the candidate with fewer.
   /// Candidates from `seen.candidates()` to `size` overlap with none.
   StationGraph(const CoverageMatrix& seen, std::size_t size);
@@ -92,31 +99,35 @@ class StationGraph {
   /// with the candidates before; size >= size().
   void extend(const CoverageMatrix& seen, std::size_t size);
 
-  std::size_t size() const noexcept { return size_; }
-  float overlap(std::size_t i, std::size_t j) const { return overlaps_[i * size_ + j]; }
-  std::span<const float> overlaps() const noexcept { return overlaps_; }  ///< Row-major.
+  std::size_t size() const noexcept { return overlaps_.size(); }
+  /// 0 for candidates without a common element. REQUIRES: i, j < size(), as below.
+  float overlap(std::size_t i, std::size_t j) const;
+  /// Candidates that overlap with `i`, rising.
+  std::span<const Overlap> overlaps(std::size_t i) const { return overlaps_[i]; }
   /// Whether two candidates are linked, by an overlap of at least `least`. REQUIRES: least > 0.
   bool linked(std::size_t i, std::size_t j, double least) const {
     return i != j && static_cast<double>(overlap(i, j)) >= least;
   }
   /// Returns true if no network may have both.
-  bool excluded(std::size_t i, std::size_t j) const { return !excluded_.empty() && excluded_[i * size_ + j] != 0; }
+  bool excluded(std::size_t i, std::size_t j) const;
+  /// Candidates that no network may have together with `i`, rising.
+  std::span<const std::uint32_t> excluded(std::size_t i) const { return excluded_[i]; }
 
-  /// Both set i, j and j, i. REQUIRES: i, j < size().
+  /// Both set i, j and j, i. REQUIRES: i != j.
   void set_overlap(std::size_t i, std::size_t j, float overlap);
   void exclude(std::size_t i, std::size_t j);
   /// Excludes all pairs whose positions are less than `least_m` apart, of which one is candidate `first` or a later
   /// one. REQUIRES: a position for each candidate.
   void exclude_nearer(std::span<const Vec3> positions, double least_m, std::size_t first = 0);
   /// Excludes the pairs that are nearer than the smaller of their two distances, and between which nothing stands.
-  /// `parted`: whether something stands between two candidates. REQUIRES: a position and a distance for each candidate.
+  /// `parted`: whether something stands between two candidates; called from several threads. REQUIRES: a position and a
+  /// distance for each candidate.
   void exclude_nearer(std::span<const Vec3> positions, std::span<const double> least_m,
                       const std::function<bool(std::size_t, std::size_t)>& parted, std::size_t first = 0);
 
  private:
-  std::size_t size_ = 0;
-  std::vector<float> overlaps_;
-  std::vector<char> excluded_;  // empty: no pair
+  std::vector<std::vector<Overlap>> overlaps_;        // by candidate, each rising
+  std::vector<std::vector<std::uint32_t>> excluded_;  // the same
 };
 
 /// A covering problem. Borrows the matrix and the graph.

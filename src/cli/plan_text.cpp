@@ -10,6 +10,12 @@
 namespace vantage::cli {
 namespace {
 
+// More stations than this are not read on a screen.
+constexpr std::size_t kStationsShown = 50;
+
+// A value of a network, or a dash where it was not computed.
+std::string cell(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4f}", value); }
+
 // Its violations, and missing links.
 std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   std::string text;
@@ -37,7 +43,7 @@ std::string front_text(const PlanResult& result, std::size_t chosen) {
   text += "stations\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& entry = result.front[k];
-    for (const Objective* measure : told) text += fmt::format("{:9.4f} ", entry.value(measure->name));
+    for (const Objective* measure : told) text += fmt::format("{:>9} ", cell(entry.value(measure->name)));
     text += fmt::format("{:>8}{}{}\n", entry.stations.size(),
                         k == chosen       ? "  <- answer"
                         : entry.dominated ? "  dominated"
@@ -62,9 +68,13 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   const bool whole_front = result.trade_off.empty() || result.front.size() > 1;
   if (whole_front) text += front_text(result, chosen) + "\n";
   const PlanEntry& entry = result.front[chosen];
-  text +=
-      station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
-      "\n";
+  const std::size_t shown = std::min(entry.stations.size(), kStationsShown);
+  const std::span<const std::uint64_t> points(entry.counts.points_on_surveyed);
+  text += station_table(std::span(entry.stations).first(shown), station_names(entry.stations),
+                        points.first(std::min(shown, points.size())), result.scanners);
+  if (shown < entry.stations.size())
+    text += fmt::format("and {} more in stations.csv\n", entry.stations.size() - shown);
+  text += "\n";
   text += chosen == answer(result) ? summary_text(result) : summary_text(entry, result.problem.requirements);
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";

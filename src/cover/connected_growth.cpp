@@ -26,7 +26,9 @@ class Growth {
         none_(problem.matrix.candidates()),
         free_(free_candidates(problem)),
         network_(std::move(network)),
-        cover_(problem.matrix, network_) {
+        columns_(problem.matrix),
+        gains_(problem.matrix, columns_, network_),
+        joinable_(problem, network_) {
     const std::size_t existing = problem.existing.size(), most = problem.most;
     most_ = most < none_ - std::min(existing, none_) ? existing + most : none_;
   }
@@ -37,7 +39,7 @@ class Growth {
     const std::size_t fewest = problem_.existing.size() + problem_.fewest;
     bool along_links = problem_.link > 0;
     while (network_.size() < most_) {
-      const bool enough = cover_.value() >= problem_.coverage;
+      const bool enough = gains_.cover().value() >= problem_.coverage;
       if (enough && network_.size() >= fewest) {
         if (components_of(problem_, network_, problem_.link).count == 1) break;
         const Path path = path_between_components();
@@ -59,32 +61,26 @@ class Growth {
     }
     // Candidates that add nothing fill up to the requested number.
     for (const std::size_t k : free_)
-      if (network_.size() < std::min(most_, fewest) && may_stand(problem_, k, network_)) add({k});
+      if (network_.size() < std::min(most_, fewest) && joinable_.may_stand(k)) add({k});
     return std::move(network_);
   }
 
  private:
   void add(const Path& path) {
     for (const std::size_t k : path)
-      if (network_.size() < most_) network_.push_back(k), cover_.add(k);
+      if (network_.size() < most_) network_.push_back(k), gains_.add(k), joinable_.add(k);
   }
 
   // Whether `k` may stand with all candidates on the way back from `at`.
   bool may_follow(std::size_t k, std::size_t at, std::span<const std::size_t> from) const {
     for (; from[at] < none_; at = from[at])
-      if (!may_stand(problem_, k, {&at, 1})) return false;
+      if (at == k || problem_.graph->excluded(k, at)) return false;
     return true;
   }
 
-  // Gains of all free candidates that may stand; 0 of others.
-  std::vector<double> gains() const {
-    std::vector<double> gains(none_, 0);
-    tbb::parallel_for(std::size_t{0}, free_.size(), [&](std::size_t i) {
-      const std::size_t k = free_[i];
-      if (may_stand(problem_, k, network_)) gains[k] = cover_.gain(k);
-    });
-    return gains;
-  }
+  // The gain of a candidate that may stand; 0 of others.
+  double gain(std::size_t k) const { return joinable_.may_stand(k) ? gains_[k] : 0; }
+  double gain_along(const Path& path) const;
 
   std::optional<std::size_t> first_candidate() const;
   std::optional<std::size_t> best_anywhere() const;
@@ -94,14 +90,15 @@ class Growth {
   const CoverProblem& problem_;
   std::size_t none_;
   std::vector<std::size_t> free_, network_;
-  PartialCover cover_;
+  ColumnIndex columns_;
+  CoverGains gains_;
+  Joinable joinable_;
   std::size_t most_ = 0;  // largest number in the network
 };
 
 // The candidate with the most coverage in the component that covers most as a whole.
 std::optional<std::size_t> Growth::first_candidate() const {
-  const Components parts =
-      components(free_.size(), [&](std::size_t i, std::size_t j) { return linked(problem_, free_[i], free_[j]); });
+  const Components parts = components_of(problem_, free_, problem_.link);
   const PartialCover none(problem_.matrix);
   std::optional<std::size_t> best;
   double most = 0;
@@ -120,61 +117,80 @@ std::optional<std::size_t> Growth::first_candidate() const {
 }
 
 std::optional<std::size_t> Growth::best_anywhere() const {
-  const std::vector<double> gain = gains();
   std::optional<std::size_t> best;
   double most = 0;
   for (const std::size_t k : free_)
-    if (gain[k] > most) most = gain[k], best = k;
+    if (gain(k) > most) most = gain(k), best = k;
   return best;
+}
+
+// The gain of all candidates of a path together.
+double Growth::gain_along(const Path& path) const {
+  if (path.size() == 1) return gain(path.front());
+  double sum = 0;
+  std::vector<CoverageMatrix::Entry> added;  // by the candidates before
+  for (const std::size_t k : path) {
+    const std::span<const CoverageMatrix::Entry> column = problem_.matrix.column(k);
+    sum += gains_.cover().gain(k, added);
+    std::vector<CoverageMatrix::Entry> both;
+    both.reserve(added.size() + column.size());
+    std::ranges::merge(added, column, std::back_inserter(both), {}, &CoverageMatrix::Entry::element,
+                       &CoverageMatrix::Entry::element);
+    added.clear();
+    for (const CoverageMatrix::Entry& one : both) {
+      if (!added.empty() && added.back().element == one.element)
+        added.back().amount += one.amount;
+      else
+        added.push_back(one);
+    }
+  }
+  return sum;
 }
 
 // The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
 Path Growth::best_path() const {
-  std::vector<std::size_t> hops(none_, none_), from(none_, none_), now = network_, next;
-  const std::vector<double> gain = gains();
+  std::vector<std::size_t> hops(none_, none_), from(none_, none_), next;
   for (const std::size_t k : network_) hops[k] = 0;
   struct End {
     double score;  // upper bound of the path's gain for each candidate
     std::size_t candidate;
   };
   std::vector<End> ends;
-  for (std::size_t hop = 1; hop <= kLongestPath && !now.empty(); ++hop) {
-    next.clear();
-    // Ways back from `now` lead over earlier hops, which stay as they are.
+  for (std::size_t hop = 1; hop <= kLongestPath; ++hop) {
+    // Ways back lead over earlier hops, which stay as they are.
     tbb::parallel_for(std::size_t{0}, free_.size(), [&](std::size_t i) {
       const std::size_t k = free_[i];
-      if (hops[k] < none_ || !may_stand(problem_, k, network_)) return;
-      for (const std::size_t before : now)
-        if (linked(problem_, before, k) && (from[k] == none_ || gain[before] > gain[from[k]]) &&
-            may_follow(k, before, from))
+      if (hops[k] < none_ || !joinable_.may_stand(k)) return;
+      for (const StationGraph::Overlap& other : problem_.graph->overlaps(k)) {
+        const std::size_t before = other.candidate;
+        if (hops[before] == hop - 1 && static_cast<double>(other.share) >= problem_.link &&
+            (from[k] == none_ || gain(before) > gain(from[k])) && may_follow(k, before, from))
           from[k] = before;
+      }
     });
+    next.clear();
     for (const std::size_t k : free_)
       if (hops[k] == none_ && from[k] < none_) next.push_back(k);
+    if (next.empty()) break;
     for (const std::size_t k : next) {
       hops[k] = hop;
       double sum = 0;
-      for (std::size_t at = k; hops[at] > 0; at = from[at]) sum += gain[at];
-      if (gain[k] > 0) ends.push_back({sum / static_cast<double>(hop), k});
+      for (std::size_t at = k; hops[at] > 0; at = from[at]) sum += gain(at);
+      if (gain(k) > 0) ends.push_back({sum / static_cast<double>(hop), k});
     }
-    now = next;
   }
-  std::ranges::sort(ends, [](const End& a, const End& b) {
+  const std::size_t tried = std::min(kPathsTried, ends.size());
+  std::ranges::partial_sort(ends, ends.begin() + static_cast<std::ptrdiff_t>(tried), [](const End& a, const End& b) {
     return a.score != b.score ? a.score > b.score : a.candidate < b.candidate;
   });
   Path best;
   double most = 0;
-  for (std::size_t i = 0; i < ends.size() && i < kPathsTried && ends[i].score > most; ++i) {
+  for (std::size_t i = 0; i < tried && ends[i].score > most; ++i) {
     Path path;
     for (std::size_t at = ends[i].candidate; hops[at] > 0; at = from[at]) path.push_back(at);
     std::ranges::reverse(path);
-    double sum = gain[path.front()];
-    if (path.size() > 1) {
-      PartialCover along = cover_;
-      sum = 0;
-      for (const std::size_t k : path) sum += along.gain(k), along.add(k);
-    }
-    if (const double each = sum / static_cast<double>(path.size()); each > most) most = each, best = std::move(path);
+    if (const double each = gain_along(path) / static_cast<double>(path.size()); each > most)
+      most = each, best = std::move(path);
   }
   return best;
 }
@@ -192,8 +208,9 @@ Path Growth::path_between_components() const {
   }
   for (std::size_t i = 0; i < open.size(); ++i) {
     const std::size_t at = open[i];
-    for (std::size_t k = 0; k < none_; ++k) {
-      if (seen[k] || !linked(problem_, at, k) || (!other[k] && !may_stand(problem_, k, network_))) continue;
+    for (const StationGraph::Overlap& one : problem_.graph->overlaps(at)) {
+      const std::size_t k = one.candidate;
+      if (seen[k] || static_cast<double>(one.share) < problem_.link || (!other[k] && !joinable_.may_stand(k))) continue;
       if (!may_follow(k, at, from)) continue;
       from[k] = at, seen[k] = 1;
       if (!other[k]) {

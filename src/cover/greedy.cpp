@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
 #include <queue>
+#include <utility>
 
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
@@ -22,6 +24,9 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
   check(problem);
   std::vector<std::size_t> chosen = problem.existing;
   PartialCover cover(problem.matrix, chosen);
+  Joinable joinable(problem, chosen);
+  std::optional<NetworkLinks> links(std::in_place, problem, chosen, problem.link);
+  Components components = links->components();
   std::priority_queue<KnownGain> queue;
   for (const std::size_t k : free_candidates(problem)) queue.push({cover.gain(k), k, chosen.size()});
 
@@ -31,7 +36,7 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
     const KnownGain best = queue.top();
     queue.pop();
     if (best.gain <= 0) break;
-    if (!may_join(problem, best.candidate, chosen)) {
+    if (!joinable.may_stand(best.candidate) || links->count_with(components, best.candidate) > 1) {
       refused.push_back(best);
       continue;
     }
@@ -41,6 +46,8 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
     }
     cover.add(best.candidate);
     chosen.push_back(best.candidate);
+    joinable.add(best.candidate);
+    if (problem.link > 0) components = links.emplace(problem, chosen, problem.link).components();
     for (const KnownGain& again : refused) queue.push(again);
     refused.clear();
   }

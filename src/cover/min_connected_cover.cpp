@@ -23,11 +23,11 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
   };
   const PartialCover cover(problem.matrix, chosen);
   const double whole = cover.value();
+  const std::vector<std::size_t> components = NetworkLinks(problem, chosen, problem.link).counts_without();
   std::vector<Loss> losses;
   for (std::size_t at = problem.existing.size(); at < chosen.size(); ++at) {
     const double coverage = whole - cover.loss(chosen[at]);
-    const Components rest = components_of(problem, without(chosen, at), problem.link);
-    losses.push_back({violation(problem, coverage, rest.count), coverage, at});
+    losses.push_back({violation(problem, coverage, components[at]), coverage, at});
   }
   std::ranges::stable_sort(losses, [](const Loss& a, const Loss& b) {
     return a.violation != b.violation ? a.violation < b.violation : a.coverage > b.coverage;

@@ -2,8 +2,9 @@
 #include "cover/network.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -16,13 +17,42 @@ namespace {
 // by its coverage, and so small that a search may pass through one.
 constexpr double kMissingLink = 0.2;
 
+std::vector<std::uint32_t> places_of(const CoverProblem& problem, std::span<const std::size_t> network) {
+  std::vector<std::uint32_t> places(problem.matrix.candidates(), static_cast<std::uint32_t>(network.size()));
+  for (std::size_t at = 0; at < network.size(); ++at) places[network[at]] = static_cast<std::uint32_t>(at);
+  return places;
+}
+
+// The smallest overlap of the maximum spanning tree (Kruskal: On the Shortest Spanning Subtree of a Graph, 1956).
 double weakest_link(const CoverProblem& problem, std::span<const std::size_t> network) {
+  if (network.size() < 2) return 1;
+  if (!problem.graph) return 0;
+  struct Edge {
+    float share;
+    std::uint32_t a, b;
+  };
+  std::vector<Edge> edges;
+  const std::vector<std::uint32_t> places = places_of(problem, network);
+  for (std::uint32_t at = 0; at < network.size(); ++at)
+    for (const StationGraph::Overlap& other : problem.graph->overlaps(network[at]))
+      if (places[other.candidate] < at && other.share > 0) edges.push_back({other.share, at, places[other.candidate]});
+  std::ranges::sort(edges, std::greater<>{}, &Edge::share);
+  std::vector<std::uint32_t> above(network.size());
+  std::iota(above.begin(), above.end(), 0u);
+  const auto root = [&](std::uint32_t at) {
+    while (above[at] != at) at = above[at] = above[above[at]];
+    return at;
+  };
   double weakest = 1;
-  for (const TreeEdge& edge : strongest_spanning_tree(network.size(), [&](std::size_t i, std::size_t j) {
-         return problem.graph ? static_cast<double>(problem.graph->overlap(network[i], network[j])) : 0;
-       }))
-    weakest = std::min(weakest, edge.weight);
-  return weakest;
+  std::size_t missing = network.size() - 1;
+  for (const Edge& edge : edges) {
+    const std::uint32_t a = root(edge.a), b = root(edge.b);
+    if (a == b) continue;
+    above[a] = b;
+    weakest = std::min(weakest, static_cast<double>(edge.share));
+    if (--missing == 0) return weakest;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -48,43 +78,110 @@ std::vector<std::size_t> free_candidates(const CoverProblem& problem) {
   return free;
 }
 
-bool linked(const CoverProblem& problem, std::size_t a, std::size_t b) {
-  return problem.link > 0 ? problem.graph->linked(a, b, problem.link) : a != b;
+NetworkLinks::NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link)
+    : all_(link <= 0), network_(network.begin(), network.end()), offsets_(problem.matrix.candidates() + 1, 0) {
+  if (all_) return;
+  const auto for_links = [&](const auto& with) {
+    for (std::uint32_t at = 0; at < network_.size(); ++at)
+      for (const StationGraph::Overlap& other : problem.graph->overlaps(network_[at]))
+        if (static_cast<double>(other.share) >= link) with(other.candidate, at);
+  };
+  for_links([&](std::uint32_t candidate, std::uint32_t) { ++offsets_[candidate + 1]; });
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  places_.resize(offsets_.back());
+  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+  for_links([&](std::uint32_t candidate, std::uint32_t at) { places_[next[candidate]++] = at; });
+}
+
+Components NetworkLinks::components_without(std::size_t at) const {
+  const std::size_t size = network_.size();
+  if (all_) return {.of = std::vector<std::size_t>(size, 0), .count = 1};
+  Components found{.of = std::vector<std::size_t>(size, size)};
+  std::vector<std::size_t> open;
+  for (std::size_t first = 0; first < size; ++first) {
+    if (first == at || found.of[first] < size) continue;
+    found.of[first] = found.count;
+    open.assign(1, first);
+    while (!open.empty()) {
+      const std::size_t here = open.back();
+      open.pop_back();
+      for (const std::uint32_t other : of(network_[here])) {
+        if (other == at || found.of[other] < size) continue;
+        found.of[other] = found.count;
+        open.push_back(other);
+      }
+    }
+    ++found.count;
+  }
+  return found;
+}
+
+std::vector<std::size_t> NetworkLinks::counts_without() const {
+  const std::size_t size = network_.size();
+  if (all_) return std::vector<std::size_t>(size, 1);
+  // In the tree of a depth-first search, a member cuts off the subtrees that have no link to a member above it. `low`:
+  // the earliest member that a subtree is linked to.
+  std::vector<std::size_t> entered(size, 0), low(size, 0), next(size, 0), parent(size, size), cut_off(size, 0);
+  std::vector<std::size_t> path;
+  std::size_t clock = 0, trees = 0;
+  for (std::size_t root = 0; root < size; ++root) {
+    if (entered[root] > 0) continue;
+    ++trees;
+    entered[root] = low[root] = ++clock;
+    path.assign(1, root);
+    while (!path.empty()) {
+      const std::size_t at = path.back();
+      if (next[at] < of(network_[at]).size()) {
+        const std::size_t other = of(network_[at])[next[at]++];
+        if (entered[other] == 0) {
+          parent[other] = at;
+          entered[other] = low[other] = ++clock;
+          path.push_back(other);
+        } else if (other != parent[at]) {
+          low[at] = std::min(low[at], entered[other]);
+        }
+        continue;
+      }
+      path.pop_back();
+      if (path.empty()) continue;
+      const std::size_t above = path.back();
+      low[above] = std::min(low[above], low[at]);
+      if (low[at] >= entered[above]) ++cut_off[above];
+    }
+  }
+  // A root has nothing above: its subtrees are all that is left of its tree.
+  std::vector<std::size_t> counts(size);
+  for (std::size_t at = 0; at < size; ++at) counts[at] = trees + cut_off[at] - (parent[at] == size ? 1 : 0);
+  return counts;
 }
 
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link) {
-  if (link <= 0) return {.of = std::vector<std::size_t>(network.size(), 0), .count = 1};
-  return components(network.size(),
-                    [&](std::size_t i, std::size_t j) { return problem.graph->linked(network[i], network[j], link); });
+  return NetworkLinks(problem, network, link).components();
 }
 
-std::size_t components_with(const CoverProblem& problem, std::span<const std::size_t> network,
-                            const Components& components, std::size_t candidate, double link) {
-  if (link <= 0) return 1;
-  std::size_t left = components.count + 1;
-  for (std::size_t first = 0; first < components.count; first += 64) {  // a bit for each component, 64 at a time
-    std::uint64_t joined = 0;
-    for (std::size_t i = 0; i < network.size(); ++i)
-      if (components.of[i] - first < 64 && problem.graph->linked(network[i], candidate, link))
-        joined |= std::uint64_t{1} << (components.of[i] - first);
-    left -= static_cast<std::size_t>(std::popcount(joined));
+Joinable::Joinable(const CoverProblem& problem, std::span<const std::size_t> network)
+    : problem_(problem), against_(problem.matrix.candidates(), 0) {
+  for (const std::size_t k : network) add(k);
+}
+
+void Joinable::count(std::size_t candidate, int by) {
+  const auto change = static_cast<std::uint32_t>(by);  // wraps around, and back
+  against_[candidate] += change;
+  if (!problem_.graph) return;
+  for (const std::uint32_t other : problem_.graph->excluded(candidate)) against_[other] += change;
+}
+
+std::size_t NetworkLinks::joined(const Components& components, std::size_t candidate, std::size_t without) const {
+  std::size_t found = 0;
+  const std::span<const std::uint32_t> places = of(candidate);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] == without) continue;
+    const auto same = [&](std::uint32_t before) {
+      return before != without && components.of[before] == components.of[places[k]];
+    };
+    if (std::ranges::none_of(places.first(k), same)) ++found;
   }
-  return left;
-}
-
-bool may_stand(const CoverProblem& problem, std::size_t candidate, std::span<const std::size_t> network) {
-  return std::ranges::none_of(network, [&](std::size_t other) {
-    return other == candidate || (problem.graph && problem.graph->excluded(other, candidate));
-  });
-}
-
-bool may_join(const CoverProblem& problem, std::size_t candidate, std::span<const std::size_t> network) {
-  if (!problem.graph) return true;
-  if (!may_stand(problem, candidate, network)) return false;
-  if (problem.link <= 0) return true;
-  std::vector<std::size_t> with(network.begin(), network.end());
-  with.push_back(candidate);
-  return components_of(problem, with, problem.link).count == 1;
+  return found;
 }
 
 double violation(const CoverProblem& problem, double coverage, std::size_t components) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,18 +19,59 @@ void check(const CoverProblem& problem);
 // Candidates that may be chosen: all but the existing ones, rising.
 std::vector<std::size_t> free_candidates(const CoverProblem& problem);
 
-// Whether two candidates may be neighbours in a network; all are if it need not be connected.
-bool linked(const CoverProblem& problem, std::size_t a, std::size_t b);
 // Components of a network by links of at least `link`; one if `link` is 0.
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link);
-// Number of components once a further candidate has joined.
-std::size_t components_with(const CoverProblem& problem, std::span<const std::size_t> network,
-                            const Components& components, std::size_t candidate, double link);
 
-// Whether a candidate is not in the network and no member of it excludes it.
-bool may_stand(const CoverProblem& problem, std::size_t candidate, std::span<const std::size_t> network);
-// Whether it may stand and, if the network must be connected, keeps it so.
-bool may_join(const CoverProblem& problem, std::size_t candidate, std::span<const std::size_t> network);
+// The members of a network that each candidate is linked to, by at least `link`, and what is left of the network
+// without one of them. All are linked if `link` is 0.
+class NetworkLinks {
+ public:
+  NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link);
+
+  // Places of the members that a candidate is linked to, rising; none if all are linked.
+  std::span<const std::uint32_t> of(std::size_t candidate) const {
+    return std::span(places_).subspan(offsets_[candidate], offsets_[candidate + 1] - offsets_[candidate]);
+  }
+  // Components of the network, of all members but one, and by member their number without it (Hopcroft, Tarjan:
+  // Efficient Algorithms for Graph Manipulation, 1973).
+  Components components() const { return components_without(network_.size()); }
+  Components components_without(std::size_t at) const;  // the member itself is in none: `of` has the network's size
+  std::vector<std::size_t> counts_without() const;
+  // Number of components that a candidate is linked to. `without`: the place of a member that does not count.
+  std::size_t joined(const Components& components, std::size_t candidate, std::size_t without) const;
+  // Number of components once a candidate has joined; all members count.
+  std::size_t count_with(const Components& components, std::size_t candidate) const {
+    return all_ ? 1 : components.count + 1 - joined(components, candidate, network_.size());
+  }
+
+ private:
+  bool all_;  // linked
+  std::vector<std::size_t> network_;
+  std::vector<std::size_t> offsets_;  // by candidate
+  std::vector<std::uint32_t> places_;
+};
+
+// Which candidates may join a network, kept as members come and go.
+class Joinable {
+ public:
+  // Borrows the problem.
+  Joinable(const CoverProblem& problem, std::span<const std::size_t> network);
+  void add(std::size_t candidate) { count(candidate, 1); }
+  void remove(std::size_t candidate) { count(candidate, -1); }  // REQUIRES: a member
+
+  // Whether a candidate is no member, and no member excludes it.
+  bool may_stand(std::size_t candidate) const { return against_[candidate] == 0; }
+  // The same once a member has left, of which it is said whether it excludes the candidate.
+  bool may_stand_without(std::size_t candidate, bool leaving_excludes) const {
+    return against_[candidate] == (leaving_excludes ? 1 : 0);
+  }
+
+ private:
+  void count(std::size_t candidate, int by);
+
+  const CoverProblem& problem_;
+  std::vector<std::uint32_t> against_;  // by candidate: itself, if a member, and members that exclude it
+};
 
 // `CoverSolution::violation` of a network with this coverage and number of components.
 double violation(const CoverProblem& problem, double coverage, std::size_t components);

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/partial_cover.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace vantage {
 
@@ -23,10 +27,15 @@ void PartialCover::remove(std::size_t candidate) {
   for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) amounts_[one.element] -= one.amount;
 }
 
-double PartialCover::gain(std::size_t candidate) const {
+double PartialCover::gain(std::size_t candidate) const { return gain(candidate, {}); }
+
+double PartialCover::gain(std::size_t candidate, std::span<const CoverageMatrix::Entry> added) const {
   double sum = 0;
+  auto next = added.begin();
   for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
-    const std::uint64_t has = amounts_[one.element];
+    std::uint64_t has = amounts_[one.element];
+    while (next != added.end() && next->element < one.element) ++next;
+    if (next != added.end() && next->element == one.element) has += next->amount;
     if (static_cast<double>(has) >= matrix_.goal(one.element)) continue;
     sum += matrix_.weight(one.element) * (covered(one.element, has + one.amount) - covered(one.element, has));
   }
@@ -59,20 +68,30 @@ ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : matrix_(matrix), offset
       columns_[next[one.element]++] = {static_cast<std::uint32_t>(k), one.amount};
 }
 
-void ColumnIndex::add_gains_without(std::size_t leaving, const PartialCover& cover, std::span<double> gains) const {
-  if (matrix_.total_weight() <= 0) return;
-  for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {
-    const std::uint64_t has = cover.amount(one.element), left = has - one.amount;
-    if (static_cast<double>(left) >= matrix_.goal(one.element)) continue;  // covered without it, too
-    const double share = matrix_.weight(one.element) / matrix_.total_weight();
-    const double lost = cover.covered(one.element, has) - cover.covered(one.element, left);
-    for (std::size_t k = offsets_[one.element]; k < offsets_[one.element + 1]; ++k) {
-      const Column& other = columns_[k];
-      gains[other.candidate] +=
-          share *
-          (lost - (cover.covered(one.element, has + other.amount) - cover.covered(one.element, left + other.amount)));
-    }
+CoverGains::CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen)
+    : matrix_(matrix), columns_(columns), cover_(matrix, chosen), gains_(matrix.candidates()) {
+  tbb::parallel_for(std::size_t{0}, gains_.size(), [&](std::size_t k) { gains_[k] = cover_.gain(k); });
+}
+
+void CoverGains::change(std::optional<std::size_t> leaving, std::size_t joining) {
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> before;  // amounts of elements
+  const auto remember = [&](std::size_t candidate) {
+    for (const CoverageMatrix::Entry& one : matrix_.column(candidate))
+      before.emplace_back(one.element, cover_.amount(one.element));
+  };
+  if (leaving) remember(*leaving);
+  remember(joining);
+  if (leaving) cover_.remove(*leaving);
+  cover_.add(joining);
+  std::vector<char> changed(gains_.size(), 0);
+  for (const auto& [element, had] : before) {
+    const std::uint64_t has = cover_.amount(element);
+    if (has == had || static_cast<double>(std::min(has, had)) >= matrix_.goal(element)) continue;
+    for (const ColumnIndex::Column& one : columns_.of(element)) changed[one.candidate] = 1;
   }
+  tbb::parallel_for(std::size_t{0}, gains_.size(), [&](std::size_t k) {
+    if (changed[k]) gains_[k] = cover_.gain(k);
+  });
 }
 
 }  // namespace vantage

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "cover/network.hpp"
@@ -24,6 +25,7 @@ class SwapSearch {
       : problem_(problem),
         chosen_(std::move(chosen)),
         cover_(problem.matrix, chosen_),
+        joinable_(problem, chosen_),
         in_(problem.matrix.candidates(), 0),
         bound_(in_.size()),
         known_(in_.size()) {
@@ -49,7 +51,9 @@ class SwapSearch {
     const std::size_t out = chosen_[at];
     const double lost = cover_.loss(out);
     cover_.remove(out);
-    const std::vector<std::size_t> others = without(chosen_, at), order = by_bound();
+    joinable_.remove(out);
+    const std::vector<std::size_t> order = by_bound();
+    std::optional<OtherLinks> others;  // made when first needed
     std::size_t best = out, looked_at = 0;
     double most = lost + kLeastGain;
     // F(S − out + k) − F(S − out) is at most F(S + k) − F(S − out): the gain of k and the loss of `out`.
@@ -59,9 +63,10 @@ class SwapSearch {
           if (bound_[order[i]] + lost > most) known_[order[i]] = cover_.gain(order[i]);
         });
       const std::size_t k = order[looked_at];
-      if (known_[k] > most && may_join(problem_, k, others)) most = known_[k], best = k;
+      if (known_[k] > most && may_join(k, at, others)) most = known_[k], best = k;
     }
     cover_.add(best);
+    joinable_.add(best);
     if (best != out) {
       in_[out] = 0, in_[best] = 1;
       chosen_[at] = best;
@@ -71,6 +76,23 @@ class SwapSearch {
     // Gains shrink when another candidate is added.
     for (std::size_t i = 0; i < looked_at; ++i) bound_[order[i]] = std::min(bound_[order[i]], known_[order[i]]);
     return best != out;
+  }
+
+  // Links among the chosen ones without the leaving one.
+  struct OtherLinks {
+    NetworkLinks links;
+    Components components;
+  };
+  bool may_join(std::size_t k, std::size_t leaving_at, std::optional<OtherLinks>& others) const {
+    if (!joinable_.may_stand(k)) return false;
+    if (problem_.link <= 0) return true;
+    if (!others) {
+      NetworkLinks links(problem_, chosen_, problem_.link);
+      Components components = links.components_without(leaving_at);
+      others = {std::move(links), std::move(components)};
+    }
+    const std::size_t joined = others->links.joined(others->components, k, leaving_at);
+    return others->components.count + 1 - joined == 1;
   }
 
   std::vector<std::size_t> by_bound() const {
@@ -85,6 +107,7 @@ class SwapSearch {
   const CoverProblem& problem_;
   std::vector<std::size_t> chosen_;
   PartialCover cover_;
+  Joinable joinable_;
   std::vector<char> in_;
   std::vector<double> bound_, known_;  // of each candidate's gain: an upper bound, and the last computed value
 };

@@ -14,6 +14,10 @@ namespace vantage {
 
 class TabuSearch {
  public:
+  // Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
+  // return. A candidate that came may leave again after half as many.
+  static constexpr std::size_t kPatience = 40, kTabu = 7;
+
   // Keeps a reference to the problem.
   explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
 
@@ -25,8 +29,11 @@ class TabuSearch {
   // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
+  struct Round;
+  struct Scratch;
+  class Ranking;
   Swap best_swap(const State& state) const;
-  Swap best_swap_at(const State& state, std::size_t at, double coverage) const;
+  Swap best_swap_at(const State& state, const Round& round, std::size_t at, Scratch& scratch) const;
 
   const CoverProblem& problem_;
   std::stop_token stop_;

@@ -27,12 +27,15 @@ std::string duration(double seconds) {
 std::string captured_text(const Evaluation& evaluation) {
   const Estimate& coverage = evaluation.values.at("coverage");
   const double error = evaluation.exact ? 0 : coverage.standard_error;
-  std::string text = percent(coverage.value) + (error > 0 ? " ± " + percent(error) : "") + " of the site";
+  std::string text;
+  if (!std::isnan(coverage.value))
+    text = percent(coverage.value) + (error > 0 ? " ± " + percent(error) : "") + " of the site";
   const auto capture = evaluation.values.find("capture");
-  if (capture == evaluation.values.end() || std::isnan(capture->second.value)) return text;
+  if (capture == evaluation.values.end() || std::isnan(capture->second.value))
+    return text.empty() ? "not known: the time was over first" : text;
   const double own = capture->second.standard_error;
-  return text + ", " + percent(capture->second.value) + (own > 0 ? " ± " + percent(own) : "") +
-         " of what is attainable";
+  return (text.empty() ? "about " : text + ", ") + percent(capture->second.value) +
+         (own > 0 ? " ± " + percent(own) : "") + " of what is attainable";
 }
 
 std::string links_text(const StationLinks& links, const std::vector<std::string>& names) {

@@ -13,6 +13,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
 constexpr double least_scale_m = 1;  // least scale of rotations, for tiny surfaces
+// From so many stations on, most pairs see nothing together, and a sparse factor is the cheaper one.
+constexpr std::size_t kSparseStations = 64;
 
 Vector3d to_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -105,17 +107,16 @@ RegistrationError RegistrationAdjustment::error() const {
   const Vector3d centre = centre_ * sums_.radius_m;
   result.centre = result.centre + Vec3{centre.x(), centre.y(), centre.z()};
   result.scale_m = scale_ * sums_.radius_m;
-  const MatrixXd absolute = covariance();
+  const PartialInverse absolute = own_covariances();
   const auto covariances = relative_covariances(absolute);
   double total = 0, absolute_total = 0;
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     const std::size_t place = stations_[k];
     const double squares = std::max((moments_[k].quadratic() * covariances[k]).trace(), 0.0);
     total += squares;
-    const Eigen::Index at = static_cast<Eigen::Index>(k) * unknowns_, skipped = 6 - unknowns_;
-    absolute_total += (moments_[k].quadratic().block(skipped, skipped, unknowns_, unknowns_) *
-                       absolute.block(at, at, unknowns_, unknowns_))
-                          .trace();
+    const Eigen::Index skipped = 6 - unknowns_;
+    absolute_total +=
+        (moments_[k].quadratic().block(skipped, skipped, unknowns_, unknowns_) * absolute.blocks[k]).trace();
     StationError& station = result.stations[place];
     station.rms_m = moments_[k].mass > 0 ? std::sqrt(squares / moments_[k].mass) : 0;
     if (station.rms_m > result.worst_m) {
@@ -138,6 +139,31 @@ RegistrationError RegistrationAdjustment::error() const {
 MatrixXd RegistrationAdjustment::covariance() const {
   const MatrixXd information = of_unknowns(this->information());
   return information.llt().solve(MatrixXd::Identity(information.rows(), information.rows()));
+}
+
+// The mean of the stations' motions is mean · x: d × all unknowns.
+MatrixXd RegistrationAdjustment::mean() const {
+  const Eigen::Index d = unknowns_, skipped = 6 - d;
+  MatrixXd sum = MatrixXd::Zero(d, d), metric(d, static_cast<Eigen::Index>(moments_.size()) * d);
+  for (std::size_t k = 0; k < moments_.size(); ++k) {
+    const MatrixXd own = moments_[k].quadratic().block(skipped, skipped, d, d);
+    metric.middleCols(static_cast<Eigen::Index>(k) * d, d) = own;
+    sum += own;
+  }
+  return sum.completeOrthogonalDecomposition().solve(metric);
+}
+
+PartialInverse RegistrationAdjustment::own_covariances() const {
+  const Eigen::Index d = unknowns_;
+  const MatrixXd mean = this->mean();
+  if (stations_.size() >= kSparseStations) return partial_inverse(sparse_information(), d, mean.transpose());
+  const MatrixXd all = covariance();
+  PartialInverse own{.blocks = {}, .times = all * mean.transpose()};
+  for (std::size_t k = 0; k < stations_.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k) * d;
+    own.blocks.emplace_back(all.block(at, at, d, d));
+  }
+  return own;
 }
 
 MatrixXd RegistrationAdjustment::metric() const {
@@ -164,10 +190,20 @@ Vector3d RegistrationAdjustment::scaled(const Vec3& from_sums_centre) const {
 
 Vector3d RegistrationAdjustment::head(std::size_t place) const { return scaled(sums_.heads[place]); }
 
+std::size_t RegistrationAdjustment::pair(std::size_t i, std::size_t j) const {
+  const std::size_t n = sums_.heads.size();
+  return (i * (2 * n - i - 1) / 2 + (j - i - 1)) * of_pair;
+}
+
+// Whether two stations, the first before the second, see a common surface.
+bool RegistrationAdjustment::tied(std::size_t i, std::size_t j) const {
+  const std::span<const double> sums = std::span(sums_.pairs).subspan(pair(i, j), of_pair);
+  return std::ranges::any_of(sums, [](double sum) { return sum != 0; });
+}
+
 // Σ w_i w_j / Σw · J Jᵀ with J about the surface's centre and in its scale.
 Matrix6d RegistrationAdjustment::information_of(std::size_t i, std::size_t j) const {
-  const std::size_t n = sums_.heads.size();
-  const double* sum = sums_.pairs.data() + (i * (2 * n - i - 1) / 2 + (j - i - 1)) * of_pair;
+  const double* sum = sums_.pairs.data() + pair(i, j);
   Matrix6d h;
   for (int a = 0; a < 6; ++a)
     for (int b = a; b < 6; ++b) h(a, b) = h(b, a) = *sum++ * share_;
@@ -187,31 +223,62 @@ Matrix6d RegistrationAdjustment::prior_of(std::size_t place) const {
   return given + weight_of(options_.position_m) * at_head.transpose() * at_head;
 }
 
+// Calls add(a, b, h) for all information, between two stations or, where a is b, on one by itself.
+template <class Add>
+void RegistrationAdjustment::for_information(const Add& add) const {
+  for (std::size_t a = 0; a < stations_.size(); ++a) {
+    add(a, a, prior_of(stations_[a]));
+    for (std::size_t b = a + 1; b < stations_.size(); ++b)
+      if (tied(stations_[a], stations_[b])) add(a, b, information_of(stations_[a], stations_[b]));
+  }
+  for_targets(add);
+}
+
 MatrixXd RegistrationAdjustment::information() const {
   const auto size = static_cast<Eigen::Index>(stations_.size()) * 6;
   MatrixXd all = MatrixXd::Zero(size, size);
-  for (std::size_t a = 0; a < stations_.size(); ++a) {
-    const auto i = static_cast<Eigen::Index>(a) * 6;
-    all.block<6, 6>(i, i) += prior_of(stations_[a]);
-    for (std::size_t b = a + 1; b < stations_.size(); ++b) {
-      const auto j = static_cast<Eigen::Index>(b) * 6;
-      const Matrix6d h = information_of(stations_[a], stations_[b]);
-      all.block<6, 6>(i, i) += h;
-      all.block<6, 6>(j, j) += h;
-      all.block<6, 6>(i, j) -= h;
-      all.block<6, 6>(j, i) -= h;
-    }
-  }
-  add_targets(all);
+  for_information([&](std::size_t a, std::size_t b, const Matrix6d& h) {
+    const auto i = static_cast<Eigen::Index>(a) * 6, j = static_cast<Eigen::Index>(b) * 6;
+    all.block<6, 6>(i, i) += h;
+    if (a == b) return;
+    all.block<6, 6>(j, j) += h;
+    all.block<6, 6>(i, j) -= h;
+    all.block<6, 6>(j, i) -= h;
+  });
   return all;
+}
+
+// The lower triangle, of the unknowns alone.
+Eigen::SparseMatrix<double> RegistrationAdjustment::sparse_information() const {
+  const Eigen::Index d = unknowns_, skipped = 6 - d, size = static_cast<Eigen::Index>(stations_.size()) * d;
+  std::vector<Matrix6d> own(stations_.size(), Matrix6d::Zero());
+  std::vector<Eigen::Triplet<double>> entries;
+  for_information([&](std::size_t a, std::size_t b, const Matrix6d& h) {
+    own[a] += h;
+    if (a == b) return;
+    own[b] += h;
+    const auto i = static_cast<Eigen::Index>(std::max(a, b)) * d, j = static_cast<Eigen::Index>(std::min(a, b)) * d;
+    for (Eigen::Index r = 0; r < d; ++r)
+      for (Eigen::Index c = 0; c < d; ++c) entries.emplace_back(i + r, j + c, -h(skipped + r, skipped + c));
+  });
+  for (std::size_t k = 0; k < own.size(); ++k)
+    for (Eigen::Index r = 0; r < d; ++r)
+      for (Eigen::Index c = 0; c <= r; ++c) {
+        const auto at = static_cast<Eigen::Index>(k) * d;
+        entries.emplace_back(at + r, at + c, own[k](skipped + r, skipped + c));
+      }
+  Eigen::SparseMatrix<double> lower(size, size);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  return lower;
 }
 
 // A target's centre is unknown, so k sightings of weights w give w_i w_j / Σw for each pair, as a plane does but in all
 // three axes. A control point adds the weight of its coordinates, which belongs to no station.
-void RegistrationAdjustment::add_targets(MatrixXd& all) const {
+template <class Add>
+void RegistrationAdjustment::for_targets(const Add& add) const {
   for (const RegistrationTarget& target : targets_) {
     struct Seen {
-      Eigen::Index at;
+      std::size_t station;
       double weight;
     };
     std::vector<Seen> seen;
@@ -220,20 +287,15 @@ void RegistrationAdjustment::add_targets(MatrixXd& all) const {
     for (const RegistrationTarget::Sighting& sighting : target.seen_by) {
       const auto found = std::ranges::find(stations_, sighting.station);
       if (found == stations_.end()) continue;
-      seen.push_back({(found - stations_.begin()) * 6, weight_of(sighting.sigma_m)});
+      seen.push_back({static_cast<std::size_t>(found - stations_.begin()), weight_of(sighting.sigma_m)});
       total += seen.back().weight;
     }
     const Matrix36d at_centre = displacement(scaled(target.centre - sums_.centre));
     const Matrix6d square = at_centre.transpose() * at_centre;
     for (std::size_t a = 0; a < seen.size(); ++a) {
-      all.block<6, 6>(seen[a].at, seen[a].at) += seen[a].weight * known / total * square;
-      for (std::size_t b = a + 1; b < seen.size(); ++b) {
-        const Matrix6d h = seen[a].weight * seen[b].weight / total * square;
-        all.block<6, 6>(seen[a].at, seen[a].at) += h;
-        all.block<6, 6>(seen[b].at, seen[b].at) += h;
-        all.block<6, 6>(seen[a].at, seen[b].at) -= h;
-        all.block<6, 6>(seen[b].at, seen[a].at) -= h;
-      }
+      add(seen[a].station, seen[a].station, seen[a].weight * known / total * square);
+      for (std::size_t b = a + 1; b < seen.size(); ++b)
+        add(seen[a].station, seen[b].station, seen[a].weight * seen[b].weight / total * square);
     }
   }
 }
@@ -250,22 +312,14 @@ MatrixXd RegistrationAdjustment::of_unknowns(const MatrixXd& all) const {
 
 // Covariance of each station's unknowns without the best-fitting motion of the whole: (I − 1 B) C (I − 1 B)ᵀ. B x is
 // that motion, the mean of the stations' motions in the metric of the surface that each sees.
-std::vector<Matrix6d> RegistrationAdjustment::relative_covariances(const MatrixXd& c) const {
-  const Eigen::Index d = unknowns_, size = c.rows(), skipped = 6 - d;
-  MatrixXd sum = MatrixXd::Zero(d, d), metric(d, size);
-  for (std::size_t k = 0; k < moments_.size(); ++k) {
-    const MatrixXd own = moments_[k].quadratic().block(skipped, skipped, d, d);
-    metric.middleCols(static_cast<Eigen::Index>(k) * d, d) = own;
-    sum += own;
-  }
-  const MatrixXd mean = sum.completeOrthogonalDecomposition().solve(metric);
-  const MatrixXd with_mean = c * mean.transpose(), of_mean = mean * with_mean;
+std::vector<Matrix6d> RegistrationAdjustment::relative_covariances(const PartialInverse& c) const {
+  const Eigen::Index d = unknowns_, skipped = 6 - d;
+  const MatrixXd of_mean = mean() * c.times;
   std::vector<Matrix6d> all;
   for (std::size_t k = 0; k < moments_.size(); ++k) {
-    const Eigen::Index at = static_cast<Eigen::Index>(k) * d;
-    const MatrixXd cross = with_mean.middleRows(at, d);
+    const MatrixXd cross = c.times.middleRows(static_cast<Eigen::Index>(k) * d, d);
     Matrix6d own = Matrix6d::Zero();
-    own.block(skipped, skipped, d, d) = c.block(at, at, d, d) - cross - cross.transpose() + of_mean;
+    own.block(skipped, skipped, d, d) = c.blocks[k] - cross - cross.transpose() + of_mean;
     all.push_back(own);
   }
   return all;

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "objective/sparse_covariance.hpp"
 #include "vantage/measure.hpp"
 
 namespace vantage {
@@ -64,10 +65,18 @@ class RegistrationAdjustment {
   Eigen::Vector3d scaled(const Vec3& from_sums_centre) const;
   Matrix6d information_of(std::size_t i, std::size_t j) const;
   Matrix6d prior_of(std::size_t place) const;
+  Eigen::MatrixXd mean() const;
+  PartialInverse own_covariances() const;
+  std::size_t pair(std::size_t i, std::size_t j) const;  // its first sum
+  bool tied(std::size_t i, std::size_t j) const;
   Eigen::MatrixXd information() const;
-  void add_targets(Eigen::MatrixXd& all) const;
+  Eigen::SparseMatrix<double> sparse_information() const;
+  template <class Add>
+  void for_information(const Add& add) const;
+  template <class Add>
+  void for_targets(const Add& add) const;
   Eigen::MatrixXd of_unknowns(const Eigen::MatrixXd& all) const;
-  std::vector<Matrix6d> relative_covariances(const Eigen::MatrixXd& covariance) const;
+  std::vector<Matrix6d> relative_covariances(const PartialInverse& covariances) const;
 
   const RegistrationSums& sums_;
   double share_;  // voxels of the site over counted voxels

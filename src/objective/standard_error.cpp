@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Standard errors of sampled objectives (Wolter: Introduction to Variance Estimation, 2007: chapter 8 for systematic
 // samples, chapter 4 for the jackknife), with the finite-population correction 1 − n/N.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -48,15 +50,17 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
 // `of` each delete-one-group replicate; empty if there are fewer than two groups.
 template <class Value>
 std::vector<Value> replicates(const NetworkCounts& counts, const std::function<Value(const NetworkCounts&)>& of) {
-  std::vector<Value> found;
+  std::vector<const NetworkCounts*> groups;
+  for (const NetworkCounts& group : counts.groups)
+    if (group.voxels > 0) groups.push_back(&group);
+  if (groups.size() < 2) return {};
+  std::vector<Value> found(groups.size());
   const NetworkCounts all = without_groups(counts);
-  for (const NetworkCounts& group : counts.groups) {
-    if (group.voxels == 0) continue;
+  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
     NetworkCounts rest = all;
-    take_off(rest, group);
-    found.push_back(of(rest));
-  }
-  if (found.size() < 2) found.clear();
+    take_off(rest, *groups[g]);
+    found[g] = of(rest);
+  });
   return found;
 }
 

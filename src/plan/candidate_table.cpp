@@ -50,15 +50,18 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress
   return add(stations.first(count), fresh, progress) && count == stations.size();
 }
 
-bool CandidateTable::add(std::span<const PlacedStation> stations, const CoverageMatrix& known,
-                         const Progress& progress) {
-  std::size_t count = std::min(stations.size(), known.candidates());
+bool CandidateTable::add(std::span<const PlacedStation> stations, const CoverageMatrix& known, const Progress& progress,
+                         std::size_t column) {
+  std::size_t count = std::min(stations.size(), known.candidates() - column);
   if (surroundings_) {
     const CoverageMatrix fresh = surroundings_(stations.first(count), {.report = {}, .stop = progress.stop});
     around_.append(fresh);
     count = std::min(count, fresh.candidates());
   }
-  matrix_.append(known, count);
+  if (column == 0)
+    matrix_.append(known, count);
+  else
+    for (std::size_t k = column; k < column + count; ++k) matrix_.add(known.column(k));
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
   const std::size_t first = graph_.size();
   graph_.extend(around_, stations_.size());

@@ -42,7 +42,9 @@ class CandidateTable {
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
   // stations that were traced in full.
   bool add(std::span<const PlacedStation> stations, const Progress& progress);
-  bool add(std::span<const PlacedStation> stations, const CoverageMatrix& known, const Progress& progress);
+  // `column`: the first station's.
+  bool add(std::span<const PlacedStation> stations, const CoverageMatrix& known, const Progress& progress,
+           std::size_t column = 0);
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }

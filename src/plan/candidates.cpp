@@ -17,6 +17,9 @@ namespace {
 // Candidates between two checks of the clock.
 constexpr std::size_t chunk = 64;
 constexpr std::size_t kExpected = 512;
+// Whatever the sum over a large site says, there are candidates until the ground has one within this distance, and
+// every place sees one within this multiple of their spacing. No room is missed by candidates nearer than its width.
+constexpr double kFarthest_m = 3, kSeenWithin = 2, kNarrowest_m = 1;
 
 SpreadPositions spread_or_refuse(Site& site, std::size_t most) {
   const PlacementOracle oracle = make_placement_oracle(site);
@@ -64,6 +67,28 @@ CoverageMatrix Candidates::captured_matrix() const {
   return matrix;
 }
 
+// Small rooms may lie between two candidates. Adds those of `others` that see none.
+void Candidates::add_unseen(Candidates& found, Site& site, std::span<const PlacedStation> others,
+                            const Progress& progress) {
+  const PlacementOracle oracle = make_placement_oracle(site);
+  std::vector<PlacedStation> unseen = unseen_positions(oracle, found.stations_, others, kSeenWithin * found.spacing_m_);
+  if (unseen.empty()) return;
+  for (PlacedStation& station : unseen) station.setup = found.stations_.front().setup;
+  const std::size_t first = found.coverage_.size();
+  found.coverage_.append(sample_coverage(site.simulator(), unseen, found.coverage_.sample_voxels(), progress));
+  found.raise_attainable(first);
+  found.attainable_ = found.attainable_counts_.coverage();
+  found.stations_.insert(found.stations_.end(), unseen.begin(),
+                         unseen.begin() + static_cast<std::ptrdiff_t>(found.coverage_.size() - first));
+  if (found.coverage_.cancelled()) found.ended_ = "cancelled";
+}
+
+void Candidates::raise_attainable(std::size_t first) {
+  const CoverageMatrix& matrix = coverage_.matrix();
+  for (std::size_t k = first; k < matrix.candidates(); ++k)
+    for (const CoverageMatrix::Entry& one : matrix.column(k)) attainable_counts_.raise(one.element, one.amount);
+}
+
 Candidates find_candidates(Site& site, const CandidateConfig& config, const Progress& progress) {
   Simulator& simulator = site.simulator();
   check(config, simulator.scanners().size());
@@ -92,10 +117,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
       };
       found.coverage_.append(sample_coverage(simulator, std::span(spread.stations).subspan(first, here),
                                              found.coverage_.sample_voxels(), {share, progress.stop}));
-      const CoverageMatrix& matrix = found.coverage_.matrix();
-      for (std::size_t k = first; k < matrix.candidates(); ++k)
-        for (const CoverageMatrix::Entry& one : matrix.column(k))
-          found.attainable_counts_.raise(one.element, one.amount);
+      found.raise_attainable(first);
       if (found.coverage_.cancelled())
         found.ended_ = "cancelled";
       else if (found.coverage_.size() < goal && out_of_time())
@@ -105,7 +127,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
     if (!found.ended_.empty()) break;
     const double now = found.attainable_.value;
     if (before >= 0) found.change_ = now > 0 ? (now - before) / now : 0;
-    if (before >= 0 && found.change_ < config.change)
+    if (before >= 0 && found.change_ < config.change && spread.spacing_m[goal - 1] <= kFarthest_m)
       found.ended_ = "enough";
     else if (goal == config.most)
       found.ended_ = "most";
@@ -116,9 +138,14 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
     before = now;
     goal = std::min(2 * goal, spread.stations.size());
   }
-  const std::size_t taken = found.coverage_.size();
-  found.stations_.assign(spread.stations.begin(), spread.stations.begin() + static_cast<std::ptrdiff_t>(taken));
-  found.spacing_m_ = taken > 0 ? spread.spacing_m[taken - 1] : 0;
+  const auto taken = static_cast<std::ptrdiff_t>(found.coverage_.size());
+  found.stations_.assign(spread.stations.begin(), spread.stations.begin() + taken);
+  found.spacing_m_ = taken > 0 ? spread.spacing_m[static_cast<std::size_t>(taken) - 1] : 0;
+  if (found.spacing_m_ > kNarrowest_m && found.ended_ != "cancelled" && found.ended_ != "time") {
+    std::vector<PlacedStation> others(spread.stations.begin() + taken, spread.stations.end());
+    others.insert(others.end(), spread.others.begin(), spread.others.end());
+    Candidates::add_unseen(found, site, others, {.report = {}, .stop = progress.stop});
+  }
   progress(1);
   return found;
 }

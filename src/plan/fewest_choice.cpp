@@ -2,17 +2,21 @@
 #include "plan/fewest_choice.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <numeric>
 #include <utility>
 
+#include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage {
 namespace {
 
-// Candidates that are traced even after the time is over: a connected network is worth more than one chosen from many.
+// Candidates that are traced even after the time is over, and more for so long: a connected network is worth more than
+// one chosen from many, and those of a large site are many.
 constexpr std::size_t kLateCandidates = 96;
+constexpr double kLate_s = 2;
 // Further candidates around each chosen station.
 constexpr std::size_t kAround = 8;
 
@@ -89,10 +93,18 @@ void look(CandidateTable& table, std::span<const PlacedStation> existing, std::s
   const Progress at_once{.report = {}, .stop = abort};
   // Existing stations come first in every network, so they are traced even if time is short.
   if (!existing.empty()) table.add(existing, at_once);
-  if (progress.stopped() || abort.stop_requested())
-    table.add(candidates.first(std::min(candidates.size(), kLateCandidates)), known, at_once);
-  else
-    table.add(candidates, known, progress);
+  const auto begun = std::chrono::steady_clock::now();
+  std::size_t first = 0;
+  if (!progress.stopped() && !abort.stop_requested()) {
+    const std::size_t before = table.stations().size();
+    if (table.add(candidates, known, progress)) return;
+    first = table.stations().size() - before;
+  }
+  while (first < candidates.size() && (first < kLateCandidates || seconds_since(begun) < kLate_s)) {
+    const std::size_t here = std::min(kLateCandidates, candidates.size() - first);
+    if (!table.add(candidates.subspan(first, here), known, at_once, first)) return;
+    first += here;
+  }
 }
 
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop) {

@@ -50,6 +50,10 @@ PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std:
   return config;
 }
 
+bool worth_searching(const SurveyProblem& problem, const PlanConfig& config) {
+  return config.iterations * population_of(problem, config) >= problem.stations_max;
+}
+
 std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyProblem& problem,
                                        const PlanConfig& config, NetworkEvaluator& evaluator, double round_s,
                                        const PlanWatch& watch) {
@@ -72,7 +76,8 @@ std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyP
   if (watch.stop.stop_requested() || watch.abort.stop_requested()) return std::nullopt;
 
   const auto count = static_cast<double>(chosen.size());
-  const auto networks = static_cast<double>(config.iterations * population_of(problem, config));
+  const auto networks =
+      worth_searching(problem, config) ? static_cast<double>(config.iterations * population_of(problem, config)) : 0;
   return (kRounds - 1) * kLaterRounds * round_s + networks * network +
          kVerified * (one + (count - 1) * std::max(each, 0.0));
 }

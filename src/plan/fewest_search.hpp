@@ -22,6 +22,10 @@ SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, doub
 // candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
+// Whether the search tries as many networks as there are stations at least. With fewer it cannot tell directions apart,
+// and the network it begins at stays the best.
+bool worth_searching(const SurveyProblem& problem, const PlanConfig& config);
+
 // `round_s`: what a round of refinement took. Seconds that all the rest will take, from the first round of refinement
 // on: further rounds, the search by `config`, and every ray. Times the evaluator on the chosen network. Empty where it
 // was stopped.

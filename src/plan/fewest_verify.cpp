@@ -2,6 +2,7 @@
 #include "plan/fewest_verify.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "plan/decision_space.hpp"
@@ -118,8 +119,17 @@ std::vector<PlanEntry> VerifiedNetworks::front() const {
   return front;
 }
 
+void VerifiedNetworks::fill_in(const std::string& measure, double value) {
+  if (entries_.empty() || entries_.back().exact || !std::isnan(entries_.back().value(measure))) return;
+  PlanEntry& entry = entries_.back();
+  entry.values[measure] = entry.searched[measure] = {value, 0};
+  entry.violation = violation_of(entry, problem_.requirements);
+}
+
 double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
   verified.add(choice.placed_of(choice.network));
+  verified.fill_in(choice.asked.measure(), choice.network.coverage);
+  if (choice.asked.link > 0) verified.fill_in("link", choice.network.link);
   if (verified.entries().empty() || !verified.entries().back().exact) return choice.margins.coverage;
   const PlanEntry& entry = verified.entries().back();
   return entry.searched.at(choice.asked.measure()).value - entry.value(choice.asked.measure());

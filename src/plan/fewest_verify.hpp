@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "plan/confirm.hpp"
@@ -31,6 +32,9 @@ class VerifiedNetworks {
   // stations are numbered in the order of visiting.
   void add(std::span<const PlacedStation> placed);
   void add(const SearchOutcome& found, std::size_t placed);
+
+  // Gives the last network a value that its choice knows, if the time was over before it was evaluated.
+  void fill_in(const std::string& measure, double value);
 
   const SurveyProblem& problem() const { return problem_; }
   const std::vector<PlanEntry>& entries() const { return entries_; }

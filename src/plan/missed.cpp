@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "core/setting_list.hpp"
@@ -53,13 +54,17 @@ class Judge {
     // The nearest first: few lines decide most voxels.
     std::vector<std::pair<double, std::size_t>> order(candidates_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
-    std::sort(order.begin(), order.end());
+    // By far most lines are never looked at, so the order is found as it is needed.
+    std::ranges::make_heap(order, std::greater<>{});
+    std::size_t left = order.size();
     bool free_line = false, in_range = false, steep = false, bright = false;
     const double reach_square = scanner.detection_range_m * scanner.detection_range_m *
                                 simulator_.scene().meshes()[patch.mesh].diffuse / scanner.detection_reflectivity;
     const double goal = simulator_.goal_density(rank);
     double best = 0;
-    for (const auto& [range, k] : order) {
+    while (left > 0) {
+      std::ranges::pop_heap(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(left), std::greater<>{});
+      const auto [range, k] = order[--left];
       const Vec3 head = candidates_[k].position, way = patch.point - head;
       const bool reached = range >= scanner.min_range_m && range <= scanner.max_range_m;
       // A line that cannot change the answer is not traced.

@@ -10,6 +10,7 @@
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/somewhere_to_stand.hpp"
+#include "plan/spread_positions.hpp"
 #include "plan/trade_off.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
@@ -53,15 +54,24 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
 constexpr double kSearchTimeShare = 0.8;
 // More are tried where it pays: around the stations that are chosen.
 constexpr std::size_t kMostCandidates = 4096;
-// How many times as many voxels as a search has a number of stations is chosen by.
+// Of a larger site one for so much ground, so that none of it is farther than some metres from a candidate.
+constexpr double kGroundPerCandidate_m2 = 16;
+// How many times as many voxels as a search has a number of stations is chosen by, and for how much ground that does:
+// a larger site has as many voxels a square metre, up to so many times as many, since each candidate looks at all.
 constexpr std::uint64_t kLargerSample = 5;
+constexpr double kGroundOfSample_m2 = 8000, kMostSamples = 4;
 // The front of more entries than this has its rounds worked out for the answer alone.
 constexpr std::size_t kMostRounds = 16;
 
 // Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
 // with no more than twice as many all of them, since as many others are taken to confirm it.
-std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, const Simulator& simulator) {
-  const std::uint64_t sample = config.sample_voxels * (problem.fewest ? kLargerSample : 1);
+std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, Site& site) {
+  const Simulator& simulator = site.simulator();
+  std::uint64_t sample = config.sample_voxels;
+  if (problem.fewest) {
+    const double samples = std::clamp(ground_area_m2(site.area().mesh()) / kGroundOfSample_m2, 1.0, kMostSamples);
+    sample = static_cast<std::uint64_t>(static_cast<double>(sample * kLargerSample) * samples);
+  }
   return config.exact || 2 * sample >= simulator.voxel_count() ? every_voxel : sample;
 }
 
@@ -85,6 +95,11 @@ void count_attainable(PlanContext& context, Simulator& simulator, const SurveyPr
   if (!raise_attainable(context.confirmed, simulator, all, progress)) context.confirmed = context.chosen;
 }
 
+std::size_t most_candidates(Site& site) {
+  const double by_ground = ground_area_m2(site.area().mesh()) / kGroundPerCandidate_m2;
+  return std::max(kMostCandidates, static_cast<std::size_t>(by_ground));
+}
+
 // Finds candidates, and if a measure needs it what is attainable: the problem learns it.
 std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyProblem& problem,
                                        const PlanConfig& config, const PlanWatch& watch) {
@@ -97,8 +112,8 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
   };
   const auto candidates =
       std::make_shared<const Candidates>(find_candidates(site,
-                                                         {.most = kMostCandidates,
-                                                          .sample_voxels = sample_of_choice(problem, config, simulator),
+                                                         {.most = most_candidates(site),
+                                                          .sample_voxels = sample_of_choice(problem, config, site),
                                                           .scanner = finest(simulator, problem.scanners)},
                                                          {.report = report, .stop = watch.stop}));
   const bool limit_wanted = needs_attainable(problem);

@@ -6,12 +6,16 @@
 #include "evaluate/visibility.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/identity.hpp"
+#include "plan/spread_positions.hpp"
 
 namespace vantage {
 namespace {
 
 // Scan overlap is a share of a scan, some thousand voxels of this number: known to 0.01.
 constexpr std::uint64_t kSurroundingsVoxels = 10'000;
+// So much ground is that of which a scan is such a share. On a larger site links are chosen by as many voxels a square
+// metre.
+constexpr double kGroundOfSample_m2 = 4000;
 
 }  // namespace
 
@@ -53,6 +57,11 @@ const OnSite& PlanContext::on_site() {
 }
 
 std::uint64_t PlanContext::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
+
+std::uint64_t PlanContext::link_voxels() const {
+  const double samples = std::max(ground_area_m2(site_.area().mesh()) / kGroundOfSample_m2, 1.0);
+  return static_cast<std::uint64_t>(static_cast<double>(surroundings_voxels()) * samples);
+}
 
 SearchOutcome PlanContext::search(const SurveyProblem& narrowed, const PlanConfig& config,
                                   const std::vector<double>& start, const PlanWatch& watch) {

@@ -29,8 +29,9 @@ class PlanContext {
   const SearchArea& area() { return site_.area(); }
   SimulatorEvaluator& evaluator() { return *evaluator_; }
   Simulator& surroundings() { return site_.surroundings(); }
-  const OnSite& on_site();  // made at first use
-  std::uint64_t surroundings_voxels() const;
+  const OnSite& on_site();                    // made at first use
+  std::uint64_t surroundings_voxels() const;  // of all surfaces, that networks are evaluated by
+  std::uint64_t link_voxels() const;          // that links between candidates are known by
 
   // Searches the present problem, perhaps narrowed to a number of stations or with other limits.
   SearchOutcome search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,

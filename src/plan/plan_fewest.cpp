@@ -23,6 +23,8 @@ namespace {
 constexpr double kAroundRadius = 0.8;
 // Largest number of repairs of a choice, and of new choices by the known error of the sample.
 constexpr std::size_t kRepairs = 3;
+// Stations that may be traced with every ray to repair a choice, and to try fewer stations.
+constexpr std::size_t kRepairStations = 2000, kFewerStations = 500;
 
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
@@ -45,7 +47,7 @@ class TableMaker {
     const bool link_is_objective = std::ranges::any_of(
         context.problem().objectives, [](const Objective& o) { return o.kind == Objective::Kind::link; });
     if (asked.link <= 0 && !link_is_objective) return;
-    const std::uint64_t sample = context.surroundings_voxels();
+    const std::uint64_t sample = context.link_voxels();
     surroundings_ =
         seen_columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
   }
@@ -151,11 +153,16 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, const
     return best ? best->violation : std::numeric_limits<double>::infinity();
   };
   double overstated = verify(choice, verified);
-  for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && !report.stopped(); ++k) {
+  std::size_t traced = choice.network.chosen.size();
+  const auto affordable = [&](std::size_t stations) { return traced + choice.network.chosen.size() <= stations; };
+  for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
+       ++k) {
     if (!repair(choice, verified, watch.stop)) break;
     overstated = verify(choice, verified);
+    traced += choice.network.chosen.size();
   }
-  for (std::size_t k = 0; k < kRepairs && least_violation() == 0 && !report.stopped(); ++k)
+  for (std::size_t k = 0; k < kRepairs && least_violation() == 0 && affordable(kFewerStations) && !report.stopped();
+       ++k, traced += choice.network.chosen.size())
     if (!choose_by_known_error(choice, verified, overstated, watch.stop)) break;
   return overstated;
 }
@@ -167,7 +174,11 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   const SurveyProblem asked =
       with_margins(with_stations(context.problem(), choice.placed()), choice.asked, overstated, choice.margins.link);
   const std::vector<double> start = DecisionSpace(context.oracle(), asked).encode(choice.placed_of(choice.network));
-  if (!report.stopped()) found = context.search(asked, refining_config(asked, config, candidates), start, watch);
+  const PlanConfig refining = refining_config(asked, config, candidates);
+  if (config.iterations == 0 && !worth_searching(asked, refining))
+    found.stop_reason = StopReason::max_iterations;
+  else if (!report.stopped())
+    found = context.search(asked, refining, start, watch);
   // Registration draws stations together; those that do the same do not need each other.
   const DecisionSpace space(context.oracle(), asked);
   for (std::size_t k = found.front.size(); k-- > 0;) {
@@ -175,7 +186,8 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
     found.front.erase(found.front.begin() + static_cast<std::ptrdiff_t>(k));
     if (k < found.estimates.size()) found.estimates.erase(found.estimates.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  if (report.stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
+  if (report.stopped() && (found.stop_reason == StopReason::running || found.front.empty()))
+    found.stop_reason = StopReason::cancelled;
   return found;
 }
 

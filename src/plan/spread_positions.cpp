@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace vantage {
 namespace {
@@ -69,7 +71,56 @@ std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const 
   return allowed;
 }
 
+// Positions by squares of the plan, for those near a place.
+class PositionGrid {
+ public:
+  explicit PositionGrid(double side_m) : side_m_(side_m) {}
+  void add(const Vec3& position) { squares_[square(position)].push_back(position); }
+  // Whether with(position) holds for one within a square's side.
+  template <class With>
+  bool any_near(const Vec3& place, const With& with) const {
+    const auto [x, y] = square(place);
+    for (long i = x - 1; i <= x + 1; ++i)
+      for (long j = y - 1; j <= y + 1; ++j)
+        if (const auto here = squares_.find({i, j}); here != squares_.end())
+          for (const Vec3& one : here->second) {
+            const Vec3 apart = one - place;
+            if (dot(apart, apart) <= side_m_ * side_m_ && with(one)) return true;
+          }
+    return false;
+  }
+
+ private:
+  std::pair<long, long> square(const Vec3& place) const {
+    return {std::lround(std::floor(place.x / side_m_)), std::lround(std::floor(place.y / side_m_))};
+  }
+  double side_m_;
+  std::map<std::pair<long, long>, std::vector<Vec3>> squares_;
+};
+
 }  // namespace
+
+double ground_area_m2(const SearchMesh& mesh) { return GroundByArea(mesh).area(); }
+
+std::vector<PlacedStation> unseen_positions(const PlacementOracle& site, std::span<const PlacedStation> stations,
+                                            std::span<const PlacedStation> others, double reach_m) {
+  std::vector<PlacedStation> unseen;
+  if (!(reach_m > 0)) return unseen;
+  PositionGrid known(reach_m), added(reach_m);
+  for (const PlacedStation& station : stations) known.add(station.position);
+  std::vector<char> alone(others.size(), 0);
+  const auto seen_by = [&](const PositionGrid& grid, const Vec3& from) {
+    return grid.any_near(from, [&](const Vec3& head) { return site.sees(head, from); });
+  };
+  tbb::parallel_for(std::size_t{0}, others.size(),
+                    [&](std::size_t k) { alone[k] = !seen_by(known, others[k].position); });
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    if (!alone[k] || seen_by(added, others[k].position)) continue;
+    added.add(others[k].position);
+    unseen.push_back(others[k]);
+  }
+  return unseen;
+}
 
 SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                  std::size_t most) {
@@ -77,9 +128,11 @@ SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& 
       allowed_positions(site, mesh, height_m, pool_per_position * most, tries_per_position * most);
   SpreadPositions spread;
   std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken position
+  std::vector<char> taken_already(pool.size(), 0);
   std::size_t next = 0;
   while (spread.stations.size() < std::min(most, pool.size())) {
     spread.stations.push_back(pool[next]);
+    taken_already[next] = 1;
     const Vec3 taken = pool[next].position;
     for (std::size_t k = 0; k < pool.size(); ++k) {
       const Vec3 apart = pool[k].position - taken;
@@ -89,6 +142,8 @@ SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& 
     spread.spacing_m.push_back(std::sqrt(square[next]));
     if (square[next] == 0) break;  // all others coincide with taken ones
   }
+  for (std::size_t k = 0; k < pool.size(); ++k)
+    if (!taken_already[k] && square[k] > 0) spread.others.push_back(pool[k]);
   return spread;
 }
 

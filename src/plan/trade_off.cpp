@@ -19,12 +19,14 @@ constexpr double kBeyondShare = 0.5;
 // Without the station that is missed least, of those without which the rest is connected as before.
 bool drop_one(const CoverProblem& problem, std::vector<std::size_t>& network) {
   const PartialCover cover(problem.matrix, network);
-  const std::size_t parts = components_of(problem, network, problem.link).count;
+  const NetworkLinks links(problem, network, problem.link);
+  const std::size_t parts = links.components().count;
+  const std::vector<std::size_t> parts_without = links.counts_without();
   std::size_t least = network.size();
   double lost = std::numeric_limits<double>::infinity();
   for (std::size_t at = problem.existing.size(); at < network.size(); ++at) {
     const double loss = cover.loss(network[at]);
-    if (loss >= lost || components_of(problem, without(network, at), problem.link).count > parts) continue;
+    if (loss >= lost || parts_without[at] > parts) continue;
     lost = loss, least = at;
   }
   if (least == network.size()) return false;

@@ -45,7 +45,7 @@ RandomSite random_site(std::size_t candidates, unsigned seed) {
   std::vector<float> overlaps;
   for (const Vec3& a : at)
     for (const Vec3& b : at) overlaps.push_back(static_cast<float>(std::max(0.0, 1 - distance(a, b) / 8)));
-  return {std::move(matrix), StationGraph(candidates, std::move(overlaps))};
+  return {std::move(matrix), StationGraph(candidates, overlaps)};
 }
 
 Chosen members(std::uint32_t set) {

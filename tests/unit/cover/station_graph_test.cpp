@@ -19,8 +19,8 @@ TEST(StationGraph, CountsWhatBothCover) {
   EXPECT_EQ(graph.overlap(0, 2), 0) << "of which nothing is known";
   EXPECT_TRUE(graph.linked(0, 1, 0.25));
   EXPECT_FALSE(graph.linked(0, 1, 0.26));
-  EXPECT_FALSE(StationGraph(1, {1}).linked(0, 0, 0.5)) << "with itself";
-  EXPECT_THROW(StationGraph(2, {0, 1, 1}), Error);
+  EXPECT_FALSE(StationGraph(1, std::vector<float>{1}).linked(0, 0, 0.5)) << "with itself";
+  EXPECT_THROW(StationGraph(2, std::vector<float>{0, 1, 1}), Error);
 }
 
 TEST(StationGraph, ExcludesPairsThatStandTooNear) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "core/philox.hpp"
@@ -554,6 +555,68 @@ TEST(RegistrationError, WithTargetsIsThatOfAnAdjustmentWithTheirCentresAmongTheU
     EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
     const double rms = registration_error(counts, counts.voxels, tied.options, nullptr, 0, tied.targets).rms_m;
     EXPECT_NEAR(rms * rms, (bare.metric() * expected).trace(), 1e-9 * rms * rms);
+  }
+}
+
+// So many stations along a corridor that most pairs see nothing together.
+TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
+  for (const double tilt : {0.05, 0.0}) {
+    Made made;
+    made.heads.clear();
+    RegistrationTarget target{.control_m = 0.003};
+    for (int k = 0; k < 64; ++k) {
+      made.heads.push_back({4.0 * k, k % 3 == 0 ? 0.4 : -0.3, 0.1 * (k % 2)});
+      if (k % 20 == 3) target.seen_by.push_back({static_cast<std::size_t>(k), 0.002});
+    }
+    for (int k = 0; k < 31; ++k) {
+      const std::uint64_t here = std::uint64_t{15} << (2 * k);  // four stations
+      made.patch(Vec3{8.0 * k + 6, 1.5, 0}, X * 3, Z * 2, 8, here);
+      made.patch(Vec3{8.0 * k + 6, 0, 1.5}, Y * 2, X * 3, 8, here);
+      if (k % 4 == 1) made.patch(Vec3{8.0 * k + 9, 0, 0}, Y * 0.5, Z * 2, 4, here);
+    }
+    RegistrationOptions options{
+        .model = model, .position_m = 0.05, .heading = Angle::degrees(0.5), .tilt = Angle::degrees(tilt)};
+    const NetworkCounts counts = made.counts();
+    const RegistrationInputs inputs = registration_inputs(counts, counts.voxels, options, nullptr, 0);
+    const RegistrationAdjustment adjustment(inputs.held_by, inputs.share, inputs.covered, options, {&target, 1});
+    ASSERT_GE(adjustment.stations().size(), 64u);
+    const Eigen::MatrixXd covariance = adjustment.covariance(), metric = adjustment.metric();
+    const RegistrationError error = adjustment.error();
+    const double square = (metric * covariance).trace();
+    EXPECT_NEAR(error.rms_m * error.rms_m, square, 1e-9 * square);
+    EXPECT_GT(error.worst_m, error.rms_m);
+    EXPECT_TRUE(error.absolute_rms_m);
+  }
+}
+
+TEST(PartialInverse, HasTheBlocksOfTheInverse) {
+  std::mt19937 random(3);
+  const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+  constexpr Eigen::Index block = 4, size = 40 * block;
+  Eigen::MatrixXd full = Eigen::MatrixXd::Identity(size, size);
+  for (Eigen::Index i = 0; i < size; i += block)
+    for (Eigen::Index j = 0; j < size; j += block) {
+      if (i != j && number() < 0.42) continue;
+      const Eigen::MatrixXd part = Eigen::MatrixXd::NullaryExpr(block, block, number);
+      for (const Eigen::Index at : {i, j}) full.block(at, at, block, block) += part.transpose() * part;
+      if (i == j) continue;
+      full.block(i, j, block, block) -= part.transpose() * part;
+      full.block(j, i, block, block) -= part.transpose() * part;
+    }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      if (full(i, j) != 0 || i / block == j / block) entries.emplace_back(i, j, full(i, j));
+  Eigen::SparseMatrix<double> lower(size, size);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  ASSERT_LT(lower.nonZeros(), size * size / 4);
+  const Eigen::MatrixXd right = Eigen::MatrixXd::NullaryExpr(size, 3, number), inverse = full.inverse();
+  const PartialInverse found = partial_inverse(lower, block, right);
+  EXPECT_LT((found.times - inverse * right).cwiseAbs().maxCoeff(), 1e-12);
+  ASSERT_EQ(found.blocks.size(), 40u);
+  for (std::size_t k = 0; k < found.blocks.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k) * block;
+    EXPECT_LT((found.blocks[k] - inverse.block(at, at, block, block)).cwiseAbs().maxCoeff(), 1e-12) << k;
   }
 }
 

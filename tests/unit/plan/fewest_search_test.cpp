@@ -40,6 +40,15 @@ TEST(FewestSearch, TracesTwoStationsForEachCandidate) {
   EXPECT_EQ(refining_config(problem, config, 1000).iterations, 7u) << "as asked";
 }
 
+TEST(FewestSearch, TriesAsManyNetworksAsThereAreStationsOrNone) {
+  const PlanConfig config{.population = 10, .iterations = 10};
+  SurveyProblem problem = test::floor_problem(0.7);
+  problem.stations_max = 100;
+  EXPECT_TRUE(worth_searching(problem, config));
+  problem.stations_max = 101;
+  EXPECT_FALSE(worth_searching(problem, config));
+}
+
 TEST(FewestSearch, ExpectsAtLeastWhatRoundsTook) {
   const SurveyProblem problem = test::floor_problem(0.7);
   const Measures measures = measures_of(problem);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace vantage {
+
+// Parts of the inverse of a sparse symmetric positive definite matrix, without the rest of it.
+struct PartialInverse {
+  std::vector<Eigen::MatrixXd> blocks;  // the blocks of `block` rows on its diagonal
+  Eigen::MatrixXd times;                // inverse · right
+};
+// `lower`: the matrix's lower triangle, with all entries of its diagonal blocks. Elements of the inverse by the
+// factor's own pattern (Takahashi, Fagan, Chin: Formation of a Sparse Bus Impedance Matrix, 1973). REQUIRES: rows a
+// multiple of `block`.
+PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
+                               const Eigen::MatrixXd& right);
+
+}  // namespace vantage
