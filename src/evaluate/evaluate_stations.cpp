@@ -4,6 +4,7 @@
 
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
+#include "placement/nearest_place.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
@@ -132,6 +133,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
     one.names = options.names, one.visit = std::move(visit);
+    if (site.area && site.clash)
+      one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
     if (options.attainable) one.attainable = attainable.coverage();
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);
