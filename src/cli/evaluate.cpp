@@ -329,7 +329,11 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   write_files(options, site, simulator, found, names, judged ? &*judged : nullptr, program);
   if (options.json) {
     nlohmann::json json = json_of(options, site, simulator, found);
-    if (site.has_area()) json["floor"] = nlohmann::json::parse(floor_json(site.scene(), site.area(), placed).dump());
+    if (site.has_area()) {
+      json["floor"] = nlohmann::json::parse(floor_json(site.scene(), site.area(), placed).dump());
+      for (const auto& [heading, line] : ground_lines(site.scene(), site.area(), placed))
+        json["summary"].push_back({{"heading", heading}, {"text", line}});
+    }
     json["stations"] = stations_json(stations, found, names, !options.sampled(), site.scanners());
     json["seconds"] = seconds_json(watch, found.counts.trace_seconds);
     program.console.print(json);

@@ -114,7 +114,13 @@
     if (!same && focused >= 0 && view.labels.length) view.labels[Math.min(focused, view.labels.length - 1)].focus();
     figures(at('figures'), network);
     tellCaptured(network.values);
-    if (!network.values.registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
+    const { registration } = network.values;
+    if (registration && !state.exact && registration.error > registration.value / 2)
+      at('figures').querySelectorAll('div').forEach((tile) => {
+        if (tile.querySelector('dt').textContent === 'Registered')
+          tile.querySelector('small').textContent = `± ${registration.error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
+      });
+    if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
     if (network.seconds_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
     stationTable(at('stations'), network, pick);

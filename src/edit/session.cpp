@@ -482,7 +482,14 @@ void EditSession::improve(const Progress& progress) {
   const Stations first = stations_;
   if (std::ranges::all_of(stations_, &EditStation::locked))
     throw Error(Errc::invalid_argument, "all stations are locked");
-  const bool mended = mend({.report = {}, .stop = progress.stop});
+  const auto begin = [this](const char* what) {
+    const std::scoped_lock lock(mutex_);
+    busy_ = what, done_ = 0;
+    ++version_;
+  };
+  begin("mending links");
+  const bool mended = mend(progress);
+  begin("improving the others");
   std::vector<Vec3> kept, start;
   std::vector<StationSetup> existing_setups;
   std::set<std::uint32_t> scanners;  // of the movable stations

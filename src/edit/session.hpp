@@ -36,7 +36,7 @@ struct EditOptions {
   double improve_seconds = 10;        // of one short search
   // Of the sample on which attainable coverage is looked at when the session begins; 0: it is not.
   std::uint64_t attainable_voxels = CandidateConfig().sample_voxels;
-  std::uint64_t registration_voxels = 4'000;  // of the sample by which the registration error is estimated
+  std::uint64_t registration_voxels = 20'000;  // of the sample by which the registration error is estimated
   RegistrationOptions registration = {};
   OnSiteOptions on_site = {};
 };

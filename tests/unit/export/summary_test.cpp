@@ -69,6 +69,19 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   EXPECT_EQ(summary_lines(pair)[1].text, "one station, nothing to link");
 }
 
+TEST(Summary, OfManyPartsCanBeRead) {
+  Evaluation network{.stations = std::vector<PlacedStation>(400), .exact = true, .values = {{"coverage", {1, 0}}}};
+  network.overlap_matrix = OverlapMatrix(400);
+  for (std::size_t k = 0; k < 99; ++k) network.overlap_matrix.set(k, k + 1, 0.5);        // a part of a hundred
+  for (std::size_t k = 100; k < 200; k += 2) network.overlap_matrix.set(k, k + 1, 0.5);  // fifty pairs
+  const std::string text = summary_lines(network)[1].text;
+  EXPECT_LT(text.size(), 600u);
+  EXPECT_EQ(text.find("no: in 251 parts, "), 0u) << text;
+  for (const char* told :
+       {"S29 and 71 more; S101 and S102; ", "; 45 more of several stations; ", "and 171 more stand alone"})
+    EXPECT_NE(text.find(told), std::string::npos) << told << " in: " << text;
+}
+
 TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {
   std::vector<PlacedStation> stations(3);
   stations[0].position = {500'000.12345, 2.5, 1.85}, stations[0].ground = {500'000.12345, 2.5, -0.0001};
