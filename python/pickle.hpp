@@ -30,10 +30,11 @@ inline auto members(Visit& v) {
   return std::tie(v.order, v.legs_m, v.paths, v.walk_m, v.scan_min, v.set_up_min, v.photos_min, v.walk_min, v.minutes,
                   v.unconnected);
 }
+inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
 inline auto members(Evaluation& e) {
   return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.field, e.values, e.attainable,
                   e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.link_overlap, e.link, e.registration,
-                  e.visit, e.violation);
+                  e.visit, e.moves, e.violation);
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {

@@ -169,6 +169,19 @@ void add_sites(py::module_& m) {
           "sample_voxels: size of the sample of voxels; None: every ray.\nlink: least scan overlap of a link. The "
           "others: as for "
           "`Simulator.evaluate`.\nRaises Error invalid_argument.")
+      .def(
+          "nearest_place",
+          [](GuardedSite& self, const Vec3& head, double reach_m) {
+            const auto lock = self.taken();
+            const py::gil_scoped_release unlocked;
+            return self.site.nearest_place(head, reach_m);
+          },
+          py::arg("head"), py::arg("reach_m") = nearest_place_reach_m,
+          "The PlacedStation nearest to a head (x, y, z; survey frame, metres) that may hold a station: on the search "
+          "area, at the\nfirst scanner's height, free of clashes. Distances are between heads; the result is the "
+          "nearest "
+          "to within a fiftieth of\nthe security volume's radius. None if there is none within reach_m. Raises Error "
+          "invalid_argument (no ground, a reach\nbelow 0, a value not finite).")
       .def("write_report", &write_site_report, py::arg("file"), py::arg("evaluation"), py::kw_only(),
            py::arg("title") = py::none(), py::arg("progress") = py::none(),
            "Writes report.html or report.pdf, by the file's extension, of a network evaluated on this site; if "

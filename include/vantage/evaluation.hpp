@@ -81,6 +81,9 @@ struct Evaluation {
   std::vector<Target> targets = {};                              ///< As given, with the stations that measure each.
   AccuracyClass accuracy_class = AccuracyClass::loa30;           ///< Judges the registration error.
   std::optional<Visit> visit = std::nullopt;                     ///< The round on site without existing stations.
+  /// For stations that do not stand well, in their order: the nearest places that may hold them, if these were looked
+  /// for (`EvaluationSite::area`). Existing stations and those without ground have none.
+  std::vector<StationMove> moves = {};
   /// Sum of the violations of requirements, as shares of their objectives' scales; 0: all are met.
   double violation = 0;
 
@@ -105,6 +108,7 @@ struct EvaluationSite {
   Simulator* surroundings = nullptr;    ///< `surroundings_of(simulator)`, for scan overlaps. Null: none.
   const OnSite* on_site = nullptr;      ///< Makes rounds on site. Null: none.
   const ClashChecker* clash = nullptr;  ///< Needed by targets and by lines of sight between stations. Null: none.
+  const SearchArea* area = nullptr;     ///< With `clash`: tells where stations may stand instead. Null: not told.
 };
 
 struct EvaluationOptions {

@@ -76,9 +76,9 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
 /// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,existing`. If a station is turned or does
 /// not have the first scanner, also `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of
 /// the head, ground_z of the ground. Numbers read back to the same bits. `scanners` are indexed by
-/// `StationSetup::scanner`; without them the last two columns are left out.
+/// `StationSetup::scanner`; without them the last two columns are left out. `names`: as `station_names()` takes them.
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
-                        std::span<const Scanner> scanners = {});
+                        std::span<const Scanner> scanners = {}, std::span<const std::string> names = {});
 
 /// Writes stations for maps and drawings; the extension decides the format:
 /// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.

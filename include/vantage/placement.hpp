@@ -179,6 +179,19 @@ class ClashChecker {
   std::shared_ptr<const Impl> impl_;
 };
 
+/// How far from a head `Site::nearest_place` looks unless told otherwise.
+inline constexpr double nearest_place_reach_m = 5;
+
+/// Advice for a station that does not stand well.
+struct StationMove {
+  std::size_t station = 0;                         ///< Its place in the network, from 0.
+  std::optional<PlacedStation> to = std::nullopt;  ///< The nearest place that may hold it; empty: there is none.
+  double reach_m = nearest_place_reach_m;          ///< Largest distance from its head that was looked at.
+};
+/// The advice as words, for a head in the survey frame, whose y points north: "move it 0.42 m to the north-east, to
+/// 3.120,4.500,1.850" (the head's x,y,z), or "no place within 5 m is free".
+std::string move_text(const Vec3& head, const StationMove& move);
+
 /// A station placed by its head.
 struct PlacedHead {
   PlacedStation station;  ///< (u, v) as given, or of the search area above or below the ground.

@@ -160,6 +160,7 @@ struct PlanResult {
   PlanConfig config;
   std::size_t population = 0, batch = 0;  ///< In force, also if the configuration left them open.
   WalkableOptions walkable;               ///< Settings of the search area.
+  std::optional<Scene> scene = {};        ///< Scene of the site.
   std::optional<SearchArea> area = {};    ///< Search area.
   SecurityVolume security;                ///< Setting of the clash checker.
   std::vector<Scanner> scanners;          ///< Indexed by `StationSetup::scanner`.

@@ -11,6 +11,7 @@
 #include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/scene.hpp"
 
 namespace vantage {
 
@@ -27,13 +28,34 @@ struct SummaryLine {
 };
 /// Figures of a network in words, then advice on stations that are left out, missing links and violated requirements.
 std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
-/// The same of a plan's answer. The first line tells of a plane laid under the model, the last ones of floor that is
-/// not entered.
+/// The same of a plan's answer. The first line tells of a plane laid under the model, the last ones of floor without
+/// stations and floor that nothing leads to.
 std::vector<SummaryLine> summary_lines(const PlanResult& result);
 std::string summary_text(const PlanResult& result);
-/// Lines on the ground alone: a plane laid under the model, and floor that is not entered.
-std::vector<SummaryLine> ground_lines(const SearchArea& area);
-/// The same as lines for a terminal.
+/// A part of the floor where stations may stand, and the stations on it.
+struct FloorPart {
+  enum class Kind {
+    storey,    ///< Ground above or below other ground. A site of one level has none.
+    building,  ///< Ground under a roof and within walls, apart from other such ground. A site of one has none.
+    room,      ///< A room that the file names.
+  };
+  Kind kind = Kind::storey;
+  std::string name = {};     ///< "storey 2", counted from below; "building 1", the largest; the room's own.
+  double area_m2 = 0;        ///< Ground of the search area in plan; 0: none of it is reached.
+  Vec3 place = {};           ///< A point of it, survey frame; of a room without ground its middle.
+  std::size_t stations = 0;  ///< Usable stations that stand on it.
+};
+std::string to_string(FloorPart::Kind kind);  ///< "storey", "building", "room"
+/// Storeys from below, then buildings, the largest first, then rooms as the scene has them.
+std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations);
+
+/// Lines on the ground alone: a plane laid under the model, storeys, buildings and rooms that hold no station, and
+/// floor that nothing leads to.
+std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
+                                      std::span<const PlacedStation> stations);
+/// Lines as they stand in a terminal: each heading once, texts below each other.
+std::string lines_text(std::span<const SummaryLine> lines);
+/// `summary_lines` for a terminal.
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 
 /// Lines for a terminal: the trade-off of a plan as a table of about five lines, with captured share, registration

@@ -769,6 +769,7 @@ class Site:
         registration: Optional[RegistrationOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
+    def nearest_place(self, head: Sequence[float], reach_m: float = 5.0) -> Optional[PlacedStation]: ...
     def write_report(
         self,
         file: Path,

@@ -55,9 +55,9 @@ struct Keeper {
 
   void keep(const std::vector<EditStation>& stations, std::span<const Scanner> scanners) const {
     nlohmann::json rows = nlohmann::json::array();
-    for (const auto& [id, placed, locked] : stations) {
-      rows.push_back(to_json({.placed = placed, .has_uv = true}, "", scanners));
-      rows.back()["locked"] = locked;
+    for (const EditStation& station : stations) {
+      rows.push_back(to_json({.placed = station.placed, .has_uv = true}, station.name, scanners));
+      rows.back()["locked"] = station.locked;
     }
     write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
   }
@@ -76,7 +76,8 @@ struct Keeper {
       for (const auto& row : json.at("stations")) {
         const StationText text = station_of_json(row);
         if (!text.position) throw Error(Errc::malformed_file, file.string() + ": a station has no position");
-        stations.push_back({.placed = place(site, {text}).front().placed, .locked = row.at("locked")});
+        stations.push_back(
+            {.placed = place(site, {text}).front().placed, .locked = row.at("locked"), .name = text.name});
       }
     } catch (const nlohmann::json::exception& error) {
       throw Error(Errc::malformed_file, file.string() + ": is no file of the editor: " + error.what());
@@ -132,7 +133,7 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       if (station.placed.status == StationStatus::hole)
         throw Error(Errc::invalid_argument, fmt::format("--station: no ground under u,v = {:g},{:g}",
                                                         station.placed.uv.u, station.placed.uv.v));
-      stations.push_back({.placed = station.placed});
+      stations.push_back({.placed = station.placed, .name = station.name});
     }
   }
   Simulator& simulator = build_simulator(site, program);
@@ -140,13 +141,16 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   tell_grid(simulator);
   if (options.link) options.edit.link = *options.link;
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
-  const auto save = [&](const Evaluation& exact, const Progress& progress) {
-    write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners());
+  const auto save = [&](const Evaluation& exact, const Progress& progress) -> std::string {
+    write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners(), exact.names);
+    const std::string where = "saved in " + std::filesystem::absolute(folder).string() + ": stations.csv";
     const auto judged = judge_missed(site, exact.field, program);
-    if (progress.stopped()) return;
+    if (progress.stopped()) return where + "; stopped before the reports";
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, site,
                   {.missed = judged ? &*judged : nullptr}, program, progress.stop);
-    spdlog::info("saved in {}", folder.string());
+    const std::string told = where + ", report.html, report.pdf";
+    spdlog::info("{}", told);
+    return told;
   };
   EditSession session(
       site, stations, options.edit,

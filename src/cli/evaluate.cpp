@@ -12,12 +12,10 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "export/run_json.hpp"
 
 namespace vantage::cli {
 namespace {
-
-// Of voxels, for what is attainable: known to .004, and what is captured of it to .002.
-constexpr std::uint64_t kAttainableSample = 20'000;
 
 struct EvaluateCommandOptions {
   SiteArguments site;
@@ -221,6 +219,12 @@ nlohmann::json stations_json(const std::vector<SiteStation>& stations, const Eva
     row["points_on_surveyed"] = nullptr;
     if (traced && !counts.points.empty()) row["points"] = counts.points[k];
     if (traced && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
+    const auto move = std::ranges::find(found.moves, k, &StationMove::station);
+    row["move_to"] = nullptr;
+    if (move != found.moves.end() && move->to) {
+      const Vec3& to = move->to->position;
+      row["move_to"] = {to.x, to.y, to.z};
+    }
     row["dropped"] = nullptr;
     if (!counts.dropped.empty()) row["dropped"] = dropped_json(counts.dropped[k]);
     rows.push_back(std::move(row));
@@ -286,7 +290,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Stopwatch watch;
   Site site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
-  warn_of_unusable(stations);
+  warn_of_unusable(site, stations);
   const auto placed = placed_of(stations);
   const auto names = names_of(stations);
   check(options, site);
@@ -310,7 +314,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   AttainableCounts attainable;
   if (options.attainable) {
     attainable = attainable_counts(
-        site, std::min(chosen.sample_voxels.value_or(kAttainableSample), simulator.voxel_count()), program);
+        site, std::min(chosen.sample_voxels.value_or(CandidateConfig().sample_voxels), simulator.voxel_count()),
+        program);
     chosen.attainable = &attainable;
   }
   const Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
@@ -324,11 +329,18 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   write_files(options, site, simulator, found, names, judged ? &*judged : nullptr, program);
   if (options.json) {
     nlohmann::json json = json_of(options, site, simulator, found);
+    if (site.has_area()) {
+      json["floor"] = nlohmann::json::parse(floor_json(site.scene(), site.area(), placed).dump());
+      for (const auto& [heading, line] : ground_lines(site.scene(), site.area(), placed))
+        json["summary"].push_back({{"heading", heading}, {"text", line}});
+    }
     json["stations"] = stations_json(stations, found, names, !options.sampled(), site.scanners());
     json["seconds"] = seconds_json(watch, found.counts.trace_seconds);
     program.console.print(json);
   } else {
-    program.console.print(evaluation_text(found, names, !options.sampled(), site.scanners()));
+    std::string text = evaluation_text(found, names, !options.sampled(), site.scanners());
+    if (site.has_area()) text += lines_text(ground_lines(site.scene(), site.area(), placed));
+    program.console.print(text);
   }
   return exit_ok;
 }

@@ -62,12 +62,13 @@ std::string front_text(const PlanResult& result, std::size_t chosen) {
 
 std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
   std::string text;
-  if (result.area && result.area->on_plane()) text = ground_lines(*result.area).front().text + "\n";
+  const PlanEntry& entry = result.front[chosen];
+  if (result.scene && result.area && result.area->on_plane())
+    text = ground_lines(*result.scene, *result.area, entry.stations).front().text + "\n";
   text += unmet_text(result);
   // The summary and the trade-off tell all of a surveyor's plan.
   const bool whole_front = result.trade_off.empty() || result.front.size() > 1;
   if (whole_front) text += front_text(result, chosen) + "\n";
-  const PlanEntry& entry = result.front[chosen];
   const std::size_t shown = std::min(entry.stations.size(), kStationsShown);
   const std::span<const std::uint64_t> points(entry.counts.points_on_surveyed);
   text += station_table(std::span(entry.stations).first(shown), station_names(entry.stations),

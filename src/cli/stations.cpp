@@ -204,17 +204,26 @@ std::vector<std::string> names_of(const std::vector<SiteStation>& stations) {
   return station_names(placed_of(stations), given);
 }
 
-void warn_of_unusable(const std::vector<SiteStation>& stations) {
+std::string fault_text(Site& site, const PlacedStation& placed) {
+  std::string text = explain(placed.status) + (active(placed) ? "" : "; it is left out");
+  if (placed.status == StationStatus::ok || placed.status == StationStatus::hole || !site.has_area()) return text;
+  return text + "; " + move_text(placed.position, {.to = site.nearest_place(placed.position)});
+}
+
+void warn_of_unusable(Site& site, const std::vector<SiteStation>& stations) {
+  constexpr std::size_t kMost = 10;  // the summary has all
   const auto names = names_of(stations);
+  std::size_t told = 0;
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const auto& placed = stations[k].placed;
-    if (placed.status == StationStatus::ok) continue;
+    if (placed.status == StationStatus::ok || ++told > kMost) continue;
     const std::string where =
         placed.status == StationStatus::hole
             ? fmt::format("u,v = {:g},{:g}", placed.uv.u, placed.uv.v)
             : fmt::format("{:.3f},{:.3f},{:.3f}", placed.position.x, placed.position.y, placed.position.z);
-    spdlog::warn("{} at {} {}{}", names[k], where, explain(placed.status), active(placed) ? "" : "; it is left out");
+    spdlog::warn("{} at {} {}", names[k], where, fault_text(site, placed));
   }
+  if (told > kMost) spdlog::warn("{} more stations do not stand well; the summary has all", told - kMost);
 }
 
 }  // namespace vantage::cli

@@ -45,6 +45,8 @@ nlohmann::json to_json(const SiteStation& station, const std::string& name, std:
 // The inverse. Throws nlohmann::json::exception for another type.
 StationText station_of_json(const nlohmann::json& json);
 // A warning for each unusable station.
-void warn_of_unusable(const std::vector<SiteStation>& stations);
+void warn_of_unusable(Site& site, const std::vector<SiteStation>& stations);
+// `explain` of a new station's status, whether it is left out, and where it may stand instead.
+std::string fault_text(Site& site, const PlacedStation& placed);
 
 }  // namespace vantage::cli

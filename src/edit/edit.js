@@ -6,7 +6,9 @@
   const at = (id) => document.getElementById(id);
   const origin = data.view.origin, levels = data.view.levels;
   const waiting = [];
-  let state = null, selected = null, adding = false, sending = false, connected = true, drag = null;
+  let state = null, selected = null, sending = false, connected = true, drag = null;
+  let mode = null;  // 'add' or 'measure': what a click in the view does
+  let hiddenCells = null;
 
   at('title').textContent = data.title;
   const view = new SiteView(at('canvas'), data.view, pick);
@@ -30,7 +32,7 @@
     return mesh;
   }
   function showGround() {
-    ground.visible = at('show-ground').checked || adding || drag !== null;
+    ground.visible = at('show-ground').checked || mode === 'add' || drag !== null;
     view.draw();
   }
 
@@ -87,6 +89,10 @@
     if (state && next.version < state.version) return;
     const before = state, network = next.network;
     const [coverage, only] = await Promise.all([unpack(next.coverage), unpack(next.only)]);
+    if (next.hidden !== hiddenCells) {
+      hiddenCells = next.hidden;
+      view.table.set(1, hiddenCells ? await unpack(hiddenCells) : null, 255);
+    }
     const keep = before && selected !== null ? before.ids[selected] : null;
     const focused = view.labels.indexOf(document.activeElement);
     const same = before && before.ids.join() === next.ids.join();
@@ -99,6 +105,7 @@
     view.select(selected);
     view.only = only;
     view.labels.forEach((label, k) => {
+      label.textContent = network.stations[k].name;
       label.classList.toggle('locked', state.locked[k]);
       label.setAttribute('aria-label', `${network.stations[k].name}${state.locked[k] ? ', locked' : ''}`);
       label.onpointerdown = (event) => grab(event, k);
@@ -106,9 +113,15 @@
     });
     if (!same && focused >= 0 && view.labels.length) view.labels[Math.min(focused, view.labels.length - 1)].focus();
     figures(at('figures'), network);
-    const tile = at('figures').querySelector('dd small');
-    const { value, error } = network.values.coverage;
-    tile.textContent = state.exact ? `coverage ${value.toFixed(4)}, by every ray` : `coverage ${value.toFixed(4)} ± ${error.toFixed(4)}, from a sample`;
+    tellCaptured(network.values);
+    const { registration } = network.values;
+    if (registration && !state.exact && registration.error > registration.value / 2)
+      at('figures').querySelectorAll('div').forEach((tile) => {
+        if (tile.querySelector('dt').textContent === 'Registered')
+          tile.querySelector('small').textContent = `± ${registration.error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
+      });
+    if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
+    if (network.seconds_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
     stationTable(at('stations'), network, pick);
     linkTable(at('links'), at('links-words'), network);
@@ -121,14 +134,27 @@
     at('add').disabled = Boolean(state.busy);
     at('save').textContent = state.busy ? 'Stop' : 'Save';
     if (state.busy) tell(`${capital(state.busy.what)}${state.busy.done > 0 ? `, ${Math.round(100 * state.busy.done)} %` : ' …'}`);
-    else tell(capital(state.message));
+    else if (!mode || state.message) tell(capital(state.message));
     document.documentElement.dataset.version = state.version;
+  }
+
+  // The first tile says how well its figures are known.
+  function tellCaptured({ coverage, capture }) {
+    const sampled = (name, { value, error }) => `${name} ${value.toFixed(4)}${state.exact ? '' : ` ± ${error.toFixed(4)}`}`;
+    const share = capture && capture.value !== null ? `${capture.error > 0 ? `± ${percent(capture.error)} ` : ''}of what is attainable; ` : '';
+    at('figures').querySelector('dd small').textContent = `${share}${sampled('coverage', coverage)}, ${state.exact ? 'by every ray' : 'from a sample'}`;
+  }
+  const unknownTile = (name, why) => element('div', {}, element('dt', {}, name), element('dd', {}, 'Not known', element('small', {}, why)));
+  function whyUnknown(network) {
+    if (network.stations.filter((s) => s.active).length < 2) return 'two stations are needed';
+    return drag ? 'until the station is put down' : 'with so many stations after “Every ray” only';
   }
 
   function legend() {
     const item = (style, text, kind = '') => element('span', {}, element('i', { class: kind, style }), text);
     at('legend').replaceChildren(
       element('span', {}, 'no points', element('i', { class: 'ramp', style: `background:linear-gradient(90deg,${VIEW_COLOURS.ramp.join()})` }), 'wanted density'),
+      ...(hiddenCells ? [item('', 'no place to stand could help', 'hatch')] : []),
       item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed'), item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees'),
       item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke'),
       item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke'));
@@ -141,6 +167,7 @@
     card();
   }
   function card() {
+    if (at('station').contains(document.activeElement) && document.activeElement.tagName === 'INPUT') return;  // a name is being typed
     const share = selected === null ? null : view.only.reduce((n, v) => n + (v === selected + 1), 0) / view.only.length;
     stationCard(at('station'), state.network, selected, share, { pick, stand: null });
     if (selected === null) {
@@ -154,8 +181,32 @@
       at('station').append(node);
       return node;
     };
+    const rename = element('button', { type: 'button', id: 'rename' }, 'Rename');
+    rename.addEventListener('click', () => askName(id));
+    at('station').append(rename);
     button(locked ? 'Unlock' : 'Lock', { do: 'lock', id, locked: !locked });
     button('Remove', { do: 'remove', id }).disabled = locked;
+  }
+
+  // A field in place of the card's title; Enter and leaving it rename the station, Escape does not.
+  function askName(id) {
+    const title = at('station').querySelector('h3'), field = element('input', { type: 'text', maxlength: 60, 'aria-label': 'Name of the station', value: title.textContent });
+    let done = false;
+    const end = (keep) => {
+      if (done) return;
+      done = true;
+      const name = field.value.trim();
+      field.replaceWith(title);
+      if (keep && name !== title.textContent) send({ do: 'rename', id, name });
+    };
+    field.addEventListener('keydown', (event) => {
+      event.stopPropagation();
+      if (event.key === 'Enter' || event.key === 'Escape') end(event.key === 'Enter');
+    });
+    field.addEventListener('blur', () => end(true));
+    title.replaceWith(field);
+    field.select();
+    field.focus();
   }
 
   // The ray through a position on the screen.
@@ -213,7 +264,10 @@
       const step = event.shiftKey ? 1 : 0.25, [x, y, z] = state.network.stations[k].ground;
       send({ do: 'move', id, to: [x + step * by[0], y + step * by[1], z] });
     } else if (event.key === 'Delete') send({ do: 'remove', id });
-    else if (event.key === 'l' || event.key === 'L') send({ do: 'lock', id, locked: !state.locked[k] });
+    else if (event.key === 'F2') {
+      if (selected !== k) pick(k);
+      askName(id);
+    } else if (event.key === 'l' || event.key === 'L') send({ do: 'lock', id, locked: !state.locked[k] });
     else return;
     event.preventDefault();
   }
@@ -224,34 +278,93 @@
     const hit = ray(event).intersectObjects([view.surface, ground]).find(({ point }) => point.z >= low && point.z <= high);
     return hit && inSurvey(hit.point);
   }
-  function setAdding(on) {
-    adding = on;
-    at('add').setAttribute('aria-pressed', String(on));
-    at('canvas').classList.toggle('adding', on);
-    if (on) tell('Click the position of the station; Enter puts it in the middle of the view, Escape leaves it.');
+  const coordinates = (point) => point.map((v) => v.toFixed(2)).join(', ');
+  function setMode(next) {
+    mode = next;
+    at('add').setAttribute('aria-pressed', String(mode === 'add'));
+    at('measure').setAttribute('aria-pressed', String(mode === 'measure'));
+    at('canvas').classList.toggle('adding', mode !== null);
+    ends = [];
+    showEnds();
+    if (mode === 'add') tell('Click the position of the station; Enter puts it in the middle of the view, Escape leaves it.');
+    if (mode === 'measure') tell('Click two points to measure between them; Escape ends it.');
     showGround();
+  }
+
+  // A measured distance: its ends in the survey frame, a line between them.
+  let ends = [];
+  const tape = new THREE.Group();
+  view.scene.add(tape);
+  function showEnds() {
+    tape.traverse((mark) => { if (mark.geometry) mark.geometry.dispose(); });
+    tape.remove(...tape.children);
+    const colour = { color: '#c2185b', depthTest: false, transparent: true };
+    const points = ends.map((end) => view.local(end)), size = Math.min(Math.max(view.extent * 0.003, 0.03), 0.5);
+    for (const point of points) {
+      const mark = new THREE.Mesh(new THREE.SphereGeometry(size, 16, 12), new THREE.MeshBasicMaterial(colour));
+      mark.position.copy(point);
+      tape.add(mark);
+    }
+    if (points.length === 2) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points.flatMap((p) => p.toArray())), 3));
+      tape.add(new THREE.Line(geometry, new THREE.LineBasicMaterial(colour)));
+    }
+    tape.children.forEach((mark) => { mark.renderOrder = 2; });
+    view.draw();
+  }
+  function measureTo(place) {
+    ends = ends.length === 2 ? [place] : [...ends, place];
+    showEnds();
+    if (ends.length === 1) return tell(`From ${coordinates(place)}: click the other end.`);
+    const [dx, dy, dz] = ends[1].map((v, k) => v - ends[0][k]), flat = Math.hypot(dx, dy);
+    return tell(`${Math.hypot(flat, dz).toFixed(3)} m: ${flat.toFixed(3)} m on the plan, ${Math.abs(dz).toFixed(3)} m ${dz < 0 ? 'down' : 'up'}, from ${coordinates(ends[0])} to ${coordinates(ends[1])}.`);
+  }
+
+  // What a click at a point in the view does; the point is empty where nothing is.
+  function act(place) {
+    if (mode === 'measure') {
+      if (place) measureTo(place);
+      else tell('There is nothing to measure to here.', true);
+      return;
+    }
+    setMode(null);
+    if (place) send({ do: 'add', to: place });
+    else tell('There is no ground to stand on here.', true);
   }
   let pressed = null;
   view.canvas.addEventListener('pointerdown', (event) => { pressed = event.isPrimary ? [event.clientX, event.clientY] : null; });
   view.canvas.addEventListener('pointerup', (event) => {
-    if (!adding || !pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
-    const place = surfaceAt(event);
-    setAdding(false);
-    if (place) send({ do: 'add', to: place });
-    else tell('There is no ground to stand on here.', true);
+    if (!mode || !pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
+    act(surfaceAt(event));
   });
+  // Coordinates below the pointer; a large site takes a while to ask.
+  let asked = 0;
+  view.canvas.addEventListener('pointermove', (event) => {
+    const now = performance.now();
+    if (event.buttons || now < asked) return;
+    const place = surfaceAt(event), took = performance.now() - now;
+    asked = now + Math.max(50, 4 * took);
+    at('at').hidden = !place;
+    if (place) at('at').textContent = `x ${place[0].toFixed(2)}  y ${place[1].toFixed(2)}  z ${place[2].toFixed(2)}`;
+  });
+  view.canvas.addEventListener('pointerleave', () => { at('at').hidden = true; });
   document.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && adding) setAdding(false);
-    if (event.key === 'Enter' && adding && document.activeElement === view.canvas) {
-      setAdding(false);
-      send({ do: 'add', to: inSurvey(view.controls.target) });
+    if (event.key === 'Escape' && mode) {
+      setMode(null);
+      tell('');
     }
+    if (event.key === 'Enter' && mode && document.activeElement === view.canvas) act(inSurvey(view.controls.target));
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z') {
       event.preventDefault();
       send({ do: event.shiftKey ? 'redo' : 'undo' });
     }
   });
-  at('add').addEventListener('click', () => { setAdding(!adding); if (adding) view.canvas.focus(); });
+  for (const what of ['add', 'measure'])
+    at(what).addEventListener('click', () => {
+      setMode(mode === what ? null : what);
+      if (mode) view.canvas.focus({ preventScroll: true });
+    });
   at('save').addEventListener('click', () => send({ do: state.busy ? 'stop' : 'save' }));
   for (const what of ['undo', 'redo', 'exact', 'improve']) at(what).addEventListener('click', () => send({ do: what }));
   at('show-ground').addEventListener('change', showGround);

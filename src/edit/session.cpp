@@ -2,12 +2,17 @@
 #include "edit/session.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "core/text.hpp"
+#include "placement/nearest_place.hpp"
 #include "report/packed.hpp"
 #include "report/report_json.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -19,6 +24,8 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kMostUndo = 200;
 constexpr std::uint64_t kCellVoxels = 200'000;  // from which cells are made
+// Most stations of which the round and the registration error follow every change; of more, every ray tells them.
+constexpr std::size_t kQuickStations = 100;
 
 std::vector<std::uint8_t> bytes_of(const std::vector<float>& values) {
   const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
@@ -30,6 +37,16 @@ double number_of(const json& value, const char* what) {
   const double number = value.get<double>();
   if (!std::isfinite(number)) throw Error(Errc::invalid_argument, std::string(what) + ": not a finite number");
   return number;
+}
+
+// The user's name of a station, without spaces around it; empty: none.
+std::string checked_name(const std::string& given) {
+  constexpr std::size_t kMost = 60;
+  const auto from = given.find_first_not_of(' '), to = given.find_last_not_of(' ');
+  std::string name = from == std::string::npos ? "" : given.substr(from, to - from + 1);
+  if (name.size() > kMost || std::ranges::any_of(name, [](unsigned char c) { return c < 32 || c == 127; }))
+    throw Error(Errc::invalid_argument, "a name has at most " + std::to_string(kMost) + " bytes on one line");
+  return name;
 }
 
 bool flag_of(const json& request, const char* key) {
@@ -48,6 +65,7 @@ EditSession::EditSession(Site& site, const std::vector<EditStation>& stations, c
       keep_(std::move(keep)),
       save_(std::move(save)),
       cells_(coverage_cells(simulator_, std::max(kCellVoxels, options.voxels), options.cells)),
+      on_site_(site.on_site(options.on_site)),
       stations_(stations),
       surveyed_(simulator_, options.voxels),
       around_(surroundings_, options.link_voxels) {
@@ -55,6 +73,8 @@ EditSession::EditSession(Site& site, const std::vector<EditStation>& stations, c
   site_.area(), site_.clash();
   for (EditStation& station : stations_) station.id = next_id_++;
   measure();
+  if (options_.attainable_voxels > 0 && simulator_.voxel_count() > 0)
+    start("looking at what can be captured", [this](const Progress& progress) { look(progress); });
 }
 
 EditSession::~EditSession() { stop_job_.request_stop(); }
@@ -96,6 +116,7 @@ ordered_json EditSession::state() const {
                        {"locked", std::move(locked)},
                        {"coverage", packed(colours_.coverage)},
                        {"only", packed(colours_.only)},
+                       {"hidden", hidden_.empty() ? ordered_json() : ordered_json(packed(hidden_))},
                        {"sample", evaluation_.exact ? std::uint64_t{0} : surveyed_.sample().size()},
                        {"exact", evaluation_.exact},
                        {"undo", !undo_.empty()},
@@ -124,26 +145,36 @@ void EditSession::change(const json& request) {
   if (what == "save") {
     keep_(stations_);
     return start("saving", [this](const Progress& progress) {
-      trace_exactly(progress, [&](const Evaluation& exact) { save_(exact, progress); });
+      trace_exactly(progress, [&](const Evaluation& exact) { return save_(exact, progress); });
     });
   }
-  bool dragging = false;
+  bool dragging = false, quick = false;
   if (what == "move") {
-    if (flag_of(request, "end")) keep_(stations_);  // the drag so far, in case it ends off the ground
-    PlacedStation ground = on_ground(request.value("to", json()));
+    const bool end = flag_of(request, "end");
+    if (end) keep_(stations_);  // the drag so far, in case it ends off the ground
     EditStation& station = with_id(request);
     if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
+    const std::string& name = names()[static_cast<std::size_t>(&station - stations_.data())];
+    auto ground = put(request.value("to", json()), name, request.contains("end") && !end);
+    if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
     dragging = request.contains("begin") && !flag_of(request, "begin");
     if (!dragging) remember();
-    ground.setup = station.placed.setup;
-    station.placed = ground;
+    ground->setup = station.placed.setup;
+    station.placed = *ground;
+    quick = request.contains("end") && !end;
   } else if (what == "add") {
     if (stations_.size() >= max_stations)
       throw Error(Errc::invalid_argument,
                   "there are " + std::to_string(max_stations) + " stations, the most there may be");
-    const PlacedStation ground = on_ground(request.value("to", json()));
+    const auto ground = put(request.value("to", json()), "the new station", false);
+    if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
+    if (ground->status != StationStatus::ok) {
+      message_.clear();
+      throw Error(Errc::invalid_argument,
+                  "no station may stand here: no place within " + number(nearest_place_reach_m) + " m is free");
+    }
     remember();
-    stations_.push_back({.id = next_id_++, .placed = ground});
+    stations_.push_back({.id = next_id_++, .placed = *ground});
   } else if (what == "remove") {
     EditStation& station = with_id(request);
     if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
@@ -153,6 +184,13 @@ void EditSession::change(const json& request) {
     EditStation& station = with_id(request);
     remember();
     station.locked = flag_of(request, "locked");
+  } else if (what == "rename") {
+    const auto name = request.find("name");
+    if (name == request.end() || !name->is_string()) throw Error(Errc::invalid_argument, "name: a text is wanted");
+    EditStation& station = with_id(request);
+    std::string text = checked_name(*name);
+    remember();
+    station.name = std::move(text);
   } else if (what == "undo") {
     step(undo_, redo_);
   } else if (what == "redo") {
@@ -160,7 +198,10 @@ void EditSession::change(const json& request) {
   } else {
     throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
   }
-  if (what != "lock") measure();
+  if (what == "rename")
+    evaluation_.names = names();
+  else if (what != "lock")
+    measure(quick);
   ++version_;
   if (!dragging || flag_of(request, "end")) keep_(stations_);
 }
@@ -172,13 +213,30 @@ EditStation& EditSession::with_id(const json& request) {
   throw Error(Errc::invalid_argument, "there is no such station any more");
 }
 
-PlacedStation EditSession::on_ground(const json& to) const {
+std::optional<PlacedStation> EditSession::put(const json& to, const std::string& name, bool exactly) {
   if (!to.is_array() || to.size() != 3) throw Error(Errc::invalid_argument, "to: three numbers are wanted");
   const Vec3 at{number_of(to[0], "x"), number_of(to[1], "y"), number_of(to[2], "z")};
-  const auto uv = site_.area().project(at);
-  if (!uv) throw Error(Errc::invalid_argument, "there is no ground to stand on");
-  const double pair[] = {uv->u, uv->v};
-  return place_stations(site_, pair).front();
+  std::optional<PlacedStation> placed;
+  if (const auto uv = site_.area().project(at)) {
+    const double pair[] = {uv->u, uv->v};
+    placed = place_stations(site_, pair).front();
+  }
+  if (exactly || (placed && placed->status == StationStatus::ok)) return placed;
+  const Vec3 head = placed ? placed->position : at + Vec3{0, 0, simulator_.scanner().height_m};
+  const StationMove move{.to = site_.nearest_place(head)};
+  if (!move.to) {
+    if (placed) message_ = name + " " + explain(placed->status) + ": " + move_text(head, move);
+    return placed;
+  }
+  message_ = name + " may not stand there: it was put " + offset_text(head, move.to->position) +
+             " of it, where the nearest free place is";
+  return move.to;
+}
+
+std::vector<std::string> EditSession::names() const {
+  std::vector<std::string> given;
+  for (const EditStation& station : stations_) given.push_back(station.name);
+  return station_names(placed(), given);
 }
 
 std::vector<PlacedStation> EditSession::placed() const {
@@ -202,24 +260,84 @@ void EditSession::step(std::vector<Stations>& from, std::vector<Stations>& to) {
   from.pop_back();
 }
 
-void EditSession::measure() {
+void EditSession::measure(bool quick) {
   std::vector<std::uint32_t> ids;
   for (const EditStation& station : stations_) ids.push_back(station.id);
   const Network all = network();
   surveyed_.follow(all, ids);
   around_.follow(all, ids);
-  static const std::vector<Objective> measures{make_objective("coverage"), make_objective("overlap")};
+  std::vector<Objective> measures{make_objective("coverage"), make_objective("overlap")};
   const auto stations = placed();
-  evaluation_ = evaluation_of({.counts = surveyed_.counts(),
-                               .stations = stations,
-                               .goal_density = simulator_.goal_density(),
-                               .voxels = simulator_.voxel_count(),
-                               .overlap = overlap_matrix(surveyed_.counts())},
-                              measures, std::nullopt);
+  MeasuredNetwork measured{.counts = surveyed_.counts(),
+                           .stations = stations,
+                           .goal_density = simulator_.goal_density(),
+                           .voxels = simulator_.voxel_count(),
+                           .overlap = overlap_matrix(surveyed_.counts())};
+  if (const auto share = captured()) {
+    measured.captured = *share;
+    measures.push_back(make_objective("capture"));
+  }
+  evaluation_ = evaluation_of(measured, measures, std::nullopt);
   evaluation_.scan_overlap_matrix = scan_overlap_matrix(around_.counts());
   evaluation_.link = options_.link;
+  evaluation_.names = names();
   evaluation_.exact = false;  // links come from a sample, even if coverage does not
+  if (!quick) {
+    evaluation_.moves = station_moves(site_.area(), site_.clash(), simulator_.scanner().height_m, stations);
+    if (stations.size() <= kQuickStations && !stations.empty()) {
+      evaluation_.visit = on_site_->visit(stations);
+      if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
+    }
+  }
   colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
+}
+
+// Of the network and the stations as they stand, as `evaluate_stations` has it for the same attainable counts.
+std::optional<Estimate> EditSession::captured() const {
+  if (!attainable_) return std::nullopt;
+  // The voxels of a smaller sample are among those of the larger one.
+  const std::vector<std::uint32_t>& sample = surveyed_.sample();
+  std::vector<std::size_t> at;
+  for (const std::uint32_t voxel : attainable_->voxels())
+    at.push_back(static_cast<std::size_t>(std::ranges::lower_bound(sample, voxel) - sample.begin()));
+  const auto of_sample = [&](std::span<const std::uint32_t> points) {
+    std::vector<std::uint32_t> some;
+    for (const std::size_t k : at) some.push_back(points[k]);
+    return some;
+  };
+  AttainableCounts attainable = *attainable_;
+  for (const auto points : surveyed_.single_points()) attainable.raise(of_sample(points));
+  return attainable.captured(of_sample(surveyed_.points()));
+}
+
+std::optional<Estimate> EditSession::registered(const Network& network) const {
+  if (std::ranges::count(network, true, &Station::active) < 2 || simulator_.voxel_count() == 0) return std::nullopt;
+  const std::uint64_t voxels = std::min(options_.registration_voxels, simulator_.voxel_count());
+  RegistrationOptions options = options_.registration;
+  options.surfaces = RegistrationSurfaces::surveyed;
+  const NetworkCounts counts =
+      simulator_.evaluate_sampled({&network, 1}, {.voxels = voxels, .registration = options.model}).front();
+  const Estimate rms = registration_estimate(counts, simulator_.voxel_count(), options);
+  return Estimate{1000 * rms.value, 1000 * rms.standard_error};
+}
+
+// What can be captured from anywhere. False if stopped.
+bool EditSession::look(const Progress& progress) {
+  const std::uint64_t voxels =
+      std::min<std::uint64_t>(options_.attainable_voxels, surveyed_.sample().size());  // constant after construction
+  const Candidates found = find_candidates(site_, {.sample_voxels = voxels}, progress);
+  if (found.ended() == "cancelled") return false;
+  const AttainableCounts& counts = found.attainable_counts();
+  std::vector<VoxelStatus> status;
+  for (const double count : counts.counts())
+    status.push_back({.why = count > 0 ? WhyMissed::captured : WhyMissed::hidden});
+  const std::scoped_lock lock(mutex_);
+  hidden_ = cell_reasons(cells_, counts.voxels(), status);
+  for (std::uint8_t& reason : hidden_)
+    if (reason != static_cast<std::uint8_t>(WhyMissed::hidden)) reason = 255;
+  attainable_ = counts;
+  measure();
+  return true;
 }
 
 void EditSession::start(const std::string& what, std::function<void(const Progress&)> work) {
@@ -245,11 +363,22 @@ void EditSession::start(const std::string& what, std::function<void(const Progre
   });
 }
 
-void EditSession::trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then) {
+void EditSession::trace_exactly(const Progress& progress, const std::function<std::string(const Evaluation&)>& then) {
   const auto stations = placed();  // stays unchanged while this is busy
   if (std::ranges::none_of(stations, active)) throw Error(Errc::invalid_argument, "there is no station to trace");
-  Evaluation exact = evaluate_stations({.simulator = simulator_, .surroundings = &surroundings_}, stations,
-                                       {.field = true, .link = options_.link}, progress);
+  if (options_.attainable_voxels > 0 && !attainable_ && !look(progress)) return;
+  Evaluation exact = evaluate_stations({.simulator = simulator_,
+                                        .surroundings = &surroundings_,
+                                        .on_site = &*on_site_,
+                                        .clash = &site_.clash(),
+                                        .area = &site_.area()},
+                                       stations,
+                                       {.field = true,
+                                        .registration = options_.registration,
+                                        .attainable = attainable_ ? &*attainable_ : nullptr,
+                                        .link = options_.link,
+                                        .names = names()},
+                                       progress);
   if (exact.counts.cancelled) return;
   std::vector<std::uint32_t> points;
   std::vector<Seer> seen_by;
@@ -263,13 +392,104 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
     evaluation_ = exact, evaluation_.field = {}, colours_ = std::move(colours);
   }
   if (!then) return;
-  then(exact);
+  std::string told = then(exact);
   const std::scoped_lock lock(mutex_);
-  message_ = "saved";
+  message_ = std::move(told);
 }
 
-// Searches briefly from the present stations for more coverage, with links no weaker than now or than required.
+// The part of each of `n` stations, counted from 0, if station m is taken away; 0 for m itself.
+std::vector<std::size_t> parts_without(const StationGraph& graph, std::size_t n, std::size_t m, double link) {
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> part(n, kNone);
+  part[m] = 0;
+  std::size_t parts = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (part[k] != kNone) continue;
+    std::vector<std::size_t> open{k};
+    part[k] = parts;
+    while (!open.empty()) {
+      const std::size_t at = open.back();
+      open.pop_back();
+      for (std::size_t j = 0; j < n; ++j)
+        if (part[j] == kNone && graph.linked(at, j, link)) part[j] = parts, open.push_back(j);
+    }
+    ++parts;
+  }
+  return part;
+}
+
+// Moves one station at a time so that the network falls into fewer parts, until no move of one does. Does not remember.
+// Returns whether any was moved. Links are those of the sample, from places spread evenly over the ground.
+bool EditSession::mend(const Progress& progress) {
+  const auto parts_now = [&] { return connectivity(evaluation_.scan_overlap_matrix, options_.link).parts; };
+  bool moved = false;
+  // A station that is left out is a part of its own.
+  while (stations_.size() > 1 && parts_now() > 1 && !progress.stopped()) {
+    constexpr std::size_t kPlaces = 256;
+    if (places_.empty()) places_ = candidate_positions(site_, kPlaces);
+    std::vector<PlacedStation> all = placed();
+    const std::size_t n = all.size();
+    all.insert(all.end(), places_.begin(), places_.end());
+    const StationGraph graph = overlap_graph(surroundings_, all, options_.link_voxels, progress);
+    struct Move {
+      std::size_t station, place, parts;
+      double away_m;
+    };
+    std::vector<Move> moves;
+    for (std::size_t m = 0; m < n && !progress.stopped(); ++m) {
+      if (stations_[m].locked) continue;
+      const std::vector<std::size_t> part = parts_without(graph, n, m, options_.link);
+      const std::size_t others = 1 + *std::ranges::max_element(part);
+      for (std::size_t p = 0; p < places_.size(); ++p) {
+        std::set<std::size_t> joined;
+        for (std::size_t k = 0; k < n; ++k)
+          if (k != m && graph.linked(n + p, k, options_.link)) joined.insert(part[k]);
+        const std::size_t parts = others - joined.size() + 1;
+        if (parts >= parts_now()) continue;
+        const Vec3 by = places_[p].position - stations_[m].placed.position;
+        moves.push_back({m, p, parts, std::sqrt(dot(by, by))});
+      }
+    }
+    if (progress.stopped()) break;
+    // The fewest parts first, then the shortest move.
+    std::ranges::sort(moves, [](const Move& a, const Move& b) {
+      return std::tuple(a.parts, a.away_m, a.station, a.place) < std::tuple(b.parts, b.away_m, b.station, b.place);
+    });
+    const std::scoped_lock lock(mutex_);
+    const std::size_t parts = parts_now();
+    constexpr std::size_t kTried = 20;  // the noise of a place may undo a link that just holds
+    bool better = false;
+    for (std::size_t k = 0; k < std::min(kTried, moves.size()) && !better; ++k) {
+      EditStation& station = stations_[moves[k].station];
+      const PlacedStation before = station.placed;
+      const StationSetup setup = before.setup;
+      station.placed = places_[moves[k].place];
+      station.placed.setup = setup;
+      measure(true);
+      better = parts_now() < parts;
+      if (!better) station.placed = before;
+    }
+    measure();
+    if (!better) break;
+    moved = true;
+  }
+  return moved;
+}
+
+// Mends links, then searches briefly from the present stations for more coverage, with links no weaker than they are
+// then or than required.
 void EditSession::improve(const Progress& progress) {
+  const Stations first = stations_;
+  if (std::ranges::all_of(stations_, &EditStation::locked))
+    throw Error(Errc::invalid_argument, "all stations are locked");
+  const auto begin = [this](const char* what) {
+    const std::scoped_lock lock(mutex_);
+    busy_ = what, done_ = 0;
+    ++version_;
+  };
+  begin("mending links");
+  const bool mended = mend(progress);
+  begin("improving the others");
   std::vector<Vec3> kept, start;
   std::vector<StationSetup> existing_setups;
   std::set<std::uint32_t> scanners;  // of the movable stations
@@ -280,7 +500,6 @@ void EditSession::improve(const Progress& progress) {
     else
       scanners.insert(s.placed.setup.scanner);
   }
-  if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
   const auto parts_now = [&] { return connectivity(evaluation_.scan_overlap_matrix, options_.link).parts; };
   const std::size_t parts = parts_now();
   const double weakest = connectivity(evaluation_.scan_overlap_matrix, 0).weakest_overlap;
@@ -299,38 +518,48 @@ void EditSession::improve(const Progress& progress) {
                           .start = start,
                           .max_seconds = options_.improve_seconds};
   std::stop_source abort;  // results are measured here, on the sample
+  const auto began = std::chrono::steady_clock::now();
   const auto watch = [&](const PlanProgress& now) {
     if (now.phase == "confirm") abort.request_stop();
-    if (progress.report && now.iterations > 0) progress.report(0);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
+    if (progress.report) progress.report(std::min(1.0, passed.count() / options_.improve_seconds));
   };
   const PlanResult result =
       plan(site_, problem, config, {.report = watch, .stop = progress.stop, .abort = abort.get_token()});
   const std::scoped_lock lock(mutex_);
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
-  const auto nothing_better = [&] {
-    message_ = "nothing better was found in " + std::to_string(static_cast<int>(options_.improve_seconds)) + " s";
-  };
-  if (!best || best->violation > 0 || best->value("coverage") <= before) return nothing_better();
-  const Stations now = stations_;
-  std::size_t next = kept.size();  // existing ones come first
-  for (EditStation& s : stations_) {
-    if (s.locked) continue;
-    PlacedStation placed = best->stations[next++];
-    placed.setup = s.placed.setup;
-    s.placed = placed;
-  }
-  measure();
-  // The search had them upright and, if they have several scanners, with the first one.
-  const bool better = evaluation_.value("coverage") > before && parts_now() <= parts;
-  std::vector<EditStation> found = std::exchange(stations_, now);
-  if (!better) {
+  bool better = best && best->violation == 0 && best->value("coverage") > before;
+  if (better) {
+    const Stations now = stations_;
+    std::size_t next = kept.size();  // existing ones come first
+    for (EditStation& s : stations_) {
+      if (s.locked) continue;
+      PlacedStation placed = best->stations[next++];
+      placed.setup = s.placed.setup;
+      s.placed = placed;
+    }
     measure();
-    return nothing_better();
+    // The search had them upright and, if they have several scanners, with the first one.
+    better = evaluation_.value("coverage") > before && parts_now() <= parts;
+    if (!better) {
+      stations_ = now;
+      measure();
+    }
   }
-  remember();
-  stations_ = std::move(found);
-  keep_(stations_);
-  message_ = "improved";
+  if (better || mended) {
+    undo_.push_back(first), redo_.clear();
+    keep_(stations_);
+  }
+  if (mended) {
+    message_ = parts == 1 ? "all stations are linked now" : "better linked, in " + std::to_string(parts) + " parts";
+    message_ += better ? ", and more is captured" : "";
+  } else if (better) {
+    message_ = "improved";
+  } else {
+    message_ = "nothing better was found in " + std::to_string(static_cast<int>(options_.improve_seconds)) + " s";
+  }
+  if (parts > 1)
+    message_ += "; no single move of a station links the " + std::to_string(parts) + " parts: add one between";
 }
 
 }  // namespace vantage

@@ -7,12 +7,15 @@
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "edit/traced_stations.hpp"
 #include "report/coverage_cells.hpp"
+#include "vantage/attainable.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/site.hpp"
 
@@ -21,7 +24,8 @@ namespace vantage {
 struct EditStation {
   std::uint32_t id = 0;  // unique during the session
   PlacedStation placed;
-  bool locked = false;  // neither moved nor removed, by hand or by search
+  bool locked = false;    // neither moved nor removed, by hand or by search
+  std::string name = {};  // the user's; empty: numbered
 };
 
 struct EditOptions {
@@ -30,6 +34,11 @@ struct EditOptions {
   std::uint64_t link_voxels = 4'000;  // of all surfaces, for scan overlaps until every ray is requested
   std::size_t cells = 20'000;         // of the coloured surface, at most
   double improve_seconds = 10;        // of one short search
+  // Of the sample on which attainable coverage is looked at when the session begins; 0: it is not.
+  std::uint64_t attainable_voxels = CandidateConfig().sample_voxels;
+  std::uint64_t registration_voxels = 20'000;  // of the sample by which the registration error is estimated
+  RegistrationOptions registration = {};
+  OnSiteOptions on_site = {};
 };
 
 // Borrows all arguments. Every call is safe from any thread. Long work runs on a thread of its own, and changes are
@@ -38,8 +47,9 @@ class EditSession {
  public:
   // Called with the present stations after every change; after a drag only once.
   using Keep = std::function<void(const std::vector<EditStation>&)>;
-  // Writes the results of an exact evaluation with its field; called on the session's own thread.
-  using Save = std::function<void(const Evaluation&, const Progress&)>;
+  // Writes the results of an exact evaluation with its field, and returns a sentence that says where; called on the
+  // session's own thread.
+  using Save = std::function<std::string(const Evaluation&, const Progress&)>;
 
   EditSession(Site& site, const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
   ~EditSession();  // stops running work
@@ -48,26 +58,38 @@ class EditSession {
 
   // The constant part: `site_json`, and the ground where stations may stand.
   nlohmann::ordered_json site() const;
-  // version, network (as in a report), ids, locked, colours, busy{what, done}, undo, redo, exact, message.
+  // version, network (as in a report), ids, locked, colours, hidden (cells of which no position captures anything;
+  // null: not known), busy{what, done}, undo, redo, exact, message.
   nlohmann::ordered_json state() const;
   std::uint64_t version() const { return version_; }
 
-  // {"do": …}: "move" {"id", "to": [x, y, z], "begin"} to the ground above or below a point of the survey frame
-  // (`begin` false continues a drag), "add" {"to"}, "remove" {"id"}, "lock" {"id", "locked"}, "undo", "redo", "exact",
-  // "improve", "save", "stop". Throws Error invalid_argument, and changes nothing, if the request is impossible.
+  // {"do": …}: "move" {"id", "to": [x, y, z], "begin", "end"} to the ground above or below a point of the survey frame
+  // (`begin` false continues a drag, `end` true ends it), "add" {"to"}, "remove" {"id"}, "rename" {"id", "name"},
+  // "lock"
+  // {"id", "locked"}, "undo", "redo", "exact", "improve", "save", "stop". A station that is put where none may stand
+  // goes to the nearest place that may hold it, and the message says so. Throws Error invalid_argument, and changes
+  // nothing, if the request is impossible.
   void change(const nlohmann::json& request);
 
  private:
   using Stations = std::vector<EditStation>;
   EditStation& with_id(const nlohmann::json& request);
-  PlacedStation on_ground(const nlohmann::json& to) const;
+  // The station on the ground at `to`, or where it may stand near there; empty if there is no ground. `exactly`: only
+  // the former. Adds a sentence to the message if it is not where it was put.
+  std::optional<PlacedStation> put(const nlohmann::json& to, const std::string& name, bool exactly);
+  std::vector<std::string> names() const;
   Network network() const;
   std::vector<PlacedStation> placed() const;
   void remember();
   void step(std::vector<Stations>& from, std::vector<Stations>& to);
-  void measure();
+  // `quick`: leaves out what takes longer than a drag allows.
+  void measure(bool quick = false);
+  std::optional<Estimate> captured() const;
+  std::optional<Estimate> registered(const Network& network) const;
+  bool look(const Progress& progress);
+  bool mend(const Progress& progress);
   void start(const std::string& what, std::function<void(const Progress&)> work);
-  void trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then);
+  void trace_exactly(const Progress& progress, const std::function<std::string(const Evaluation&)>& then);
   void improve(const Progress& progress);
 
   Site& site_;
@@ -76,6 +98,8 @@ class EditSession {
   const Keep keep_;
   const Save save_;
   CoverageCells cells_;
+  std::optional<OnSite> on_site_;
+  std::vector<PlacedStation> places_;  // where stations are tried that mend links; made when needed
 
   mutable std::mutex mutex_;  // guards all below
   Stations stations_;
@@ -85,6 +109,8 @@ class EditSession {
   TracedStations surveyed_, around_;
   Evaluation evaluation_;
   CellColours colours_;
+  std::optional<AttainableCounts> attainable_;  // empty: not looked at, or stopped
+  std::vector<std::uint8_t> hidden_;            // by cell, as in the report
   std::string busy_, message_;
   double done_ = 0;
   std::stop_source stop_job_;

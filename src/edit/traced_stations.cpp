@@ -37,6 +37,12 @@ void TracedStations::follow(const Network& network, std::span<const std::uint32_
   add_up(network.size());
 }
 
+std::vector<std::span<const std::uint32_t>> TracedStations::single_points() const {
+  std::vector<std::span<const std::uint32_t>> points;
+  for (const Traced& traced : traced_) points.emplace_back(traced.points);
+  return points;
+}
+
 void TracedStations::trace(const Network& network, std::span<const std::uint32_t> ids) {
   std::vector<Network> alone;
   std::vector<Traced> fresh;

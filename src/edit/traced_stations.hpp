@@ -28,6 +28,8 @@ class TracedStations {
     return points_;
   }                                                              // of all stations, one for each voxel of the sample
   const std::vector<Seer>& seen_by() const { return seen_by_; }  // likewise
+  // Points of each active station alone, in no order.
+  std::vector<std::span<const std::uint32_t>> single_points() const;
 
  private:
   struct Traced {

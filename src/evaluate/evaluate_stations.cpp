@@ -4,6 +4,7 @@
 
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
+#include "placement/nearest_place.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
@@ -74,30 +75,37 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
   std::vector<Network> networks;
   for (const auto& one : stations) networks.push_back(to_network(one));
 
+  // Shares of the time: surveyed voxels, then surroundings and what is attainable.
+  const bool counts_around = site.surroundings && options.overlap;
+  const auto share = [&](double from, double to) -> Progress {
+    return {.report = [&progress, from, to](double done) { progress(from + (to - from) * done); },
+            .stop = progress.stop};
+  };
+  const double counted = counts_around || options.attainable ? 0.6 : 1, looked = options.attainable ? 0.8 : 1;
+
   VoxelField field;
   const std::vector<NetworkCounts> counts =
-      count(site.simulator, networks, needs, options, options.field ? &field : nullptr, progress);
+      count(site.simulator, networks, needs, options, options.field ? &field : nullptr, share(0, counted));
   std::vector<NetworkCounts> around;
-  if (site.surroundings && options.overlap && !progress.stopped())
+  if (counts_around && !progress.stopped())
     around = site.surroundings->evaluate_each(
         networks, {.registration = needs.surroundings_registration ? needs.registration : std::nullopt},
-        {.report = {}, .stop = progress.stop});
+        share(counted, looked));
 
   AttainableCounts attainable;
   std::vector<Estimate> captured;
   if (options.attainable) {
     attainable = *options.attainable;
-    const Progress silent{.report = {}, .stop = progress.stop};
+    const Progress raising = share(0.8, 0.95), silent{.report = {}, .stop = progress.stop};
     bool whole = true;
     for (const Network& network : networks)
-      whole = whole && raise_attainable(attainable, site.simulator, network, silent);
+      whole = whole && raise_attainable(attainable, site.simulator, network, networks.size() == 1 ? raising : silent);
     if (whole) captured = captured_shares(site.simulator, attainable, networks, silent);
   }
 
   std::vector<Evaluation> made;
   for (std::size_t k = 0; k < networks.size(); ++k) {
-    const bool has_around = site.surroundings && options.overlap;
-    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled)) ||
+    if (counts[k].cancelled || (counts_around && (around.empty() || around[k].cancelled)) ||
         (options.attainable && captured.empty())) {
       made.push_back({.stations = stations[k]});
       made.back().counts.cancelled = true;
@@ -117,8 +125,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
                              ? visibility_parts([&](const Vec3& a, const Vec3& b) { return site.clash->sees(a, b); },
                                                 site.simulator.scanner().max_range_m, networks[k])
                              : 0,
-        .surroundings = has_around ? &around[k] : nullptr,
-        .surroundings_voxels = has_around ? site.surroundings->voxel_count() : 0,
+        .surroundings = counts_around ? &around[k] : nullptr,
+        .surroundings_voxels = counts_around ? site.surroundings->voxel_count() : 0,
         .minutes_on_site = visit ? visit->minutes : 0};
     if (options.attainable) measured.captured = captured[k];
     std::vector<Target> targets = options.targets;
@@ -132,6 +140,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
     one.names = options.names, one.visit = std::move(visit);
+    if (site.area && site.clash)
+      one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
     if (options.attainable) one.attainable = attainable.coverage();
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);

@@ -15,7 +15,8 @@
 namespace vantage {
 namespace {
 
-constexpr double kHip_m = 1.0;
+// Heights over the ground at which nothing may be in a person's way.
+constexpr double kHip_m = 1.0, kKnee_m = 0.4;
 
 void check(const OnSiteOptions& options) {
   const auto refuse = [](const char* what, double value, const char* wanted) {
@@ -110,9 +111,9 @@ class Round {
 
 struct OnSite::Impl {
   Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans)
-      : options(o), scan_min(std::move(scans)), ways(area.mesh(), [&clash](const Vec3& a, const Vec3& b) {
-          const Vec3 hip{0, 0, kHip_m};
-          return clash.sees(a + hip, b + hip);
+      : options(o), scan_min(std::move(scans)), ways(area.mesh(), [clash](const Vec3& a, const Vec3& b) {
+          const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
+          return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}
   OnSiteOptions options;
   std::vector<double> scan_min;  // by scanner

@@ -19,6 +19,7 @@ constexpr double kMostPlaces = 20'000, kFinest_m = 0.25;
 constexpr double kSameLevel_m = 0.4;
 // A step, and the slope of a stair of 45 degrees.
 constexpr double kStep_m = 0.35, kSteepest = 1.0;
+constexpr double kGap_m = 0.75;  // ground may be missing in a passage for so much
 // Cached stations, some hundred networks' worth.
 constexpr std::size_t kMostKnown = 1'000;
 
@@ -26,24 +27,40 @@ std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
 }
 
+double plan_distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+// Whether a person gets from one place to a neighbouring one as their heights go.
+bool climbs(const Vec3& a, const Vec3& b) { return std::abs(a.z - b.z) <= kStep_m + kSteepest * plan_distance(a, b); }
+
 double plan_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-// Height of a triangle's plane at a point of its plan; empty outside it.
-std::optional<double> height_at(const std::array<Vec3, 3>& t, double x, double y) {
+// The point of a triangle nearest to a point of its plan.
+Vec3 nearest_in_plan(const std::array<Vec3, 3>& t, double x, double y) {
   const double area = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
-  if (area == 0) return std::nullopt;
-  const double b = ((x - t[0].x) * (t[2].y - t[0].y) - (y - t[0].y) * (t[2].x - t[0].x)) / area;
-  const double c = ((t[1].x - t[0].x) * (y - t[0].y) - (t[1].y - t[0].y) * (x - t[0].x)) / area;
-  constexpr double rim = 1e-9;
-  if (b < -rim || c < -rim || b + c > 1 + rim) return std::nullopt;
-  return t[0].z + b * (t[1].z - t[0].z) + c * (t[2].z - t[0].z);
+  if (area != 0) {
+    const double b = ((x - t[0].x) * (t[2].y - t[0].y) - (y - t[0].y) * (t[2].x - t[0].x)) / area;
+    const double c = ((t[1].x - t[0].x) * (y - t[0].y) - (t[1].y - t[0].y) * (x - t[0].x)) / area;
+    if (b >= 0 && c >= 0 && b + c <= 1) return {x, y, t[0].z + b * (t[1].z - t[0].z) + c * (t[2].z - t[0].z)};
+  }
+  Vec3 best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &from = t[k], edge = t[(k + 1) % 3] - from;
+    const double length2 = edge.x * edge.x + edge.y * edge.y;
+    const double share =
+        length2 > 0 ? std::clamp(((x - from.x) * edge.x + (y - from.y) * edge.y) / length2, 0.0, 1.0) : 0;
+    const Vec3 point = from + edge * share;
+    if (const double away = std::hypot(point.x - x, point.y - y); away < least) least = away, best = point;
+  }
+  return best;
 }
 
 // Douglas and Peucker (Algorithms for the Reduction of the Number of Points, 1973), to half a step between places,
-// which takes out the corners that only the grid makes.
-std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spacing) {
+// which takes out the corners that only the grid makes. A corner stays if there is no straight way past it.
+std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spacing,
+                                   const std::function<bool(const Vec3&, const Vec3&)>& sees) {
   std::vector<bool> kept(points.size(), false);
   kept.front() = kept.back() = true;
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
@@ -51,7 +68,7 @@ std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spaci
     const auto [first, last] = open.back();
     open.pop_back();
     const Vec3 line = points[last] - points[first];
-    double farthest = spacing / 2;
+    double farthest = -1;
     std::size_t corner = 0;
     for (std::size_t k = first + 1; k < last; ++k) {
       const Vec3 away = points[k] - points[first];
@@ -59,7 +76,7 @@ std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spaci
       const Vec3 off = away - line * share;
       if (const double metres = std::sqrt(dot(off, off)); metres > farthest) farthest = metres, corner = k;
     }
-    if (corner == 0) continue;
+    if (corner == 0 || (farthest <= spacing / 2 && sees(points[first], points[last]))) continue;
     kept[corner] = true;
     open.emplace_back(first, corner), open.emplace_back(corner, last);
   }
@@ -71,7 +88,7 @@ std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spaci
 
 }  // namespace
 
-Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees) {
+Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&)> sees) : sees_(std::move(sees)) {
   const auto corners = [&](const std::array<std::uint32_t, 3>& t) {
     return std::array<Vec3, 3>{ground.positions[t[0]], ground.positions[t[1]], ground.positions[t[2]]};
   };
@@ -82,23 +99,32 @@ Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const
   }
   spacing_ = std::max(kFinest_m, std::sqrt(area / kMostPlaces));
 
+  // Each cell of the grid that ground lies in has a place, the ground's nearest point to its middle: ground in a
+  // doorway is narrower than a cell.
   std::vector<std::pair<std::int64_t, std::int64_t>> cell_of;
+  std::vector<double> off;  // distance of each place from the middle of its cell
   for (const auto& t : ground.triangles) {
     const auto triangle = corners(t);
     const auto [low_x, high_x] = std::minmax({triangle[0].x, triangle[1].x, triangle[2].x});
     const auto [low_y, high_y] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
-    for (auto i = static_cast<std::int64_t>(std::ceil(low_x / spacing_)); i * spacing_ <= high_x; ++i) {
-      for (auto j = static_cast<std::int64_t>(std::ceil(low_y / spacing_)); j * spacing_ <= high_y; ++j) {
+    const auto cell = [&](double v) { return static_cast<std::int64_t>(std::lround(v / spacing_)); };
+    for (std::int64_t i = cell(low_x); i <= cell(high_x); ++i) {
+      for (std::int64_t j = cell(low_y); j <= cell(high_y); ++j) {
         const double x = static_cast<double>(i) * spacing_, y = static_cast<double>(j) * spacing_;
-        const auto z = height_at(triangle, x, y);
-        if (!z) continue;
+        const Vec3 point = nearest_in_plan(triangle, x, y);
+        if (std::abs(point.x - x) > spacing_ / 2 || std::abs(point.y - y) > spacing_ / 2) continue;
+        const double away = std::hypot(point.x - x, point.y - y);
         auto& levels = cells_[cell_key(i, j)];
-        const bool known = std::ranges::any_of(
-            levels, [&](std::uint32_t place) { return std::abs(places_[place].z - *z) < kSameLevel_m; });
-        if (known) continue;
+        const auto known = std::ranges::find_if(
+            levels, [&](std::uint32_t place) { return std::abs(places_[place].z - point.z) < kSameLevel_m; });
+        if (known != levels.end()) {
+          if (away < off[*known]) places_[*known] = point, off[*known] = away;
+          continue;
+        }
         levels.push_back(static_cast<std::uint32_t>(places_.size()));
-        places_.push_back({x, y, *z});
+        places_.push_back(point);
         cell_of.emplace_back(i, j);
+        off.push_back(away);
       }
     }
   }
@@ -107,11 +133,10 @@ Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const
     const auto [i, j] = cell_of[from];
     const auto found = cells_.find(cell_key(i + di, j + dj));
     if (found == cells_.end()) return std::nullopt;
-    const double flat = spacing_ * std::hypot(static_cast<double>(di), static_cast<double>(dj));
     std::optional<std::uint32_t> best;
     for (const std::uint32_t to : found->second) {
+      if (!climbs(places_[from], places_[to])) continue;
       const double rise = std::abs(places_[to].z - places_[from].z);
-      if (rise > kStep_m + kSteepest * flat) continue;
       if (!best || rise < std::abs(places_[*best].z - places_[from].z)) best = to;
     }
     return best;
@@ -122,7 +147,7 @@ Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const
     const auto from = static_cast<std::uint32_t>(k);
     for (std::size_t d = 0; d < half.size(); ++d) {
       const auto to = step_to(from, half[d].first, half[d].second);
-      if (to && sees(places_[from], places_[*to])) ahead[k][d] = to;
+      if (to && sees_(places_[from], places_[*to])) ahead[k][d] = to;
     }
   });
   links_.resize(places_.size());
@@ -145,19 +170,55 @@ Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const
       const auto straight = step_to(k, si, sj), slanted = step_to(k, 1, dj > 0 ? 1 : -1);
       if (!straight || !slanted || !linked(k, *straight) || !linked(k, *slanted)) continue;
       const auto to = step_to(*straight, di - si, dj - sj);
-      if (to && linked(*straight, *to) && linked(*slanted, *to)) knights.emplace_back(k, *to);
+      if (to && linked(*straight, *to) && linked(*slanted, *to) && sees_(places_[k], places_[*to]))
+        knights.emplace_back(k, *to);
     }
   }
   for (const auto& [a, b] : knights)
     if (!linked(a, b)) link(a, b);
+  for (const auto& [a, b] : gaps(cell_of)) link(a, b);
+}
+
+// Pairs of places across a short gap in the ground: a doorway too narrow to stand in is walked through.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> Ways::gaps(
+    const std::vector<std::pair<std::int64_t, std::int64_t>>& cell_of) const {
+  const auto reach = static_cast<std::int64_t>(std::floor(kGap_m / spacing_));
+  std::vector<std::vector<std::uint32_t>> across(places_.size());
+  tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t k) {
+    constexpr std::size_t kAround = 8;  // neighbours of a place in the middle of the ground
+    if (reach < 2 || links_[k].size() >= kAround) return;
+    const auto from = static_cast<std::uint32_t>(k);
+    // Places that are near on foot, too.
+    std::vector<std::uint32_t> near{from};
+    std::size_t ring = 0;
+    for (std::int64_t steps = 0; steps <= reach; ++steps)
+      for (const std::size_t end = near.size(); ring < end; ++ring)
+        for (const Link& l : links_[near[ring]])
+          if (std::ranges::find(near, l.to) == near.end()) near.push_back(l.to);
+    std::ranges::sort(near);
+    const auto [i, j] = cell_of[k];
+    for (std::int64_t di = -reach; di <= reach; ++di)
+      for (std::int64_t dj = -reach; dj <= reach; ++dj) {
+        const auto found = cells_.find(cell_key(i + di, j + dj));
+        if (found == cells_.end()) continue;
+        for (const std::uint32_t to : found->second) {
+          if (to <= from || std::ranges::binary_search(near, to) || !climbs(places_[from], places_[to])) continue;
+          if (plan_distance(places_[from], places_[to]) <= kGap_m && sees_(places_[from], places_[to]))
+            across[k].push_back(to);
+        }
+      }
+  });
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t k = 0; k < across.size(); ++k)
+    for (const std::uint32_t to : across[k]) pairs.emplace_back(k, to);
+  return pairs;
 }
 
 std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
   const auto i = static_cast<std::int64_t>(std::lround(ground.x / spacing_)),
              j = static_cast<std::int64_t>(std::lround(ground.y / spacing_));
   constexpr std::int64_t reach = 3;
-  std::optional<std::uint32_t> best;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, std::uint32_t>> near;
   for (std::int64_t di = -reach; di <= reach; ++di) {
     for (std::int64_t dj = -reach; dj <= reach; ++dj) {
       const auto found = cells_.find(cell_key(i + di, j + dj));
@@ -166,12 +227,15 @@ std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
         const Vec3 away = places_[place] - ground;
         if (std::abs(away.z) > kStep_m + kSteepest * spacing_ * 2 * reach) continue;
         // Another level counts as further than it looks.
-        const double distance = std::hypot(away.x, away.y) + 4 * std::abs(away.z);
-        if (distance < least) least = distance, best = place;
+        near.emplace_back(std::hypot(away.x, away.y) + 4 * std::abs(away.z), place);
       }
     }
   }
-  return best;
+  if (near.empty()) return std::nullopt;
+  std::ranges::sort(near);
+  // Not one behind a wall, if there is another.
+  const auto seen = std::ranges::find_if(near, [&](const auto& one) { return sees_(ground, places_[one.second]); });
+  return (seen == near.end() ? near.front() : *seen).second;
 }
 
 std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t place) const {
@@ -231,7 +295,7 @@ std::vector<Vec3> Ways::path(const Vec3& from, const Vec3& to) const {
     }
   }
   points.push_back(to);
-  return without_straight(points, spacing_);
+  return without_straight(points, spacing_, sees_);
 }
 
 }  // namespace vantage

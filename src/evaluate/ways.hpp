@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "vantage/placement.hpp"
@@ -16,8 +17,8 @@ namespace vantage {
 
 class Ways {
  public:
-  // `sees`: whether a person can go straight from one ground point to the other.
-  Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees);
+  // `sees`: whether a person can go straight from one ground point to the other. It is kept.
+  Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&)> sees);
 
   // Metres along the graph; empty if it does not connect them, or has no place near one of them.
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
@@ -35,6 +36,10 @@ class Ways {
   std::optional<std::uint32_t> nearest(const Vec3& ground) const;
   std::shared_ptr<const std::vector<float>> distances_from(std::uint32_t place) const;
 
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> gaps(
+      const std::vector<std::pair<std::int64_t, std::int64_t>>& cell_of) const;
+
+  std::function<bool(const Vec3&, const Vec3&)> sees_;
   double spacing_ = 1;
   std::vector<Vec3> places_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;

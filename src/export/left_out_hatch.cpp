@@ -13,22 +13,24 @@ constexpr double kHidden_m = 0.3;                 // ground lower than this belo
 }  // namespace
 
 bool hatch_left_out(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z,
-                    std::span<const LeftOut> left_out, const PlanLevel* level) {
+                    std::span<const LeftOut> left_out, const PlanLevel* level, const SearchMesh& ground) {
   const MapWindow& window = heights.window;
   std::vector<std::uint8_t> shows(pixels.size(), 0);
-  for (const LeftOut& part : left_out) {
-    for (const auto& t : part.triangles) {
+  const auto mark = [&](const auto& mesh, std::uint8_t as) {
+    for (const auto& t : mesh.triangles) {
       std::array<MapPoint, 3> c;
-      for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(part.positions[t[k]]);
-      const double middle = (part.positions[t[0]].z + part.positions[t[1]].z + part.positions[t[2]].z) / 3;
+      for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
+      const double middle = (mesh.positions[t[0]].z + mesh.positions[t[1]].z + mesh.positions[t[2]].z) / 3;
       if (level && !level->holds(middle)) continue;
       for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
         double z = -origin_z;
-        for (std::size_t k = 0; k < 3; ++k) z += weights[k] * part.positions[t[k]].z;
-        if (std::abs(double{heights.z[pixel]} - z) <= kHidden_m) shows[pixel] = 1;
+        for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+        if (std::abs(double{heights.z[pixel]} - z) <= kHidden_m) shows[pixel] = as;
       });
     }
-  }
+  };
+  for (const LeftOut& part : left_out) mark(part, 1);
+  mark(ground, 0);
   bool any = false;
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     if (!shows[k]) continue;

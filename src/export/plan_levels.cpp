@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "export/buildings.hpp"
 #include "export/covered_floor.hpp"
 #include "export/relief.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kStep = 0.25;        // metres between heights that are told ap
 constexpr double kReach = 2 * kStep;  // a floor's ground may lie so much lower than its middle
 
 constexpr double kCutHeight = 1.2, kCutShare = 1.2 / 1.85;
-constexpr double kRoofed = 0.1;  // share of stations under a roof from which on a site is cut
+constexpr double kRoofed = 0.1;  // share of stations under a roof, in no building, from which on a site is cut
 
 // Heights of the ground under the centre of each cell of a map, lowest first.
 struct GroundHeights {
@@ -94,8 +95,16 @@ std::optional<double> roofed_floor(const Scene& scene, const SearchMesh& mesh,
     if (under[k]) roofed.push_back(stations[k].ground.z);
   }
   if (placed > 0) {
-    if (static_cast<double>(roofed.size()) < kRoofed * static_cast<double>(placed) || roofed.empty())
-      return std::nullopt;
+    if (roofed.empty()) return std::nullopt;
+    if (static_cast<double>(roofed.size()) >= kRoofed * static_cast<double>(placed))
+      return middle_of(std::move(roofed), 0);
+    // A few in a house on a large lawn are not to be drawn on its roof.
+    const BuildingMap buildings = buildings_of(scene, mesh);
+    roofed.clear();
+    for (std::size_t k = 0; k < stations.size(); ++k)
+      if (under[k] && stations[k].status != StationStatus::hole && buildings.at(stations[k].ground) > 0)
+        roofed.push_back(stations[k].ground.z);
+    if (roofed.empty()) return std::nullopt;
     return middle_of(std::move(roofed), 0);
   }
   Box box;

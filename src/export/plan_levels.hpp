@@ -33,7 +33,7 @@ std::vector<PlanLevel> plan_levels(const SearchMesh& mesh, std::span<const Place
 // The same, with the heights at which they are cut: 1.2 m above the floor, between window sills and lintels, under a
 // scanner at 1.85 m; heads at other heights, as in models of unusual size, move it in proportion. Several levels are
 // all cut. A single one is cut above the ground of the stations under a roof, if a tenth of its stations or more stand
-// under one; where there is no station, if most of its ground lies under something.
+// under one, or one stands in a building; where there is no station, if most of its ground lies under something.
 std::vector<PlanLevel> cut_levels(const Scene& scene, const SearchMesh& mesh, std::span<const PlacedStation> stations);
 
 // Of each station, whether something of the scene hangs over its head.

@@ -282,7 +282,7 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
   const HeightBuffer heights = look_from_above(data, window, level.cut.value_or(kEverything), cuts);
   SiteMap map{.pixels = shade(data, heights)};
   tint_search_area(map.pixels, heights, data.origin.z, mesh);
-  map.left_out = hatch_left_out(map.pixels, heights, data.origin.z, area.left_out(), &level);
+  map.left_out = hatch_left_out(map.pixels, heights, data.origin.z, area.left_out(), &level, mesh);
   if (paper > 0)
     for (std::uint32_t& pixel : map.pixels)
       if (pixel != 0) pixel = laid_over(pixel, {1, 1, 1}, paper);

@@ -205,6 +205,19 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
   return run_parameters(simulator, result).dump(2);
 }
 
+ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations) {
+  ordered_json parts = ordered_json::array(), closed = parts;
+  for (const FloorPart& part : floor_parts(scene, area, stations))
+    parts.push_back({{"kind", to_string(part.kind)},
+                     {"name", part.name},
+                     {"area_m2", part.area_m2},
+                     {"place", to_json(part.place)},
+                     {"stations", part.stations}});
+  for (const NotEntered& part : area.not_entered())
+    closed.push_back({{"area_m2", part.area_m2}, {"place", to_json(part.place)}});
+  return {{"parts", std::move(parts)}, {"closed", std::move(closed)}};
+}
+
 std::string evaluation_json(const Evaluation& evaluation) {
   ordered_json json = {{"summary", to_json(summary_lines(evaluation))},
                        {"coverage", evaluation.value("coverage")},
@@ -256,6 +269,8 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["met"] = met(result);
     json["what_would_help"] = what_would_help(result);
     json["summary"] = to_json(summary_lines(result));
+    if (result.scene && result.area)
+      json["floor"] = floor_json(*result.scene, *result.area, result.front[chosen].stations);
   }
   if (result.candidates) {
     const Estimate attainable = result.attainable.value_or(result.candidates->attainable());

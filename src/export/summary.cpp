@@ -10,11 +10,14 @@
 namespace vantage {
 namespace {
 
-// "S1, S2 and S5"
+// "S1, S2 and S5"; of many stations the first ones and how many more.
 std::string listed(const std::vector<std::size_t>& stations, const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 30;
+  const std::size_t named = stations.size() <= kNamed ? stations.size() : kNamed - 1;
   std::string text;
-  for (std::size_t k = 0; k < stations.size(); ++k)
+  for (std::size_t k = 0; k < named; ++k)
     text += (k == 0 ? "" : k + 1 == stations.size() ? " and " : ", ") + names[stations[k]];
+  if (named < stations.size()) text += " and " + std::to_string(stations.size() - named) + " more";
   return text;
 }
 
@@ -51,14 +54,17 @@ std::string links_text(const StationLinks& links, const std::vector<std::string>
               fixed(links.weakest_value, 3);
     return text;
   }
+  constexpr std::size_t kParts = 6;  // that are named
   std::vector<std::size_t> alone;
   std::string together;
+  std::size_t told = 0;
   for (const auto& part : links.parts) {
     if (part.size() == 1)
       alone.push_back(part.front());
-    else
+    else if (++told <= kParts)
       together += (together.empty() ? ": " : "; ") + listed(part, names);
   }
+  if (told > kParts) together += "; " + std::to_string(told - kParts) + " more of several stations";
   std::string text = "no: in " + std::to_string(links.parts.size()) + " parts," + by + together;
   if (!alone.empty())
     text +=
@@ -112,8 +118,9 @@ std::vector<std::string> stations_advice(const Evaluation& evaluation, const std
   for (std::size_t k = 0; k < names.size(); ++k) {
     const PlacedStation& station = evaluation.stations[k];
     if (station.status == StationStatus::ok) continue;
-    advice.push_back(names[k] + " " + explain(station.status) + (active(station) ? "" : ", and is left out") +
-                     ": move it");
+    const auto move = std::ranges::find(evaluation.moves, k, &StationMove::station);
+    advice.push_back(names[k] + " " + explain(station.status) + (active(station) ? "" : ", and is left out") + ": " +
+                     (move == evaluation.moves.end() ? "move it" : move_text(station.position, *move)));
   }
   return advice;
 }
@@ -149,21 +156,66 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   return lines;
 }
 
-std::vector<SummaryLine> ground_lines(const SearchArea& area) {
+namespace {
+
+// "storey 3 (z = 6.40 m): 480 m² of floor, no station"
+void add_empty_floor(std::vector<SummaryLine>& lines, const std::vector<FloorPart>& parts) {
+  constexpr std::size_t kNamed = 6;
+  for (const FloorPart::Kind kind : {FloorPart::Kind::storey, FloorPart::Kind::building, FloorPart::Kind::room}) {
+    std::vector<const FloorPart*> empty;
+    std::size_t all = 0;
+    for (const FloorPart& part : parts) {
+      all += part.kind == kind;
+      if (part.kind == kind && part.stations == 0) empty.push_back(&part);
+    }
+    if (empty.empty()) continue;
+    std::string text =
+        std::to_string(empty.size()) + " of " + std::to_string(all) + " " + to_string(kind) + "s without a station: ";
+    if (kind == FloorPart::Kind::room)
+      std::ranges::stable_sort(empty, std::ranges::greater{}, [](const FloorPart* part) { return part->area_m2; });
+    for (std::size_t k = 0; k < std::min(kNamed, empty.size()); ++k) {
+      const FloorPart& part = *empty[k];
+      const std::string at = kind == FloorPart::Kind::building ? fixed(part.place.x, 1) + "," + fixed(part.place.y, 1)
+                                                               : "z = " + fixed(part.place.z, 2) + " m";
+      text += (k > 0 ? "; " : "") + part.name + " (" + at + ")" +
+              (part.area_m2 > 0 ? ", " + fixed(part.area_m2, part.area_m2 < 10 ? 1 : 0) + " m² of floor"
+                                : ", none of its floor is reached");
+    }
+    if (empty.size() > kNamed) text += "; and " + std::to_string(empty.size() - kNamed) + " more";
+    lines.push_back({"no station", std::move(text)});
+  }
+}
+
+}  // namespace
+
+std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
+                                      std::span<const PlacedStation> stations) {
   constexpr std::size_t kMost = 5;
   std::vector<SummaryLine> lines;
   if (area.on_plane()) lines.push_back({"ground", "none in the model: the stations stand on " + area.description()});
+  if (std::ranges::any_of(stations, active)) add_empty_floor(lines, floor_parts(scene, area, stations));
   const auto place = [](const Vec3& p) { return fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2); };
   std::string entries;
   for (const Vec3& entry : area.entries()) entries += "enter " + place(entry) + " and ";
   double rest = 0;
   const std::span<const NotEntered> parts = area.not_entered();
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (k >= kMost)
-      rest += parts[k].area_m2;
-    else
-      lines.push_back({"closed", fixed(parts[k].area_m2, 1) + " m² of floor that nothing leads to; plan it too with " +
-                                     entries + "enter " + place(parts[k].place)});
+    const NotEntered& part = parts[k];
+    if (k >= kMost) {
+      rest += part.area_m2;
+      continue;
+    }
+    const auto room = std::ranges::find_if(scene.rooms(), [&](const Room& one) {
+      constexpr double kSkin_m = 0.3;  // a box may begin above its floor
+      const Box& box = one.box;
+      const Vec3& p = part.place;
+      return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
+             p.z >= box.min.z - kSkin_m && p.z < box.max.z;
+    });
+    lines.push_back({"closed", fixed(part.area_m2, 1) + " m² of floor at z = " + fixed(part.place.z, 2) + " m" +
+                                   (room == scene.rooms().end() ? "" : " (" + room->name + ")") +
+                                   " that nothing leads to: not reached; plan it too with " + entries + "enter " +
+                                   place(part.place)});
   }
   if (rest > 0)
     lines.push_back(
@@ -174,14 +226,13 @@ std::vector<SummaryLine> ground_lines(const SearchArea& area) {
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
   for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
-  if (!result.area) return lines;
-  for (SummaryLine& line : ground_lines(*result.area))
+  if (!result.area || !result.scene) return lines;
+  for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))
     lines.insert(line.heading == "ground" ? lines.begin() : lines.end(), std::move(line));
   return lines;
 }
 
-namespace {
-std::string as_text(const std::vector<SummaryLine>& lines) {
+std::string lines_text(std::span<const SummaryLine> lines) {
   std::string text, last;
   for (const SummaryLine& line : lines) {
     std::string heading = line.heading == last ? "" : line.heading;
@@ -191,12 +242,11 @@ std::string as_text(const std::vector<SummaryLine>& lines) {
   }
   return text;
 }
-}  // namespace
 
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements) {
-  return as_text(summary_lines(evaluation, requirements));
+  return lines_text(summary_lines(evaluation, requirements));
 }
-std::string summary_text(const PlanResult& result) { return as_text(summary_lines(result)); }
+std::string summary_text(const PlanResult& result) { return lines_text(summary_lines(result)); }
 
 std::string trade_off_text(const PlanResult& result) {
   const std::vector<TradeOffPoint>& points = result.trade_off;

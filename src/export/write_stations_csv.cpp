@@ -7,9 +7,9 @@
 
 namespace vantage {
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
-                        std::span<const Scanner> scanners) {
+                        std::span<const Scanner> scanners, std::span<const std::string> given) {
   const bool setups = tells_setups(stations);
-  const auto names = station_names(stations);
+  const auto names = station_names(stations, given);
   std::string text = "station";
   for (const char* column : kStationColumns) text += "," + std::string(column);
   if (setups)

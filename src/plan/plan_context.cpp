@@ -90,6 +90,7 @@ PlanResult PlanContext::result(const SearchOutcome& found) {
   PlanResult result;
   result.problem = problem_, result.config = config_;
   result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);
+  result.scene = site_.scene();
   result.area = site_.area();
   result.walkable = site_.area().options(), result.security = site_.clash().volume();
   result.scanners.assign(simulator_.scanners().begin(), simulator_.scanners().end());

@@ -47,6 +47,11 @@ function figures(holder, network) {
     tiles.push(network.parts === 1
       ? tile('Connected', 'Yes', used === 1 ? 'one station' : `all stations, by ${network.link_measure} of ${network.least_link} and more`)
       : tile('Connected', 'No', `in ${network.parts} parts that share no link`, true));
+  const registered = network.values.registration;
+  if (registered)
+    tiles.push(registered.value === null
+      ? tile('Registered', 'Not known', 'surfaces do not hold the scans together', true)
+      : tile('Registered', `${registered.value.toFixed(2)} mm`, `${!network.confirmed && registered.error > 0 ? `± ${registered.error.toFixed(2)} mm, ` : ''}predicted error of the scans`));
   if (network.seconds_on_site !== null) tiles.push(tile('On site', duration(network.seconds_on_site), 'with setting up and walking'));
   holder.replaceChildren(...tiles);
 }

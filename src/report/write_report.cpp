@@ -7,7 +7,7 @@ namespace vantage {
 namespace {
 
 void write(const std::filesystem::path& file, Report report, Site& site, const Progress& progress) {
-  report.ground = ground_lines(site.area());
+  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
   if (file.extension() == ".pdf") return write_report_pdf(file, report, site);
   if (file.extension() != ".html")
     throw Error(Errc::invalid_argument, "report: " + file.string() + " ends with neither .html nor .pdf");

@@ -11,6 +11,7 @@
 #include "core/read_json.hpp"
 #include "core/setting_list.hpp"
 #include "placement/ground_weights.hpp"
+#include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
@@ -382,6 +383,10 @@ PlacedHead Site::place_head(const Vec3& head, std::optional<Uv> uv) {
   return vantage::place_head(has_area() ? &area() : nullptr, clash(), scanner().height_m, head, uv);
 }
 
+std::optional<PlacedStation> Site::nearest_place(const Vec3& head, double reach_m) {
+  return vantage::nearest_place(area(), clash(), scanner().height_m, head, reach_m);
+}
+
 OnSite Site::on_site(OnSiteOptions options) {
   if (!options.entrance && !walkable().enter.empty()) options.entrance = walkable().enter.front();
   return {area(), clash(), scanners(), options};
@@ -394,7 +399,8 @@ Evaluation Site::evaluate(std::span<const PlacedStation> stations, const Evaluat
   return evaluate_stations({.simulator = simulator(),
                             .surroundings = options.overlap ? &surroundings() : nullptr,
                             .on_site = walk ? &*walk : nullptr,
-                            .clash = &clash()},
+                            .clash = &clash(),
+                            .area = has_area() ? &area() : nullptr},
                            stations, options, progress);
 }
 

@@ -21,7 +21,10 @@ async function startAs(environment, ...args) {
   editor.stderr.on('data', (text) => { log += text; });
   process.on('exit', () => editor.kill('SIGKILL'));
   const [line] = await Promise.race([once(editor.stdout, 'data'), once(editor, 'exit').then(() => assert.fail(log))]);
-  return { editor, url: line.toString().trim() };
+  const url = line.toString().trim();
+  // What can be captured is looked at first.
+  while (JSON.parse((await ask(`${url}state`)).text).busy) await new Promise((done) => { setTimeout(done, 100); });
+  return { editor, url };
 }
 async function stop(editor) {
   const ended = once(editor, 'exit');
@@ -118,14 +121,20 @@ const settled = async (tab) => {
   }
 };
 const rows = async () => (await page.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
-const coverage = async () => (await page.locator('#figures dd small').first().innerText()).match(/[\d.]+/)[0];
+const coverageOf = async (tab) => (await tab.locator('#figures dd small').first().innerText()).match(/coverage ([\d.]+)/)[1];
+const coverage = () => coverageOf(page);
+const tile = async (name) => (await page.locator(`#figures div:has(dt:text-is("${name}")) dd`).innerText()).split('\n')[0];
 
 // The same stations give the same numbers on the command line.
 async function checkNumbers(how) {
   fs.writeFileSync(at('now.csv'), ['x,y,z,u,v,heading,tilt,scanner,step', ...JSON.parse(read('edited/edit.json')).stations.map(
     (s) => [...s.position, ...s.uv, s.heading ?? '', s.tilt ?? '', s.scanner ?? '', s.step ?? ''].join())].join('\n'));
-  const said = JSON.parse(vantage('evaluate', 'walls.glb', ...coarse, ...how, '--stations', 'now.csv', '--json'));
+  const said = JSON.parse(vantage('evaluate', 'walls.glb', ...coarse, ...how, '--attainable', '--registration', '--stations', 'now.csv', '--json'));
   assert.equal(await coverage(), said.coverage.toFixed(4));
+  // One scanner has noise, which is another where a station is traced alone.
+  assert.ok(Math.abs(parseFloat(await tile('Captured')) - 100 * said.captured) < 0.3, `${await tile('Captured')} of ${said.captured}`);
+  assert.match(await tile('Registered'), /^\d+\.\d\d mm$/);
+  assert.equal(await tile('On site'), `${Math.round(said.minutes_on_site)} min`);
   assert.deepEqual([said.stations[1].scanner, said.stations[1].step, said.stations[1].tilt], ['Leica RTC360 @6mm', 0.7, 80]);
   (await rows()).forEach((row, k) => assert.deepEqual(row.slice(1, 4), said.stations[k].position.map((v) => v.toFixed(3))));
 }
@@ -168,6 +177,39 @@ const spots = await Promise.all([0, 1].map((k) => page.locator('.label').nth(k).
 await changed(() => page.mouse.click((spots[0].x + spots[1].x) / 2 + 20, (spots[0].y + spots[1].y) / 2 + 20));
 assert.equal((await rows()).length, 3);
 await checkNumbers(['--sample', '2000']);
+
+// A station is renamed by F2, and undo takes that back, too.
+const names = async () => (await rows()).map((row) => row[0]);
+const numbered = await names();
+await page.locator('.label').nth(2).focus();
+await page.keyboard.press('F2');
+await page.keyboard.type('By the gate');
+await changed(() => page.keyboard.press('Enter'));
+assert.deepEqual((await names()).filter((name) => !numbered.includes(name)), ['By the gate']);
+assert.equal(JSON.parse(read('edited/edit.json')).stations[2].name, 'By the gate');
+await changed(() => page.keyboard.press('Control+z'));
+assert.deepEqual(await names(), numbered);
+
+// Coordinates below the pointer, and a distance between two points: that of two stations' grounds, 6 m apart.
+await page.locator('#above').click();
+await page.waitForTimeout(300);
+await page.locator('#measure').click();
+const view = await page.locator('#canvas canvas').boundingBox();
+await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2);
+await page.waitForFunction(() => /^x -?\d+\.\d\d  y -?\d+\.\d\d  z -?\d+\.\d\d$/.test(document.getElementById('at').textContent));
+const point = async (dx) => {
+  await page.waitForTimeout(120);
+  await page.mouse.move(view.x + view.width / 2 + dx, view.y + view.height / 2);
+  await page.waitForTimeout(400);
+  const place = (await page.locator('#at').innerText()).match(/-?\d+\.\d+/g).map(Number);
+  await page.mouse.click(view.x + view.width / 2 + dx, view.y + view.height / 2);
+  return place;
+};
+const [here, there] = [await point(-60), await point(60)];
+const told = (await page.locator('#status').innerText()).match(/[\d.]+/g).map(Number);
+assert.ok(Math.abs(told[0] - Math.hypot(...here.map((v, k) => v - there[k]))) < 0.03, `${told[0]} m from ${here} to ${there}`);
+await page.keyboard.press('Escape');
+assert.equal((await rows()).length, 3, 'measuring adds no station');
 
 // A second tab shows what the first one does.
 const second = await watchedPage(browser, { width: 390, height: 844 });
@@ -231,7 +273,8 @@ await changed(() => page.locator('#exact').click());
 await page.waitForFunction(() => document.querySelector('#figures dd small').textContent.includes('every ray'));
 await checkNumbers(['--exact']);
 await page.locator('#save').click();
-await page.waitForFunction(() => document.getElementById('status').textContent === 'Saved', null, { timeout: 120000 });
+await page.waitForFunction(() => document.getElementById('status').textContent.startsWith('Saved in /'), null, { timeout: 120000 });
+assert.ok((await page.locator('#status').innerText()).includes(`${fs.realpathSync(at('edited'))}: stations.csv, report.html, report.pdf`));
 for (const file of ['stations.csv', 'report.html', 'report.pdf']) assert.ok(fs.existsSync(at(`edited/${file}`)), file);
 const heads = await rows(), exactly = await coverage();
 const saved = JSON.parse(vantage('evaluate', 'walls.glb', ...coarse, '--exact', '--stations', 'edited/stations.csv', '--json'));
@@ -253,9 +296,21 @@ assert.deepEqual(texts.map((row) => row.slice(0, 5)), heads.map((row) => row.sli
 assert.equal(await again.locator('.label.locked').count(), 1);
 await again.locator('#exact').click();
 await again.waitForFunction(() => document.querySelector('#figures dd small').textContent.includes('every ray'));
-assert.equal((await again.locator('#figures dd small').first().innerText()).match(/[\d.]+/)[0], exactly, 'with the scanners it had');
+assert.equal(await coverageOf(again), exactly, 'with the scanners it had');
 if (process.env.VANTAGE_SCREENSHOTS) await again.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit.png` });
 assert.deepEqual(again.troubles, []);
+
+// On a small phone the tools and the whole view are in the first screen, and nothing is wider than it.
+const small = await watchedPage(browser, { width: 360, height: 640 }, { hasTouch: true, isMobile: true });
+await small.goto(url);
+await small.waitForSelector('html[data-ready]');
+const shown = await small.locator('#canvas').boundingBox();
+assert.ok(shown.y + shown.height <= 640 && shown.height >= 300, `the view is at ${shown.y}, ${shown.height} high`);
+assert.ok((await small.locator('#add').boundingBox()).y < shown.y);
+assert.equal(await small.evaluate(() => document.documentElement.scrollWidth), 360);
+if (process.env.VANTAGE_SCREENSHOTS) await small.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit-phone.png` });
+assert.deepEqual(small.troubles, []);
+await small.close();
 await stop(editor);  // with the tab still open
 
 // The desktop's browser is given a page of this user's own, which leads to the editor: the token is in no program's arguments, where

@@ -5,6 +5,7 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy as np
 import vantage
 from sites import FOUR_WALLS, SOURCE, program, program_json
 
@@ -93,6 +94,25 @@ class Sites(unittest.TestCase):
         self.assertEqual(len(site.scanners), 1)
         for choice in site.choices:
             self.assertTrue(choice.setting and choice.value and choice.why, repr(choice))
+
+    def test_the_nearest_place_is_the_nearest_of_a_lattice(self):
+        site = vantage.Site.open(FOUR_WALLS, **COARSE, height=1.5)
+        for head in ([5.1, 0.3, 1.5], [8, 3, 1.5], [8, 3, 2.1]):
+            found = site.nearest_place(head)
+            self.assertEqual(found.status, "ok")
+            steps = np.arange(-1, 1.001, 0.04)
+            around = [[head[0] + dx, head[1] + dy, 1.5] for dx in steps for dy in steps]
+            free = [place.position for place in vantage.place_heads(site, around) if place.status == "ok"]
+            least = np.linalg.norm(np.array(free) - head, axis=1).min()
+            away = np.linalg.norm(np.array(found.position) - head)
+            self.assertLessEqual(away, least + 0.01)
+            self.assertGreaterEqual(away, least - 0.04)
+        self.assertIsNone(site.nearest_place([500, 0, 1.5]))
+        self.assertIsNone(site.nearest_place([8, 3, 2.1], reach_m=0.5))
+        with self.assertRaisesRegex(vantage.Error, "reach"):
+            site.nearest_place([8, 3, 1.5], reach_m=-1)
+        clash = site.evaluate([[5.1, 0.3, 1.5]])
+        self.assertRegex(clash.summary, r"S1 clashes: .*, and is left out: move it \d+\.\d\d m to the ")
 
     def test_settings_are_refused_by_their_name(self):
         with self.assertRaisesRegex(TypeError, "no setting 'hight'"):

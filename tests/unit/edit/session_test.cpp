@@ -7,8 +7,11 @@
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
+#include "unit/placement/placement_scenes.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
@@ -43,17 +46,20 @@ struct Bench {
   Site site = test::site_of(Simulator(weighed_site(), noisy_scanner(),
                                       {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}));
   Simulator& simulator = site.simulator();
-  EditOptions options{.voxels = 300, .cells = 200, .improve_seconds = 0.5};
+  EditOptions options{.voxels = 300, .cells = 200, .improve_seconds = 2, .attainable_voxels = 0};
   std::size_t kept = 0;
   std::vector<EditStation> last_kept;
   std::vector<PlacedStation> saved;
   std::uint64_t saved_voxels = 0;
-  EditSession session{
-      site,
-      {},
-      options,
-      [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
-      [this](const Evaluation& exact, const Progress&) { saved = exact.stations, saved_voxels = exact.counts.voxels; }};
+  std::vector<std::string> saved_names;
+  EditSession session{site,
+                      {},
+                      options,
+                      [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
+                      [this](const Evaluation& exact, const Progress&) {
+                        saved = exact.stations, saved_voxels = exact.counts.voxels, saved_names = exact.names;
+                        return std::string("saved in a folder");
+                      }};
 
   State add(double x, double y) {
     session.change({{"do", "add"}, {"to", {1000 + x, 2000 + y, 50 - 1.5}}});
@@ -211,9 +217,156 @@ TEST(EditSession, SavesWhatEveryRaySays) {
   bench.add(2, -1);
   bench.add(-2, 1);
   bench.session.change({{"do", "save"}});
-  EXPECT_EQ(bench.finished()["message"], "saved");
+  EXPECT_EQ(bench.finished()["message"], "saved in a folder");
   EXPECT_EQ(bench.saved.size(), 2u);
   EXPECT_EQ(bench.saved_voxels, bench.simulator.voxel_count());
+}
+
+// A floor of 20 × 8 m within walls, halved by a wall with an opening of 1.2 m at its end.
+Scene halved_hall() {
+  test::Builder builder;
+  builder.floor(-10, -4, 10, 4, 0);
+  builder.box({-10.2, -4, 0}, {-10, 4, 3}).box({10, -4, 0}, {10.2, 4, 3});
+  builder.box({-10, -4.2, 0}, {10, -4, 3}).box({-10, 4, 0}, {10, 4.2, 3});
+  builder.box({-0.1, -4, 0}, {0.1, 2.8, 3});
+  return builder.scene();
+}
+
+// A session on a site, without noise, whose changes are made in its frame.
+struct Hall {
+  Site site;
+  EditOptions options;
+  std::vector<EditStation> kept;
+  EditSession session;
+
+  explicit Hall(const EditOptions& with = {})
+      : site(test::site_of(Simulator(halved_hall(),
+                                     [] {
+                                       Scanner scanner;
+                                       scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.5);
+                                       scanner.height_m = 1.5;
+                                       return scanner;
+                                     }(),
+                                     {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}))),
+        options(with),
+        session(site, {}, options, [this](const std::vector<EditStation>& stations) { kept = stations; }, {}) {
+    vantage::finished(session);
+  }
+  static json place(double x, double y) { return {test::origin.x + x, test::origin.y + y, test::origin.z}; }
+  State change(const json& request) {
+    session.change(request);
+    return vantage::finished(session);
+  }
+  State add(double x, double y) { return change({{"do", "add"}, {"to", place(x, y)}}); }
+  std::vector<PlacedStation> placed() const {
+    std::vector<PlacedStation> stations;
+    for (const EditStation& station : kept) stations.push_back(station.placed);
+    return stations;
+  }
+};
+
+// `vantage evaluate --attainable --registration` of the same stations has the same figures.
+TEST(EditSession, HasTheFiguresOfAReport) {
+  Hall hall({.voxels = 3000, .cells = 200, .registration_voxels = 1000});
+  hall.add(-6, -2);
+  hall.add(1, 3.2);
+  const State sampled = hall.add(6, 1);
+  const AttainableCounts attainable = find_candidates(hall.site, {.sample_voxels = 3000}).attainable_counts();
+  const auto stations = hall.placed();
+  const EvaluationSite parts{.simulator = hall.site.simulator(), .surroundings = &hall.site.surroundings()};
+  const Evaluation estimate = evaluate_stations(parts, stations, {.sample_voxels = 3000, .attainable = &attainable});
+  EXPECT_FALSE(sampled["hidden"].is_null());
+  EXPECT_GT(sampled["network"]["captured"], 0.3);
+  EXPECT_EQ(sampled["network"]["captured"], estimate.value("capture"));
+  EXPECT_EQ(sampled["network"]["values"]["capture"]["error"], estimate.values.at("capture").standard_error);
+  const Evaluation registered = evaluate_stations(
+      parts, stations, {.sample_voxels = 1000, .registration = RegistrationOptions{}, .attainable = nullptr});
+  EXPECT_EQ(sampled["network"]["values"]["registration"]["value"], registered.value("registration"));
+  EXPECT_GT(sampled["network"]["values"]["registration"]["error"], 0);
+
+  const State exact = hall.change({{"do", "exact"}});
+  const Evaluation whole =
+      hall.site.evaluate(stations, {.registration = RegistrationOptions{}, .attainable = &attainable});
+  EXPECT_EQ(exact["network"]["captured"], whole.value("capture"));
+  EXPECT_EQ(exact["network"]["values"]["registration"]["value"], whole.value("registration"));
+  EXPECT_EQ(exact["network"]["seconds_on_site"], 60 * whole.visit->minutes);
+  EXPECT_EQ(sampled["network"]["seconds_on_site"], 60 * whole.visit->minutes);
+  const auto lines = summary_lines(whole);
+  ASSERT_EQ(exact["network"]["summary"].size(), lines.size());
+  for (std::size_t k = 0; k < lines.size(); ++k) EXPECT_EQ(exact["network"]["summary"][k]["text"], lines[k].text);
+}
+
+TEST(EditSession, PutsAStationWhereItMayStand) {
+  Hall hall({.voxels = 300, .cells = 200, .attainable_voxels = 0});
+  State state = hall.add(-0.3, -1);  // beside the middle wall
+  const auto head = [&](std::size_t k) {
+    const auto& h = state["network"]["stations"][k]["head"];
+    return Vec3{h[0], h[1], h[2]} - test::origin;
+  };
+  EXPECT_EQ(state["network"]["stations"][0]["status"], "ok");
+  EXPECT_NEAR(head(0).x, -0.6, 0.02);
+  EXPECT_NEAR(head(0).y, -1, 0.05);
+  const std::string message = state["message"];
+  EXPECT_EQ(message.find("the new station may not stand there: it was put 0.3"), 0u) << message;
+  EXPECT_NE(message.find(" m to the west of it, where the nearest free place is"), std::string::npos) << message;
+  // While it is dragged it is where the pointer is; put down, it is not.
+  const auto drag = [&](double x, bool begin, bool end) {
+    SCOPED_TRACE(x);
+    ASSERT_NO_THROW(
+        state = hall.change({{"do", "move"}, {"id", 1}, {"to", Hall::place(x, 1)}, {"begin", begin}, {"end", end}}));
+  };
+  drag(-3, true, false);
+  EXPECT_EQ(state["message"], "");
+  drag(0.55, false, false);
+  EXPECT_EQ(state["network"]["stations"][0]["status"], "clash");
+  EXPECT_NEAR(head(0).x, 0.55, 1e-6);
+  drag(0.2, false, true);  // where there is no ground at all
+  EXPECT_EQ(state["network"]["stations"][0]["status"], "ok");
+  EXPECT_NEAR(head(0).x, 0.6, 0.02);
+  EXPECT_NE(state["message"].get<std::string>().find("S1 may not stand there"), std::string::npos);
+  state = hall.change({{"do", "undo"}});
+  EXPECT_NEAR(head(0).x, -0.6, 0.02) << "a drag and its end are one step";
+  // Off the floor too, if a place is near; not if none is.
+  state = hall.add(10.4, 0);
+  EXPECT_NEAR(head(1).x, 9.5, 0.02);
+  EXPECT_THROW(hall.add(40, 0), Error);
+  EXPECT_EQ(hall.session.state()["ids"].size(), 2u);
+}
+
+TEST(EditSession, NamesStations) {
+  Hall hall({.voxels = 300, .cells = 200, .attainable_voxels = 0});
+  hall.add(-6, -2);
+  hall.add(6, 2);
+  const auto names = [&](const State& state) {
+    return state["network"]["stations"][0]["name"].get<std::string>() + " " +
+           state["network"]["stations"][1]["name"].get<std::string>();
+  };
+  EXPECT_EQ(names(hall.change({{"do", "rename"}, {"id", 1}, {"name", " Lobby "}})), "Lobby S2");
+  EXPECT_EQ(hall.kept[0].name, "Lobby");
+  EXPECT_EQ(names(hall.change({{"do", "move"}, {"id", 1}, {"to", Hall::place(-5, 0)}})), "Lobby S2");
+  EXPECT_EQ(names(hall.change({{"do", "undo"}})), "Lobby S2");
+  EXPECT_EQ(names(hall.change({{"do", "undo"}})), "S1 S2");
+  EXPECT_EQ(names(hall.change({{"do", "redo"}})), "Lobby S2");
+  EXPECT_EQ(names(hall.change({{"do", "rename"}, {"id", 2}, {"name", "Lobby"}})), "Lobby Lobby (2)");
+  EXPECT_EQ(names(hall.change({{"do", "rename"}, {"id", 1}, {"name", ""}})), "S1 Lobby");
+  for (const json& name : {json(3), json("a\nb"), json(std::string(61, 'x')), json()})
+    EXPECT_THROW(hall.session.change({{"do", "rename"}, {"id", 1}, {"name", name}}), Error) << name;
+}
+
+TEST(EditSession, ImprovingMendsLinksFirst) {
+  Hall hall({.voxels = 2000, .link_voxels = 2000, .cells = 200, .improve_seconds = 2, .attainable_voxels = 0});
+  hall.add(-6, -2);
+  const State before = hall.add(6, -2);
+  ASSERT_EQ(before["network"]["parts"], 2);
+  State after = hall.change({{"do", "improve"}});
+  EXPECT_EQ(after["network"]["parts"], 1);
+  EXPECT_EQ(after["message"].get<std::string>().find("all stations are linked now"), 0u) << after["message"];
+  EXPECT_EQ(hall.change({{"do", "undo"}})["network"], before["network"]);
+  // One that is locked stays.
+  hall.change({{"do", "lock"}, {"id", 1}, {"locked", true}});
+  after = hall.change({{"do", "improve"}});
+  EXPECT_EQ(after["network"]["parts"], 1);
+  EXPECT_EQ(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
 }
 
 TEST(EditSession, BeginsWithNothing) {

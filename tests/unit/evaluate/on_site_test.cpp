@@ -2,14 +2,20 @@
 #include "vantage/on_site.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "evaluate/ways.hpp"
 #include "support/site_of.hpp"
+#include "vantage/built_in_scenes.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -170,6 +176,53 @@ TEST(OnSite, LeavesOutWhatCannotBeUsedAndTellsOfWhatIsNotConnected) {
   EXPECT_THROW(Yard().on_site({.walking_m_per_s = 0}), Error);
   EXPECT_THROW(Yard().on_site({.set_up_min = -1}), Error);
   EXPECT_THROW(Yard().on_site({.detour = 0.5}), Error);
+}
+
+// Ground in a doorway of 0.9 m is a strip that narrows to nothing between the jambs.
+TEST(OnSite, GoesThroughEachOpenDoorOfAnOffice) {
+  const auto file = std::filesystem::temp_directory_path() / ("on_site_office_" + std::to_string(getpid()) + ".glb");
+  write_built_in_scene("office", 0, file);
+  Site site = Site::open(file);
+  std::filesystem::remove(file);
+  const OnSite on_site = site.on_site();
+  const std::vector<PlacedStation> stations = candidate_positions(site, 80);
+
+  // The rooms, each with one door to the corridor; 0.6 to 1.5 m from its western wall.
+  struct Room {
+    double x0, x1;
+    bool south;
+    bool holds(const Vec3& p) const {
+      return p.x > x0 && p.x < x1 && (south ? p.y > 0.3 && p.y < 6.4 : p.y > 8.6 && p.y < 14.7);
+    }
+    Vec3 door() const { return {x0 + 1.05, south ? 6.54 : 8.46, 0}; }
+  };
+  const Room rooms[] = {{0.3, 5.94, true},  {6.06, 11.94, true},  {12.06, 17.94, true},  {18.06, 23.7, true},
+                        {0.3, 4.94, false}, {5.06, 14.94, false}, {15.06, 19.94, false}, {20.06, 23.7, false}};
+  const auto metres = [](const Vec3& a, const Vec3& b) { return std::sqrt(dot(b - a, b - a)); };
+  std::size_t pairs = 0;
+  for (const PlacedStation& a : stations)
+    for (const PlacedStation& b : stations) {
+      const auto way = on_site.way_m(a.ground, b.ground);
+      ASSERT_TRUE(way) << a.ground.x << ',' << a.ground.y << " to " << b.ground.x << ',' << b.ground.y;
+      const auto from = std::ranges::find_if(rooms, [&](const Room& room) { return room.holds(a.ground); });
+      const auto to = std::ranges::find_if(rooms, [&](const Room& room) { return room.holds(b.ground); });
+      if (from == to || from == std::end(rooms) || to == std::end(rooms)) continue;
+      const double through =
+          metres(a.ground, from->door()) + metres(from->door(), to->door()) + metres(to->door(), b.ground);
+      ++pairs;
+      EXPECT_GT(*way, through - 1.0) << "through a wall";
+      EXPECT_LT(*way, 1.1 * through + 3.0) << "not through the doors, or round more than the furniture";
+    }
+  EXPECT_GT(pairs, 1000u);
+
+  const Visit visit = on_site.visit(stations);
+  EXPECT_EQ(visit.unconnected, 0u);
+  EXPECT_EQ(visit.order.size(), stations.size());
+  for (const auto& path : visit.paths)
+    for (std::size_t k = 0; k + 1 < path.size(); ++k)
+      for (const double height : {0.4, 1.0})
+        EXPECT_TRUE(site.clash().sees(path[k] + Vec3{0, 0, height}, path[k + 1] + Vec3{0, 0, height}))
+            << path[k].x << ',' << path[k].y << " to " << path[k + 1].x << ',' << path[k + 1].y;
 }
 
 TEST(OnSite, GoesNearlyTheShortestRound) {

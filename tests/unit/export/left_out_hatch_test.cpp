@@ -36,6 +36,12 @@ TEST(LeftOutHatch, CoversWhatShowsAndNothingElse) {
   EXPECT_NEAR(static_cast<double>(hatched(nullptr)), 100 * 100 * 4.0 / 22, 100);
   EXPECT_EQ(hatched(&here), hatched(nullptr));
   EXPECT_EQ(hatched(&above), 0u);
+  // A sheet just below allowed ground is no part of what shows.
+  const SearchMesh allowed{.positions = {{0.5, 0.5, 0.8}, {1.5, 0.5, 0.8}, {1.5, 1.5, 0.8}, {0.5, 1.5, 0.8}},
+                           .uvs = {},
+                           .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  std::vector<std::uint32_t> pixels(200 * 200, 0xFFFFFFFFu);
+  EXPECT_FALSE(hatch_left_out(pixels, heights, 0, left_out, nullptr, allowed));
   for (float& z : heights.z) z = 3;  // under a roof
   EXPECT_EQ(hatched(nullptr), 0u);
 }

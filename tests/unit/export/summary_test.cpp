@@ -43,6 +43,17 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       "with targets\n"
       "           S7 " +
           explain(StationStatus::hole) + ", and is left out: move it\n");
+  network.stations[6] = {.uv = {}, .position = {10, 20, 1.85}, .status = StationStatus::clash};
+  const auto advice = [&] { return summary_lines(network).back().text; };
+  const std::string clash = "S7 " + explain(StationStatus::clash) + ", and is left out: ";
+  network.moves = {{.station = 6, .to = PlacedStation{.uv = {}, .position = {10.3, 20.3, 1.85}}}};
+  EXPECT_EQ(advice(), clash + "move it 0.42 m to the north-east, to 10.300,20.300,1.850");
+  network.moves[0].to->position = {10, 18, 0.6};
+  EXPECT_EQ(advice(), clash + "move it 2.00 m to the south and 1.25 m down, to 10.000,18.000,0.600");
+  network.moves[0].to->position = {10, 20, 2};
+  EXPECT_EQ(advice(), clash + "move it 0.15 m up, to 10.000,20.000,2.000");
+  network.moves[0].to.reset();
+  EXPECT_EQ(advice(), clash + "no place within 5 m is free");
   Evaluation pair{.stations = std::vector<PlacedStation>(2), .exact = true, .values = {{"coverage", {1, 0}}}};
   pair.stations[0].existing = true;
   pair.overlap_matrix = OverlapMatrix(2);
@@ -56,6 +67,19 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
             "yes: all 2 stations, by scan overlap of at least 0.3; weakest link K1–S1 with 0.500");
   pair.stations.resize(1), pair.scan_overlap_matrix = {}, pair.overlap_matrix = OverlapMatrix(1);
   EXPECT_EQ(summary_lines(pair)[1].text, "one station, nothing to link");
+}
+
+TEST(Summary, OfManyPartsCanBeRead) {
+  Evaluation network{.stations = std::vector<PlacedStation>(400), .exact = true, .values = {{"coverage", {1, 0}}}};
+  network.overlap_matrix = OverlapMatrix(400);
+  for (std::size_t k = 0; k < 99; ++k) network.overlap_matrix.set(k, k + 1, 0.5);        // a part of a hundred
+  for (std::size_t k = 100; k < 200; k += 2) network.overlap_matrix.set(k, k + 1, 0.5);  // fifty pairs
+  const std::string text = summary_lines(network)[1].text;
+  EXPECT_LT(text.size(), 600u);
+  EXPECT_EQ(text.find("no: in 251 parts, "), 0u) << text;
+  for (const char* told :
+       {"S29 and 71 more; S101 and S102; ", "; 45 more of several stations; ", "and 171 more stand alone"})
+    EXPECT_NE(text.find(told), std::string::npos) << told << " in: " << text;
 }
 
 TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "export/buildings.hpp"
+#include "export/plan_levels.hpp"
+#include "vantage/summary.hpp"
+
+namespace vantage {
+namespace {
+
+Vec3 middle_of(const SearchMesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
+}
+double plan_area(const SearchMesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  return std::abs(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]).z) /
+         2;
+}
+
+// Sums up the triangles of `mesh` that a part holds; its place is the middle of that nearest to their middle.
+template <class Holds>
+void take_ground(FloorPart& part, const SearchMesh& mesh, const Holds& holds) {
+  Vec3 sum;
+  for (const auto& t : mesh.triangles)
+    if (const Vec3 at = middle_of(mesh, t); holds(at)) {
+      const double area = plan_area(mesh, t);
+      part.area_m2 += area, sum = sum + at * area;
+    }
+  if (!(part.area_m2 > 0)) return;
+  const Vec3 middle = sum * (1 / part.area_m2);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.triangles)
+    if (const Vec3 at = middle_of(mesh, t); holds(at) && dot(at - middle, at - middle) < least)
+      least = dot(at - middle, at - middle), part.place = at;
+}
+
+bool in_room(const Room& room, const Vec3& ground) {
+  constexpr double kSkin_m = 0.3;  // a floor may lie below its room's box
+  return ground.x >= room.box.min.x && ground.x <= room.box.max.x && ground.y >= room.box.min.y &&
+         ground.y <= room.box.max.y && ground.z >= room.box.min.z - kSkin_m && ground.z < room.box.max.z;
+}
+
+}  // namespace
+
+std::string to_string(FloorPart::Kind kind) {
+  return kind == FloorPart::Kind::storey ? "storey" : kind == FloorPart::Kind::building ? "building" : "room";
+}
+
+std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area,
+                                   std::span<const PlacedStation> stations) {
+  const SearchMesh& mesh = area.mesh();
+  std::vector<FloorPart> parts;
+  const auto add = [&](FloorPart part, const auto& holds) {
+    take_ground(part, mesh, holds);
+    part.stations = static_cast<std::size_t>(
+        std::ranges::count_if(stations, [&](const PlacedStation& s) { return active(s) && holds(s.ground); }));
+    parts.push_back(std::move(part));
+  };
+  const std::vector<PlanLevel> levels = plan_levels(mesh, stations);
+  for (std::size_t k = 0; k < levels.size() && levels.size() > 1; ++k)
+    add({.kind = FloorPart::Kind::storey, .name = "storey " + std::to_string(k + 1)},
+        [&](const Vec3& ground) { return levels[k].holds(ground.z); });
+  if (const BuildingMap buildings = buildings_of(scene, mesh); buildings.count > 1)
+    for (std::uint32_t k = 1; k <= buildings.count; ++k)
+      add({.kind = FloorPart::Kind::building, .name = "building " + std::to_string(k)},
+          [&](const Vec3& ground) { return buildings.at(ground) == k; });
+  for (const Room& room : scene.rooms())
+    add({.kind = FloorPart::Kind::room,
+         .name = room.name,
+         .place = {(room.box.min.x + room.box.max.x) / 2, (room.box.min.y + room.box.max.y) / 2, room.box.min.z}},
+        [&](const Vec3& ground) { return in_room(room, ground); });
+  return parts;
+}
+
+}  // namespace vantage
