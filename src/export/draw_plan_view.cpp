@@ -127,8 +127,8 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   const auto of_kind = [&](bool control) {
     return std::ranges::any_of(view.targets, [&](const Target& t) { return (t.control_m > 0) == control; });
   };
-  if (of_kind(false)) target(false, "target: sphere or checkerboard");
-  if (of_kind(true)) target(true, "control point: known coordinates");
+  if (of_kind(false)) target(false, "target");
+  if (of_kind(true)) target(true, "control point");
   if (content.elsewhere) {
     draw_elsewhere(canvas, {at.x + 12, at.y}, "S3");
     words("on another floor");

@@ -130,7 +130,6 @@ class Stations {
   void draw(PlanMapContent& content) {
     draw_links(content);
     draw_ellipses();
-    for (const auto& [at, target] : targets_) draw_target(canvas_, at, target->control_m > 0);
     for (std::size_t k = 0; k < shown_.size(); ++k)
       if (!on_level(k)) draw_elsewhere(canvas_, spots_[k], name(k)), content.elsewhere = true;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
@@ -146,6 +145,7 @@ class Stations {
       canvas_.disc(spots_[k], 4.6, {1, 1, 1});
       canvas_.disc(spots_[k], 3.4, colour(k));
     }
+    for (const auto& [at, target] : targets_) draw_target(canvas_, at, target->control_m > 0);
     draw_labels(content);
   }
 

@@ -186,7 +186,7 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
                {"y", 66},
                {"z", 48},
                {"Corners", 88},
-               {"", 78, Align::start},
+               {"Kind", 78, Align::start},
                {"Measured by", 130, Align::start}},
               of_targets.size(), of_targets.size(), "", [&](std::size_t k) -> std::vector<std::string> {
                 const Target& target = network.targets[k];

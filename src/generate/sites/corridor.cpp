@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A corridor of 60 × 2.2 m with closed doors on both sides. Only the reveals of the doors and the ends keep a scan from
+// A corridor of 60 × 1.8 m with closed doors on both sides. Only the reveals of the doors and the ends keep a scan from
 // sliding along it.
 #include "generate/sites/shapes.hpp"
 
 namespace vantage::sites {
 
 Site corridor() {
-  constexpr double kLength = 60, kWidth = 2.2, kHeight = 2.6, kWall = 0.3, kReveal = 0.08;
+  constexpr double kLength = 60, kWidth = 1.8, kHeight = 2.6, kWall = 0.3, kReveal = 0.08;
   Site site;
   site.entry = {1, kWidth / 2, 0};
   add_box(add_part(site, "floor", kConcrete, Surface::floor),

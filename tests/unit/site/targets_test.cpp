@@ -218,7 +218,7 @@ SurveyQuestion short_question() {
   question.stations = {4, 4};
   return question;
 }
-constexpr PlanConfig kShort{.population = 6, .iterations = 2, .sample_voxels = 2000};
+const PlanConfig kShort{.population = 6, .iterations = 2, .sample_voxels = 2000};
 
 TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
   Site site = tunnel();
