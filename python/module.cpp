@@ -42,6 +42,7 @@ PYBIND11_MODULE(_core, m) {
   add_scenes(m);
   add_scanners(m);
   add_placement(m);
+  add_targets(m);
   add_visits(m);
   add_evaluations(m);
   add_simulators(m);

@@ -10,6 +10,7 @@ void add_errors(pybind11::module_& m);
 void add_scenes(pybind11::module_& m);
 void add_scanners(pybind11::module_& m);
 void add_placement(pybind11::module_& m);
+void add_targets(pybind11::module_& m);
 void add_visits(pybind11::module_& m);
 void add_evaluations(pybind11::module_& m);
 void add_simulators(pybind11::module_& m);

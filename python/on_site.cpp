@@ -22,6 +22,37 @@ Options<OnSiteOptions> on_site_options() {
 
 }  // namespace
 
+void add_targets(py::module_& m) {
+  py::class_<Target> target(m, "Target", "A target, or a control point. Lengths in metres, survey frame.");
+  target
+      .def(py::init([](std::string name, const Vec3& centre, double control_m) {
+             return Target{.name = std::move(name), .centre = centre, .control_m = control_m};
+           }),
+           py::arg("name"), py::arg("centre"), py::arg("control_m") = 0.0)
+      .def_readonly("name", &Target::name, "Its name.")
+      .def_readonly("centre", &Target::centre, "Its centre (x, y, z).")
+      .def_readonly("control_m", &Target::control_m,
+                    "Standard deviation of known coordinates, in each axis; 0: no control point.")
+      .def_readonly("proposed", &Target::proposed, "Whether it was proposed.")
+      .def_readonly("stations", &Target::stations, "Indices of the stations that measure it.")
+      .def("__repr__", [](const Target& t) {
+        return "<vantage.Target " + t.name + " at " + std::string(py::repr(py::cast(t.centre))) + ">";
+      });
+  target.def(py::pickle(
+      [](const Target& t) { return py::make_tuple(t.name, t.centre, t.control_m, t.proposed, t.stations); },
+      [](const py::tuple& t) {
+        return Target{.name = t[0].cast<std::string>(),
+                      .centre = t[1].cast<Vec3>(),
+                      .control_m = t[2].cast<double>(),
+                      .proposed = t[3].cast<bool>(),
+                      .stations = t[4].cast<std::vector<std::size_t>>()};
+      }));
+  m.def(
+      "read_targets_csv", [](const std::filesystem::path& file) { return read_targets_csv(file); }, py::arg("file"),
+      "Reads Targets from a table with columns name, x, y, z, and for control points sigma, in metres.\nRaises Error: "
+      "io, malformed_file.");
+}
+
 void add_visits(py::module_& m) {
   const auto options = on_site_options();
   py::class_<OnSiteOptions> type(m, "OnSiteOptions", ("Times of a person with a tripod." + options.doc()).c_str());

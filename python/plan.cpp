@@ -50,11 +50,13 @@ py::array_t<double> scaled_front(const Watched& now) {
 // Takes the settings of a question and of a search, or `problem` in place of the former.
 std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
                                 std::vector<Vec3> start, std::optional<std::filesystem::path> checkpoint,
-                                py::object progress, const py::kwargs& given) {
+                                std::vector<Target> existing_targets, py::object progress, const py::kwargs& given) {
   refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
   SurveyQuestion question;
   PlanConfig config;
   std::size_t asked = read_settings(question_settings(), question, given);
+  asked += existing_targets.empty() ? 0 : 1;
+  question.existing_targets = std::move(existing_targets);
   // A problem by its name is a setting of the question.
   const bool named = py::isinstance<py::str>(problem);
   if (named) question.problem = problem.cast<std::string>(), ++asked;
@@ -146,6 +148,12 @@ void add_entries(py::module_& m) {
       .def_property_readonly(
           "registration", [](const Entry& e) { return e.get().registration; },
           "Predicted error by every ray; None unless confirmed and a measure needs it.")
+      .def_property_readonly(
+          "targets", [](const Entry& e) { return e.get().targets; },
+          "Targets that tie its scans together, given and proposed; `registration` is with them. Of the answer only.")
+      .def_property_readonly(
+          "without_targets_m", [](const Entry& e) { return e.get().without_targets_m; },
+          "Root mean square registration error without its targets; None unless targets were looked for.")
       .def_property_readonly(
           "visit", [](const Entry& e) { return e.get().visit; }, "The round on site; None if it was not computed.")
       .def("__repr__", [](const Entry& e) {
@@ -277,12 +285,13 @@ void add_plans(py::module_& m) {
   const py::object site = m.attr("Site");
   site.attr("plan") = py::cpp_function(
       &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
-      py::arg("start") = std::vector<Vec3>{}, py::arg("checkpoint") = py::none(), py::arg("progress") = py::none(),
+      py::arg("start") = std::vector<Vec3>{}, py::arg("checkpoint") = py::none(),
+      py::arg("existing_targets") = std::vector<Target>{}, py::arg("progress") = py::none(),
       ("Plans a survey like the program: by default, the fewest connected stations that capture "
        "enough. The same site,\nproblem and settings give the same result except for "
        "seconds.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
        "start: heads (x, y, z) of an initial\nnetwork; empty: chosen. checkpoint: a file to write "
-       "regularly and when the search ends; `resume=True` goes on\nfrom it. progress: called with a "
+       "regularly and when the search ends; `resume=True` goes on\nfrom it. existing_targets: Targets and control points that are there (`read_targets_csv`). progress: called with a "
        "PlanProgress between evaluations. If it returns False, the search ends, and its\nresults are "
        "confirmed and returned. Ctrl-C, or an exception of progress or of an objective, ends the call "
        "with\nthat exception; a checkpoint is written before.\nRaises Error: invalid_argument, "

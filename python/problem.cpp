@@ -192,6 +192,14 @@ Options<SurveyProblem> problem_options() {
       .add("link_overlap", &SurveyProblem::link_overlap, "Least overlap of a link.")
       .add("registration", &SurveyProblem::registration, "Prior of registration.")
       .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: times of a round.")
+      .add("targets", &SurveyProblem::targets,
+           "Targets to propose; 0: none, None: as few as the registration takes, if `fewest`.")
+      .add<py::iterable>(
+          "existing_targets", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing_targets)); },
+          [](SurveyProblem& p, const py::iterable& given) {
+            p.existing_targets = py::list(given).cast<std::vector<Target>>();
+          },
+          "Targets and control points that are there.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
       .add("attainable", &SurveyProblem::attainable,
            "Attainable coverage, the denominator of `capture`; a plan finds it.")

@@ -72,13 +72,18 @@ struct Evaluation {
   std::map<std::string, Estimate> values = {};
   /// Attainable coverage, if it is known; `capture` is a share of it.
   std::optional<Estimate> attainable = std::nullopt;
+  /// Share by which it grew with the last doubling of the positions that were looked at: its error from the rest. 1:
+  /// there was no doubling, 0: every allowed position was looked at.
+  std::optional<double> attainable_growth = std::nullopt;
   OverlapMatrix overlap_matrix = {};           ///< Equation 11; empty: pairs were not counted.
   PairMatrix overlap_errors = {};              ///< Their standard errors; empty for exact ones.
   ScanOverlapMatrix scan_overlap_matrix = {};  ///< On all surfaces, surveyed or not; empty: not computed.
   double link_overlap = default_link_overlap;  ///< Least overlap of a link,
   double link = default_link;                  ///< or least scan overlap, if that is known.
   std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
-  std::vector<Target> targets = {};                              ///< As given, with the stations that measure each.
+  std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
+  /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
+  std::optional<double> without_targets_m = std::nullopt;
   AccuracyClass accuracy_class = AccuracyClass::loa30;           ///< Judges the registration error.
   std::optional<Visit> visit = std::nullopt;                     ///< The round on site without existing stations.
   /// For stations that do not stand well, in their order: the nearest places that may hold them, if these were looked

@@ -82,18 +82,20 @@ void write_stations_csv(const std::filesystem::path& file, std::span<const Place
 
 /// Writes stations for maps and drawings; the extension decides the format:
 /// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.
-///   Properties: name, status, existing, head_height_m, and in the survey frame x, y, z of the head and ground_z. A
-///   station without ground has no geometry.
+///   Properties: kind ("station"), name, status, existing, head_height_m, and in the survey frame x, y, z of the head
+///   and ground_z. A station without ground has no geometry. A Point for each target's centre: kind ("target" or
+///   "control point"), name, proposed, sigma_m (null unless known), stations (names), x, y, z.
 /// - .kml (2.2, OGC 07-147r2): a Placemark for each station with ground, with the same position and figures. Existing
-///   stations, and those left out, have icons of another colour.
+///   stations, those left out and targets have icons of another colour.
 /// - .dxf (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point
 ///   and a circle below the tripod), STATION_NAMES, LINKS (between the grounds of linked stations), SEARCH_AREA (closed
-///   polylines).
+///   polylines), TARGETS and CONTROL_POINTS (a point and a circle at the centre), TARGET_NAMES.
 /// `names`: from `station_names()`, one each. `links`: of these stations, or without values. Throws Error: io;
 /// invalid_argument (another extension, sizes that do not match, for .geojson and .kml a site without a coordinate
 /// system or stations outside of it).
 void write_stations(const std::filesystem::path& file, std::span<const PlacedStation> stations,
-                    std::span<const std::string> names, const StationLinks& links, Site& site);
+                    std::span<const std::string> names, const StationLinks& links, Site& site,
+                    std::span<const Target> targets = {});
 
 /// One line of a table, as `read_stations_csv` returns it. Survey frame, metres.
 struct StationRow {
@@ -143,18 +145,19 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// with stations under a roof, or with several floors, is cut 1.2 m above the floor, and cut parts are filled. Several
 /// floors stand side by side, and each again on its own page, PLAN-level-1.png and so on, from the lowest. `names`: of
 /// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
-/// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `overlap_words`: name
-/// of `overlap` in the legend. Returns the files that it wrote.
+/// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `targets`: their marks.
+/// Returns the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
                                                   std::span<const PlacedStation> stations, const StationLinks& links,
                                                   const std::string& title, std::span<const std::string> names = {},
-                                                  std::span<const StationError> errors = {});
+                                                  std::span<const StationError> errors = {},
+                                                  std::span<const Target> targets = {});
 
 /// Writes a whole result folder and makes it if needed. Returns the index of the chosen entry, the `answer()`. Files:
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
 /// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put
-/// on WGS 84 (else `SiteOptions::warn` is told why);
+/// on WGS 84 (else `SiteOptions::warn` is told why), and targets.csv if it has targets;
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan and, with `field`, registration.ply, .png and .svg.

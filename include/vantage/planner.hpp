@@ -25,6 +25,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage {
 
@@ -56,6 +57,11 @@ struct SurveyProblem {
   /// `capture` is asked for. A plan finds it anew, whatever is given.
   std::optional<double> attainable = std::nullopt;
   OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan tells.
+  /// Number of targets to propose for the answer. Empty: as few as the predicted registration takes to meet its
+  /// requirement and the class of accuracy, if `fewest` and the registration is a measure. 0: none.
+  std::optional<std::size_t> targets = {};
+  std::vector<Target> existing_targets = {};  ///< Targets and control points that are there.
+  TargetOptions target = {};
 
   /// Parameters of the built-in objectives for this problem.
   ObjectiveSettings settings() const;

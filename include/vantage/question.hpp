@@ -37,12 +37,15 @@ struct SurveyQuestion {
   std::optional<double> min_overlap = {};               ///< Required overlap of the links that connect all stations.
   std::optional<FitnessWeights> fitness = {};           ///< Weights of the scalarised fitness.
   RegistrationOptions registration = {};
+  std::optional<std::size_t> targets = {};    ///< As `SurveyProblem::targets`.
+  std::vector<Target> existing_targets = {};  ///< As `SurveyProblem::existing_targets`.
+  TargetOptions target = {};
 
   /// Whether it asks for the fewest stations.
   bool asks_for_fewest() const;
 };
 
-/// One row for each setting. `existing` has none: users give them in several ways.
+/// One row for each setting. `existing` and `existing_targets` have none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
 const SettingTable<RegistrationOptions>& registration_settings();
 const SettingTable<OnSiteOptions>& on_site_settings();

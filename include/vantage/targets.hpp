@@ -48,9 +48,13 @@ struct TargetOptions {
   /// Standard deviation of a fitted centre in each axis, besides range noise; above 0.
   double sigma_m = 0.001;
   std::size_t least_points = 60;                ///< A scan with fewer points on a target does not measure it.
-  std::size_t most = 40;                        ///< Proposed targets.
-  AccuracyClass wanted = AccuracyClass::loa30;  ///< Proposals end once the predicted registration error meets it.
+  std::size_t least = 0, most = 40;             ///< Proposed targets.
+  AccuracyClass wanted = AccuracyClass::loa30;  ///< Proposals end once the predicted registration error meets it,
+  std::optional<double> largest_rms_m = {};     ///< and is at most this, if it is given; above 0.
+  bool exact = false;  ///< Trace every ray, as evaluations and plans do, in place of a sample of the voxels.
 };
+/// Largest root mean square error that `wanted` and `largest_rms_m` allow.
+double allowed_rms_m(const TargetOptions& options);
 Settings settings(const TargetOptions& options);
 /// Throws Error invalid_argument with the member and its value.
 void check(const TargetOptions& options);
@@ -58,18 +62,20 @@ void check(const TargetOptions& options);
 /// Largest distance at which a scanner measures a target of its own height.
 double target_reach_m(const Scanner& scanner, const TargetOptions& options = {});
 
-/// Targets that a network wants, and what they bring. Errors are predicted from a sample of the voxels.
+/// Targets that a network wants, and what they bring.
 struct TargetProposal {
   std::vector<Target> targets;  ///< The given ones, then the proposed ones, the most useful first.
   RegistrationError without = {}, with = {};
   double reach_m = 0;  ///< `target_reach_m()` of the first scanner.
 };
 
-/// Proposes as few targets as bring the predicted error to `TargetOptions::wanted`: each time the one of some
-/// 400 places on reached ground, off passages and stations, that lowers the mean square error over the covered surface
-/// most; it ends early where another one would gain less than a fifth of a station's share of that error. `given`:
-/// targets and control points that are there. No random numbers. Returns nothing if it was stopped. Throws Error
-/// invalid_argument, and what the simulator throws.
+/// Proposes as few targets as bring the predicted error to what `options` allow: each time the one of some 400 places
+/// on reached ground that lowers the mean square error over the covered surface most, at last without those that the
+/// others make needless. It ends early where another one would gain less than a fifth of a station's share of that
+/// error, unless `TargetOptions::least` asks for more. No place is in a passage, where the leaf of a door swings, by a
+/// station or on glass; no station measures three that are nearly on a line. `given`: targets and control points that
+/// are there. No random numbers. Returns nothing if it was stopped. Throws Error invalid_argument, and what the
+/// simulator throws.
 std::optional<TargetProposal> propose_targets(vantage::Site& site, std::span<const PlacedStation> stations,
                                               const RegistrationOptions& registration = {},
                                               const TargetOptions& options = {}, std::vector<Target> given = {},

@@ -424,6 +424,21 @@ class OnSiteOptions:
         entrance: Optional[Sequence[float]] = None,
     ) -> None: ...
 
+class Target:
+    def __init__(self, name: str, centre: Sequence[float], control_m: float = 0.0) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def centre(self) -> Vec3: ...
+    @property
+    def control_m(self) -> float: ...
+    @property
+    def proposed(self) -> bool: ...
+    @property
+    def stations(self) -> List[int]: ...
+
+def read_targets_csv(file: Path) -> List[Target]: ...
+
 class Visit:
     @property
     def order(self) -> List[int]: ...
@@ -784,6 +799,7 @@ class Site:
         *,
         start: Sequence[Sequence[float]] = [],
         checkpoint: Optional[Path] = None,
+        existing_targets: Sequence[Target] = [],
         progress: Optional[Callable[[PlanProgress], Any]] = None,
         set_up: Setting = None,
         photos: Setting = None,
@@ -794,6 +810,11 @@ class Site:
         registration_heading: Setting = None,
         registration_tilt: Setting = None,
         registration_surfaces: Setting = None,
+        targets: Setting = None,
+        target_diameter: Setting = None,
+        target_height: Setting = None,
+        target_sigma: Setting = None,
+        accuracy_class: Setting = None,
         capture: Setting = None,
         link: Setting = None,
         apart: Setting = None,
@@ -1024,6 +1045,8 @@ class SurveyProblem:
         link_overlap: float = 0.01,
         registration: RegistrationOptions = ...,
         on_site: OnSiteOptions = ...,
+        targets: Optional[int] = None,
+        existing_targets: Iterable[Target] = (),
         fewest: bool = False,
         attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
@@ -1039,6 +1062,8 @@ class SurveyProblem:
     link_overlap: float
     registration: RegistrationOptions
     on_site: OnSiteOptions
+    targets: Optional[int]
+    existing_targets: Tuple[Target, ...]
     fewest: bool
     attainable: Optional[float]
     @property
@@ -1118,6 +1143,10 @@ class PlanEntry:
     def visit(self) -> Optional[Visit]: ...
     @property
     def registration(self) -> Optional[RegistrationError]: ...
+    @property
+    def targets(self) -> List[Target]: ...
+    @property
+    def without_targets_m(self) -> Optional[float]: ...
 
 class PlanResult:
     @property

@@ -61,7 +61,7 @@ struct EvaluateCommandOptions {
               "repeated",
               registration_files)
         ->group("Registration");
-    add_text(command, "--targets", "FILE",
+    add_text(command, "--targets-from", "FILE",
              "Targets that tie scans together, and control points: a table of name, x, y, z, and of those that are "
              "known sigma in metres; takes --registration",
              targets)
@@ -112,11 +112,10 @@ struct EvaluateCommandOptions {
 };
 
 // As `plan` looks at it before it searches.
-AttainableCounts attainable_counts(Site& site, std::uint64_t sample, Program& program) {
+Candidates attainable_by(Site& site, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "looking at what can be captured");
   return find_candidates(site, {.sample_voxels = sample},
-                         {.report = [&](double done) { line.update(done); }, .stop = program.stop})
-      .attainable_counts();
+                         {.report = [&](double done) { line.update(done); }, .stop = program.stop});
 }
 
 // Throws Error invalid_argument for options that do not go together, and files that no writer has.
@@ -132,7 +131,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   must_end(options.matrix, "--overlap-csv", ".csv");
   must_end(options.proposed_targets, "--propose-targets", ".csv");
   if ((options.targets || options.proposed_targets) && !options.with_registration)
-    refuse("--targets and --propose-targets: targets are for --registration, which was not asked for");
+    refuse("--targets-from and --propose-targets: targets are for --registration, which was not asked for");
   for (const std::string& file : options.station_files) {
     must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
     if (!file.ends_with(".dxf") && site.crs().empty())
@@ -200,9 +199,9 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
     draw_plan_view(*options.picture, site, found.stations, links,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", names.size(),
                                names.size() == 1 ? "" : "s", found.value("coverage"), found.value("overlap")),
-                   names, errors);
+                   names, errors, found.targets);
   }
-  for (const std::string& file : options.station_files) write_stations(file, found.stations, names, links, site);
+  for (const std::string& file : options.station_files) write_stations(file, found.stations, names, links, site, found.targets);
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
                   options.report_head.with({.missed = judged}), program, program.abort);
@@ -305,21 +304,24 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   chosen.target = options.target;
   if (options.targets) chosen.targets = read_targets_csv(*options.targets);
   if (options.proposed_targets) {
+    TargetOptions wanted = options.target;
+    wanted.exact = !options.sampled();
     std::optional<TargetProposal> proposal =
-        propose_targets(site, placed, options.registration, options.target, chosen.targets, progress);
+        propose_targets(site, placed, options.registration, wanted, chosen.targets, progress);
     if (!proposal) throw Stopped{};
     spdlog::info("{}", proposal_text(*proposal, options.target.wanted));
     chosen.targets = std::move(proposal->targets);
   }
-  AttainableCounts attainable;
+  Candidates candidates;
   if (options.attainable) {
-    attainable = attainable_counts(
+    candidates = attainable_by(
         site, std::min(chosen.sample_voxels.value_or(CandidateConfig().sample_voxels), simulator.voxel_count()),
         program);
-    chosen.attainable = &attainable;
+    chosen.attainable = &candidates.attainable_counts();
   }
-  const Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
+  Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
   if (found.counts.cancelled) throw Stopped{};
+  if (options.attainable) found.attainable_growth = candidates.ended() == "all" ? 0 : candidates.change();
 
   std::optional<MissedVoxels> judged;
   if (!options.missed.files.empty() || (!options.reports.empty() && !options.sampled())) {

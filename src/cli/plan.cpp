@@ -43,7 +43,7 @@ struct PlanOptions {
   double seed_seconds = ExactConfig().max_seconds;
   std::string seed_with;  // nothing, greedy or exact
   std::vector<StationText> keep, start;
-  std::optional<std::string> keep_from;
+  std::optional<std::string> keep_from, targets_from;
   std::optional<std::string> output;
 
   void add(CLI::App& command) {
@@ -54,6 +54,11 @@ struct PlanOptions {
         ->group("Problem");
     add_text(command, "--keep-from", "FILE", "Stations that are there already: the scans of an E57 file", keep_from)
         ->group("Problem");
+    add_text(command, "--targets-from", "FILE",
+             "Targets and control points that are there: a table of name, x, y, z, and of those that are known sigma in "
+             "metres",
+             targets_from)
+        ->group("Targets");
     add_settings(command, plan_settings(), config);
     add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
                [this](const std::string& text, const std::string& what) { start.push_back(parse_station(text, what)); })
@@ -298,6 +303,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (options.keep_from)
     for (const StationText& scan : scans_of(*options.keep_from, options.keep.size())) options.keep.push_back(scan);
   keep(options.question, heads_of(site, options.keep, options.keep_from ? "--keep, --keep-from" : "--keep"));
+  if (options.targets_from) options.question.existing_targets = read_targets_csv(*options.targets_from);
   const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
   site.area();  // an error now, not behind the voxels
 
@@ -312,7 +318,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.checkpoint = folder / "checkpoint.bin";
   choose_start(site, options, problem, config, program, plan_by);
 
-  const nlohmann::json as_given = plan_options(site, options.question, problem, config);
+  nlohmann::json as_given = plan_options(site, options.question, problem, config);
+  if (options.targets_from) as_given["plan"]["targets-from"] = *options.targets_from;
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   const FolderLock lock(folder);
   const EarlierResults before = take_over(folder, as_given, config, options.force);

@@ -134,6 +134,10 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     if (!targets.empty()) sighted = sight_targets(site.simulator, *site.clash, stations[k], targets, options.target);
     Evaluation& one = made.emplace_back(evaluation_of(measured, measures, options.registration, sighted));
     one.targets = std::move(targets), one.accuracy_class = options.target.wanted;
+    if (options.registration && !one.targets.empty())
+      one.without_targets_m = registration_error(counts[k], measured.voxels, *options.registration,
+                                                 measured.surroundings, measured.surroundings_voxels)
+                                  .rms_m;
     if (options.registration) {
       const Estimate rms = registration_estimate(counts[k], measured.voxels, *options.registration,
                                                  measured.surroundings, measured.surroundings_voxels, sighted);

@@ -74,9 +74,12 @@ Settings settings(const TargetOptions& options) {
       .add("target_diameter_m", options.diameter_m, {"target-diameter"})
       .add("target_height_m", options.height_m, {"target-height"})
       .add("target_sigma_m", options.sigma_m, {"target-sigma"})
-      .add("target_points", options.least_points, {"target-points"})
-      .add("target_most", options.most, {"target-most"})
+      .add("target_points", options.least_points)
+      .add("targets_least", options.least)
+      .add("targets_most", options.most)
       .add("accuracy_class", to_string(options.wanted), {"accuracy-class"})
+      .add("target_largest_rms_m", options.largest_rms_m)
+      .add("target_exact", options.exact)
       .take();
 }
 
@@ -84,6 +87,12 @@ void check(const TargetOptions& options) {
   require_above_zero("targets", "diameter_m", options.diameter_m);
   require_above_zero("targets", "height_m", options.height_m);
   require_above_zero("targets", "sigma_m", options.sigma_m);
+  if (options.largest_rms_m) require_above_zero("targets", "largest_rms_m", *options.largest_rms_m);
+}
+
+double allowed_rms_m(const TargetOptions& options) {
+  const double by_class = largest_error_m(options.wanted) / error_at_95_percent(1);
+  return options.largest_rms_m ? std::min(by_class, *options.largest_rms_m) : by_class;
 }
 
 double target_reach_m(const Scanner& scanner, const TargetOptions& options) {

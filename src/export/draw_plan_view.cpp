@@ -119,6 +119,16 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
     example.existing = false, example.status = StationStatus::clash;
     station("S2", example, "skipped: no place to stand");
   }
+  const auto target = [&](bool control, const std::string& what) {
+    draw_target(canvas, {at.x + 12, at.y}, control);
+    words(what);
+    at.y += 28;
+  };
+  const auto of_kind = [&](bool control) {
+    return std::ranges::any_of(view.targets, [&](const Target& t) { return (t.control_m > 0) == control; });
+  };
+  if (of_kind(false)) target(false, "target");
+  if (of_kind(true)) target(true, "control point");
   if (content.elsewhere) {
     draw_elsewhere(canvas, {at.x + 12, at.y}, "S3");
     words("on another floor");
@@ -222,14 +232,16 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
                                                   std::span<const PlacedStation> stations, const StationLinks& links,
                                                   const std::string& title, std::span<const std::string> names,
-                                                  std::span<const StationError> errors) {
+                                                  std::span<const StationError> errors,
+                                                  std::span<const Target> targets) {
   const PlanView view{.scene = site.scene(),
                       .area = site.area(),
                       .stations = stations,
                       .names = station_names(stations, names),
                       .links = links,
                       .title = title,
-                      .errors = errors};
+                      .errors = errors,
+                      .targets = targets};
   std::vector<std::filesystem::path> written;
   for (const PlanPage& page : plan_view_pictures(view)) {
     const std::filesystem::path one =

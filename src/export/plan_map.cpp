@@ -24,7 +24,7 @@ namespace {
 constexpr double kLeastWidth = 0.8, kMostWidth = 9;  // of links without overlap, and at the end of the scale
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kExisting{0.42, 0.16, 0.44}, kLink{0.16, 0.34, 0.66},
-    kSkipped{0.72, 0.12, 0.12};
+    kSkipped{0.72, 0.12, 0.12}, kTargetInk{0.1, 0.1, 0.12};
 SearchMesh mesh_of(const SearchMesh& mesh, const PlanLevel& level) {
   SearchMesh part{.positions = mesh.positions, .uvs = mesh.uvs, .triangles = {}};
   for (const auto& t : mesh.triangles)
@@ -120,6 +120,8 @@ class Stations {
     for (std::size_t k = 0; k < shown_.size(); ++k)
       if (on_level(k)) here.push_back(spots_[k]);
     const auto placed = place_discs(here, kDisc, map_);
+    for (const Target& target : view.targets)
+      if (stands_on(target, level)) targets_.emplace_back(chart.at(target.centre.x, target.centre.y), &target);
     discs_ = spots_;
     for (std::size_t k = 0, next = 0; k < shown_.size(); ++k)
       if (on_level(k)) discs_[k] = placed[next++];
@@ -143,6 +145,7 @@ class Stations {
       canvas_.disc(spots_[k], 4.6, {1, 1, 1});
       canvas_.disc(spots_[k], 3.4, colour(k));
     }
+    for (const auto& [at, target] : targets_) draw_target(canvas_, at, target->control_m > 0);
     draw_labels(content);
   }
 
@@ -209,12 +212,15 @@ class Stations {
       taken.push_back({discs_[k].x - r, discs_[k].y - r, 2 * r, 2 * r});
       if (moved(k)) taken.push_back({spots_[k].x - 5, spots_[k].y - 5, 10, 10});
     }
-    const auto put = [&](std::size_t k, const std::string& text) {
-      const auto place =
-          place_free_label(discs_[k], kDisc + 3, kFar, canvas_.text_width(text, style) + 4, 13, inside, taken);
+    const auto put_at = [&](Point at, double gap, const std::string& text) {
+      const auto place = place_free_label(at, gap, kFar, canvas_.text_width(text, style) + 4, 13, inside, taken);
       if (place) canvas_.text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
       return place.has_value();
     };
+    const auto put = [&](std::size_t k, const std::string& text) { return put_at(discs_[k], kDisc + 3, text); };
+    for (const auto& [at, target] : targets_)
+      taken.push_back({at.x - kTargetRadius, at.y - kTargetRadius, 2 * kTargetRadius, 2 * kTargetRadius});
+    for (const auto& [at, target] : targets_) put_at(at, kTargetRadius + 2, target->name);
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k)) continue;
       const std::string height = "z " + fixed(to_centimetres(station(k).ground.z), 2);
@@ -235,6 +241,7 @@ class Stations {
   const PlanLevel& level_;
   std::vector<std::size_t> shown_;
   std::vector<Point> spots_, discs_;
+  std::vector<std::pair<Point, const Target*>> targets_;
 };
 
 }  // namespace
@@ -265,6 +272,7 @@ Box plan_window(const PlanView& view) {
     for (const std::uint32_t v : t) box.extend(mesh.positions[v]);
   for (const PlacedStation& s : view.stations)
     if (s.status != StationStatus::hole) box.extend(s.position);
+  for (const Target& target : view.targets) box.extend(target.centre);
   if (box.empty())
     throw Error(Errc::invalid_argument, "draw_plan_view: there is neither a surveyed mesh nor a search area");
   const double margin = 0.03 * std::max({box.size().x, box.size().y, 0.1});
@@ -363,6 +371,36 @@ void draw_elsewhere(Canvas& canvas, Point at, const std::string& text) {
   if (fits_disc(text))
     canvas.text(at, text,
                 {.size = text.size() > 3 ? 6.0 : 7.5, .colour = style::faint, .across = Align::middle, .halo = 1.5});
+}
+
+void draw_target(Canvas& canvas, Point at, bool control, double radius) {
+  constexpr Colour white{1, 1, 1};
+  if (control) {
+    const double side = 2.3 * radius;
+    std::vector<Point> corners;
+    for (int k = 0; k <= 3; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 3;
+      corners.push_back({at.x + side * std::sin(angle), at.y - side * std::cos(angle)});
+    }
+    canvas.polygon(corners, white, 0.85);
+    canvas.path(corners, {.colour = kTargetInk, .width = 0.22 * radius});
+  }
+  canvas.disc(at, 1.16 * radius, white);
+  canvas.circle(at, radius, {.colour = kTargetInk, .width = 0.2 * radius});
+  for (const double from : {0.0, std::numbers::pi}) {
+    std::vector<Point> quarter{at};
+    constexpr int kSteps = 10;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double angle = from + std::numbers::pi / 2 * k / kSteps;
+      quarter.push_back({at.x + radius * std::cos(angle), at.y - radius * std::sin(angle)});
+    }
+    canvas.polygon(quarter, kTargetInk);
+  }
+}
+
+bool stands_on(const Target& target, const PlanLevel& level) {
+  constexpr double kOverFloor_m = 1;  // from a floor to well below a target's centre, and to well above its floor
+  return level.holds(target.centre.z - kOverFloor_m);
 }
 
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors) {

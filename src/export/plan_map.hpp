@@ -25,6 +25,7 @@ struct PlanView {
   StationLinks links = {};         // values for all stations, or none
   std::string title;
   std::span<const StationError> errors = {};  // one for each station, or none; drawn as standard ellipses
+  std::span<const Target> targets = {};
 
   // Canvas units per metre of such an ellipse; 0 if there is none. The widest is as wide as kWidestEllipse.
   double ellipse_scale() const;
@@ -74,6 +75,10 @@ void draw_station(Canvas& canvas, Point at, const std::string& text, const Place
 // Whether a name is short enough to stand in a station's mark.
 bool fits_disc(const std::string& name);
 void draw_elsewhere(Canvas& canvas, Point at, const std::string& text);
+// A checkered disc; a triangle around that of a control point.
+inline constexpr double kTargetRadius = 5;
+void draw_target(Canvas& canvas, Point at, bool control, double radius = kTargetRadius);
+bool stands_on(const Target& target, const PlanLevel& level);
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors);
 
 // Overlaps in the legend. The scale of widths is the same on every picture and ends with the last.

@@ -9,6 +9,7 @@
 
 #include "core/station_masks.hpp"
 #include "core/text.hpp"
+#include "export/voxel_errors.hpp"
 #include "export/voxel_map.hpp"
 #include "export/voxel_ply.hpp"
 #include "vantage/error.hpp"
@@ -20,24 +21,6 @@ namespace {
 constexpr Colour kUnseen{0.86, 0.86, 0.87};
 // More voxels than a picture has pixels for.
 constexpr std::uint64_t kMostDrawn = 200'000;
-
-// Root mean square over the stations that see the voxel, millimetres; negative if none does.
-std::vector<float> errors_of(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
-                             std::span<const std::uint32_t> ranks) {
-  std::vector<float> found(ranks.size());
-  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t k) {
-    const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
-    double squares = 0;
-    int seen = 0;
-    for_each_station(field.stations, simulator.voxel_count(), ranks[k], [&](std::size_t station) {
-      const double one = error.at(station, place);
-      squares += one * one;
-      ++seen;
-    });
-    found[k] = seen > 0 ? static_cast<float>(1000 * std::sqrt(squares / seen)) : -1;
-  });
-  return found;
-}
 
 void check(const Simulator& simulator, const VoxelField& field) {
   const std::uint64_t voxels = simulator.voxel_count();
@@ -54,6 +37,23 @@ double largest(std::span<const float> errors) {
 
 }  // namespace
 
+std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
+                                   std::span<const std::uint32_t> ranks) {
+  std::vector<float> found(ranks.size());
+  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t k) {
+    const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
+    double squares = 0;
+    int seen = 0;
+    for_each_station(field.stations, simulator.voxel_count(), ranks[k], [&](std::size_t station) {
+      const double one = error.at(station, place);
+      squares += one * one;
+      ++seen;
+    });
+    found[k] = seen > 0 ? static_cast<float>(1000 * std::sqrt(squares / seen)) : -1;
+  });
+  return found;
+}
+
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error) {
   check(simulator, field);
@@ -63,7 +63,7 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
     for_each_station(field.stations, simulator.voxel_count(), rank, [&](std::size_t) { seen = true; });
     if (seen) ranks.push_back(rank);
   }
-  const std::vector<float> errors = errors_of(simulator, field, error, ranks);
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
   const double most = largest(errors);
   write_voxel_ply(file, simulator, {{"float", "error_mm"}}, ranks.size(), [&](std::uint64_t k, std::string& bytes) {
     append(bytes, errors[k]);
@@ -77,7 +77,7 @@ void draw_registration(const std::filesystem::path& file, Site& site, const Voxe
   const Simulator& simulator = site.simulator();
   check(simulator, field);
   const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
-  const std::vector<float> errors = errors_of(simulator, field, error, ranks);
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
   const double most = largest(errors);
   // The worst on top, so that nothing hides it.
   std::vector<std::size_t> order(ranks.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/run_json.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -108,6 +109,21 @@ ordered_json registration_json(const RegistrationError& error, const Estimate& w
           {"stations", std::move(stations)}};
 }
 
+// Stations are numbered from 1.
+ordered_json targets_json(const std::vector<Target>& targets) {
+  ordered_json json = ordered_json::array();
+  for (const Target& target : targets) {
+    ordered_json stations = ordered_json::array();
+    for (const std::size_t station : target.stations) stations.push_back(station + 1);
+    json.push_back({{"name", target.name},
+                    {"position", to_json(target.centre)},
+                    {"sigma_m", target.control_m > 0 ? ordered_json(target.control_m) : ordered_json()},
+                    {"proposed", target.proposed},
+                    {"stations", std::move(stations)}});
+  }
+  return json;
+}
+
 ordered_json dropped_json(const std::vector<DroppedPoints>& dropped) {
   const DroppedPoints all = std::accumulate(dropped.begin(), dropped.end(), DroppedPoints{});
   return {{"points", all.points},
@@ -160,6 +176,13 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   json["x"] = entry.x;
   if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
   if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
+  if (!entry.targets.empty()) {
+    json["targets"] = targets_json(entry.targets);
+    json["registration_mm"] = {{"with_targets", entry.value("registration")},
+                               {"without_targets", known(1e3 * entry.without_targets_m.value_or(std::nan("")))}};
+    if (entry.registration && entry.registration->absolute_rms_m)
+      json["registration_mm"]["in_site_frame"] = 1e3 * *entry.registration->absolute_rms_m;
+  }
   if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.existing.size());
   return json;
 }
@@ -249,6 +272,11 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
+  if (!evaluation.targets.empty()) {
+    json["targets"] = targets_json(evaluation.targets);
+    if (evaluation.without_targets_m && evaluation.registration)
+      json["registration"]["without_targets_mm"] = 1e3 * *evaluation.without_targets_m;
+  }
   if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
   if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
   return json.dump();

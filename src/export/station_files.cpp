@@ -16,8 +16,9 @@ std::vector<Vec3> corners(const Box& box) {
 }  // namespace
 
 void write_stations(const std::filesystem::path& file, std::span<const PlacedStation> placed,
-                    std::span<const std::string> names, const StationLinks& links, Site& site) {
-  const NamedStations stations{placed, names};
+                    std::span<const std::string> names, const StationLinks& links, Site& site,
+                    std::span<const Target> targets) {
+  const NamedStations stations{placed, names, targets};
   const std::string extension = file.extension().string();
   if (extension == ".geojson")
     write_stations_geojson(file, stations, crs_text(site));

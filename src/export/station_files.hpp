@@ -16,6 +16,7 @@ namespace vantage {
 struct NamedStations {
   std::span<const PlacedStation> stations;
   std::span<const std::string> names;  // From `station_names()`.
+  std::span<const Target> targets = {};
 };
 
 // A point of the survey frame on WGS 84, in degrees, and its height: z, unchanged.

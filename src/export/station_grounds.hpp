@@ -24,4 +24,12 @@ inline std::vector<Vec3> grounds_of(const NamedStations& named) {
   return grounds;
 }
 
+inline std::vector<Vec3> centres_of(const NamedStations& named) {
+  std::vector<Vec3> centres;
+  for (const Target& target : named.targets) centres.push_back(target.centre);
+  return centres;
+}
+
+inline const char* kind_of(const Target& target) { return target.control_m > 0 ? "control point" : "target"; }
+
 }  // namespace vantage

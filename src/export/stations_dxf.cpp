@@ -57,11 +57,12 @@ class Drawing {
 
 struct Layer {
   const char* name;
-  int colour;  // AutoCAD colour index: 1 red, 3 green, 5 blue, 7 black or white, 8 grey
+  int colour;  // AutoCAD colour index: 1 red, 3 green, 2 yellow, 5 blue, 6 magenta, 7 black or white, 8 grey
 };
 constexpr Layer kStations{"STATIONS", 5}, kExisting{"STATIONS_EXISTING", 3}, kLeftOut{"STATIONS_LEFT_OUT", 1},
-    kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8};
-constexpr Layer kLayers[] = {kStations, kExisting, kLeftOut, kNames, kLinks, kArea};
+    kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8},
+    kTargets{"TARGETS", 6}, kControl{"CONTROL_POINTS", 2}, kTargetNames{"TARGET_NAMES", 7};
+constexpr Layer kLayers[] = {kStations, kExisting, kLeftOut, kNames, kLinks, kArea, kTargets, kControl, kTargetNames};
 
 void put_tables(Drawing& drawing) {
   drawing.begin("TABLES");
@@ -99,6 +100,7 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
   for (const Vec3& ground : grounds) box.extend(ground);
   for (const auto& ring : rings)
     for (const Vec3& p : ring) box.extend(p);
+  for (const Target& target : stations.targets) box.extend(target.centre);
   if (box.empty()) box.extend({});
   // Text that can be read on a sheet of the whole site.
   const double letter = std::clamp(std::max(box.size().x, box.size().y) / 80, 0.05, 5.0);
@@ -128,6 +130,14 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
     drawing.entity("TEXT", kNames.name);
     drawing.put(10, station.ground + Vec3{0.9 * letter, 0.4 * letter, 0}), drawing.put(40, letter);
     drawing.put(1, dxf_text(stations.names[i]));
+  }
+  for (const Target& target : stations.targets) {
+    const Layer& layer = target.control_m > 0 ? kControl : kTargets;
+    drawing.entity("POINT", layer.name), drawing.put(10, target.centre);
+    drawing.entity("CIRCLE", layer.name), drawing.put(10, target.centre), drawing.put(40, 0.3 * letter);
+    drawing.entity("TEXT", kTargetNames.name);
+    drawing.put(10, target.centre + Vec3{0.5 * letter, 0.3 * letter, 0}), drawing.put(40, 0.8 * letter);
+    drawing.put(1, dxf_text(target.name));
   }
   drawing.end();
   drawing.put(0, "EOF");

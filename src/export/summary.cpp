@@ -27,6 +27,12 @@ std::string duration(double seconds) {
   return minutes < 60 ? rest : std::to_string(minutes / 60) + " h " + rest;
 }
 
+// ", which is known to 0.7 %"
+std::string known_to(const std::optional<double>& growth) {
+  if (!growth || *growth <= 0) return {};
+  return *growth < 1 ? ", which is known to " + percent(*growth) : " from the few places that were looked at";
+}
+
 std::string captured_text(const Evaluation& evaluation) {
   const Estimate& coverage = evaluation.values.at("coverage");
   const double error = evaluation.exact ? 0 : coverage.standard_error;
@@ -38,7 +44,7 @@ std::string captured_text(const Evaluation& evaluation) {
     return text.empty() ? "not known: the time was over first" : text;
   const double own = capture->second.standard_error;
   return (text.empty() ? "about " : text + ", ") + percent(capture->second.value) +
-         (own > 0 ? " ± " + percent(own) : "") + " of what is attainable";
+         (own > 0 ? " ± " + percent(own) : "") + " of what is attainable" + known_to(evaluation.attainable_growth);
 }
 
 std::string links_text(const StationLinks& links, const std::vector<std::string>& names) {
@@ -86,30 +92,56 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
   return advice;
 }
 
-// "to about 28.5 mm, as predicted; at 95 % 56 mm, where LOA30 allows 15"
-std::string registered_text(const Evaluation& evaluation, const Estimate& registered) {
+// " S4 (61 mm), S7 (40 mm) and 3 more": stations whose part of the surface misses the class.
+std::string beyond_text(const Evaluation& evaluation, const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::pair<double, std::size_t>> beyond;
+  if (evaluation.registration)
+    for (std::size_t k = 0; k < evaluation.registration->stations.size(); ++k) {
+      const double error = error_at_95_percent(evaluation.registration->stations[k].rms_m);
+      if (error > largest_error_m(evaluation.accuracy_class)) beyond.emplace_back(-error, k);
+    }
+  std::ranges::sort(beyond);
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kNamed, beyond.size()); ++k)
+    text += (k == 0 ? " " : ", ") + names[beyond[k].second] + " (" + fixed(-1000 * beyond[k].first, 1) + " mm)";
+  return text + (beyond.size() > kNamed ? " and " + std::to_string(beyond.size() - kNamed) + " more" : "");
+}
+
+// "to about 2.1 mm, as predicted, with 6 targets (28.5 mm without); LOA30 (15 mm at 95 %) is met with 10.9 mm to spare"
+std::string registered_text(const Evaluation& evaluation, const Estimate& registered,
+                            const std::vector<std::string>& names) {
   const double rms_mm = registered.value, sampling_mm = evaluation.exact ? 0 : registered.standard_error;
   std::string text =
       "to about " + fixed(rms_mm, 2) + (sampling_mm > 0 ? " ± " + fixed(sampling_mm, 2) : "") + " mm, as predicted";
   const auto by = static_cast<std::size_t>(
       std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
-  if (!evaluation.targets.empty())
-    text += " with " + std::to_string(by) + (by == 1 ? " target" : " targets") + " that tie scans together";
+  if (!evaluation.targets.empty()) {
+    text += ", with " + std::to_string(by) + (by == 1 ? " target that ties" : " targets that tie") + " scans together";
+    if (evaluation.without_targets_m) text += " (" + fixed(1000 * *evaluation.without_targets_m, 2) + " mm without)";
+  }
   if (evaluation.registration && evaluation.registration->absolute_rms_m)
     text += ", and to " + fixed(1000 * *evaluation.registration->absolute_rms_m, 2) + " mm in the site's frame";
-  const double error = error_at_95_percent(rms_mm / 1000), most = largest_error_m(evaluation.accuracy_class);
-  const std::string name = to_string(evaluation.accuracy_class), bound = number(1000 * most) + " mm at 95 %";
-  return text + (error <= most
-                     ? "; " + name + " (" + bound + ") is met"
-                     : "; " + fixed(1000 * error, 0) + " mm at 95 %, more than " + name + " allows (" + bound + ")");
+  const double error_mm = 1000 * error_at_95_percent(rms_mm / 1000),
+               most_mm = 1000 * largest_error_m(evaluation.accuracy_class);
+  const std::string name = to_string(evaluation.accuracy_class) + " (" + number(most_mm) + " mm at 95 %)";
+  const std::string beyond = beyond_text(evaluation, names);
+  if (error_mm <= most_mm)
+    return text + "; " + name + " is met with " + fixed(most_mm - error_mm, 1) + " mm to spare" +
+           (beyond.empty() ? "" : ", but not at" + beyond);
+  return text + "; " + name + " is missed by " + fixed(error_mm - most_mm, 1) + " mm" +
+         (beyond.empty() ? "" : ", most at" + beyond);
 }
 
-// A registration that misses its class, if targets were not looked at.
+// A registration that misses its class.
 std::vector<std::string> registration_advice(const Evaluation& evaluation, double rms_mm) {
   if (error_at_95_percent(rms_mm / 1000) <= largest_error_m(evaluation.accuracy_class)) return {};
-  if (std::ranges::any_of(evaluation.targets, &Target::proposed)) return {};
-  return {"surfaces do not hold the scans together to " + to_string(evaluation.accuracy_class) +
-          ": let targets be proposed, or add stations that share more walls"};
+  const std::string what = "surfaces do not hold the scans together to " + to_string(evaluation.accuracy_class) + ": ";
+  const bool proposed = std::ranges::any_of(evaluation.targets, &Target::proposed);
+  if (!evaluation.without_targets_m || (!proposed && !evaluation.targets.empty()))
+    return {what + "let targets be proposed, or add stations that share more walls"};
+  return {what + (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
+          "put stations closer together, or take finer steps or larger targets"};
 }
 
 // A sentence for each station that is left out, or stands where none should.
@@ -143,7 +175,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (links) lines.push_back({"linked", links_text(*links, names)});
   const auto registered = evaluation.values.find("registration");
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
-    lines.push_back({"registered", registered_text(evaluation, registered->second)});
+    lines.push_back({"registered", registered_text(evaluation, registered->second, names)});
   if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
@@ -261,7 +293,8 @@ std::string trade_off_text(const PlanResult& result) {
     if (to - from > 3) shown[(from + to) / 2] = 1;
     from = to;
   }
-  std::string text = "stations   captured  registered  on site\n";
+  const bool targets = !result.front.empty() && !result.front[answer(result)].targets.empty();
+  std::string text = "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!shown[k]) continue;
     const TradeOffPoint& point = points[k];

@@ -64,9 +64,11 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
                               .names = names,
                               .links = links,
                               .title = title_of(entry),
-                              .errors = errors}))
+                              .errors = errors,
+                              .targets = entry.targets}))
     save("plan" + page.suffix, *page.canvas);
-  write_station_files(folder, {entry.stations, names}, links, site);
+  if (!entry.targets.empty()) write_targets_csv(folder / "targets.csv", entry.targets, names);
+  write_station_files(folder, {entry.stations, names, entry.targets}, links, site);
   return chosen;
 }
 

@@ -13,8 +13,8 @@
 namespace vantage {
 
 std::span<const std::string> built_in_scene_names() noexcept {
-  static const std::array<std::string, 7> kNames{"three-walls", "four-walls", "industrial", "office",
-                                                 "house",       "street",     "plant"};
+  static const std::array<std::string, 10> kNames{"three-walls", "four-walls", "industrial", "office",   "house",
+                                                  "street",      "plant",      "tunnel",     "corridor", "facade"};
   return kNames;
 }
 
@@ -26,7 +26,10 @@ void write_built_in_scene(const std::string& name, std::size_t triangles, const 
   for (const auto& [site, make] : {std::pair{"office", &sites::office},
                                    {"house", &sites::house},
                                    {"street", &sites::street},
-                                   {"plant", &sites::plant}})
+                                   {"plant", &sites::plant},
+                                   {"tunnel", &sites::tunnel},
+                                   {"corridor", &sites::corridor},
+                                   {"facade", &sites::facade}})
     if (name == site) return built_in::write_glb(sites::model_of(make()), file);
   std::string known;
   for (const std::string& scene : built_in_scene_names()) known += (known.empty() ? "" : ", ") + scene;

@@ -6,6 +6,7 @@
 
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
+#include "plan/answer_targets.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
@@ -233,9 +234,12 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
     take_in_confirmed(result, context, simulator, {.report = {}, .stop = watch.abort});
     result.attainable = context.confirmed.coverage();
   }
+  for (PlanEntry& entry : result.front)
+    if (limit_wanted) entry.attainable_growth = candidates->ended() == "all" ? 0 : candidates->change();
   result.candidates = std::move(candidates);
   if (!watch.abort.stop_requested()) work_out_rounds(result, context);
   put_answer_in_trade_off(result);
+  add_targets(result, site, context.measures(), {.report = {}, .stop = watch.abort});
   return result;
 }
 

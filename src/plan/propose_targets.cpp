@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numbers>
+#include <set>
 #include <utility>
 
 #include "evaluate/sight_targets.hpp"
@@ -26,19 +27,48 @@ constexpr double kLeastGain = 0.2;
 constexpr double kTargetClearance_m = 0.15;  // free space around a target's stand
 constexpr double kFromStations_m = 1.0;      // a scanner's tripod and its operator
 constexpr double kPassage_m = 0.65;          // a place with walls within this on both sides is a way through
+constexpr double kSwing_m = 1.0;             // from a way through, as far as the leaf of a door reaches
+constexpr double kUnderGround_m = 0.1;       // what lies so deep carries a stand
+// Least height of a triangle of targets that one scan measures, as a share of its longest side.
+constexpr double kLeastHeight = 0.05;
 // Sightings that a place is judged by, the most accurate ones: beyond them another scan adds little.
 constexpr std::size_t kJudgedSightings = 12;
 
+Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
+
 bool in_passage(const ClashChecker& clash, const Vec3& centre) {
-  constexpr double diagonal = 0.70710678118654752;
-  constexpr std::array<std::array<double, 2>, 4> ways{{{1, 0}, {0, 1}, {diagonal, diagonal}, {diagonal, -diagonal}}};
-  return std::ranges::any_of(ways, [&](const auto& way) {
-    const Vec3 step{way[0] * kPassage_m, way[1] * kPassage_m, 0};
-    return !clash.sees(centre, centre + step) && !clash.sees(centre, centre - step);
-  });
+  constexpr int kWays = 16;  // the jambs of a thin wall show along it only
+  for (int k = 0; k < kWays; ++k) {
+    const Vec3 step = level_way(std::numbers::pi * k / kWays) * kPassage_m;
+    if (!clash.sees(centre, centre + step) && !clash.sees(centre, centre - step)) return true;
+  }
+  return false;
+}
+
+// Where the leaf of a door may swing: a passage in free view is as near as a leaf is wide. The points looked at lie
+// close enough to meet a passage through a wall of 10 cm.
+bool in_swing(const ClashChecker& clash, const Vec3& centre) {
+  constexpr int kRings = 11;
+  for (int ring = kRings; ring > 0; --ring) {
+    const double radius = kSwing_m * ring / kRings;
+    const int ways = 6 * ring;
+    for (int k = 0; k < ways; ++k) {
+      const Vec3 there = centre + level_way(2 * std::numbers::pi * k / ways) * radius;
+      if (clash.distance(there, kPassage_m) < kPassage_m && clash.sees(centre, there) && in_passage(clash, there))
+        return true;
+    }
+  }
+  return false;
+}
+
+// A pane of glass with nothing solid under it.
+bool on_glass(const ClashChecker& clash, const Vec3& centre, const Vec3& ground) {
+  const Vec3 below = ground - Vec3{0, 0, kUnderGround_m};
+  return !clash.sees(centre, below) && clash.ray_passes(centre, below);
 }
 
 std::vector<Target> places_of(Site& site, std::span<const PlacedStation> stations, const TargetOptions& options) {
+  const ClashChecker& clash = site.clash();
   std::vector<Target> places;
   for (const PlacedStation& place : candidate_positions(site, kPlaces)) {
     const Vec3 centre = place.ground + Vec3{0, 0, options.height_m};
@@ -46,11 +76,39 @@ std::vector<Target> places_of(Site& site, std::span<const PlacedStation> station
       const Vec3 between = station.ground - place.ground;
       return std::hypot(between.x, between.y) < kFromStations_m && std::abs(between.z) < options.height_m;
     };
-    if (std::ranges::any_of(stations, near) || in_passage(site.clash(), centre)) continue;
-    if (site.clash().distance(centre, kTargetClearance_m) < kTargetClearance_m) continue;
+    if (std::ranges::any_of(stations, near) || clash.distance(centre, kTargetClearance_m) < kTargetClearance_m)
+      continue;
+    if (on_glass(clash, centre, place.ground)) continue;
     places.push_back({.centre = centre, .proposed = true});
   }
   return places;
+}
+
+// Places that some two stations measure, off passages and doors.
+std::vector<Target> useful(const ClashChecker& clash, std::vector<Target> places) {
+  std::erase_if(places, [&](const Target& place) {
+    return place.stations.size() < 2 || in_passage(clash, place.centre) || in_swing(clash, place.centre);
+  });
+  return places;
+}
+
+// Whether a station measures all three targets, and they lie nearly on a line.
+bool on_a_line(const Target& a, const Target& b, const Target& c) {
+  const bool together = std::ranges::any_of(a.stations, [&](std::size_t station) {
+    return std::ranges::binary_search(b.stations, station) && std::ranges::binary_search(c.stations, station);
+  });
+  if (!together) return false;
+  const Vec3 ab = b.centre - a.centre, ac = c.centre - a.centre, bc = c.centre - b.centre;
+  const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});  // squared
+  const double twice_area_squared = dot(ab, ab) * dot(ac, ac) - dot(ab, ac) * dot(ab, ac);
+  return twice_area_squared < kLeastHeight * kLeastHeight * longest * longest;
+}
+
+bool on_a_line_with_any(const Target& target, std::span<const Target> others) {
+  for (std::size_t i = 0; i < others.size(); ++i)
+    for (std::size_t j = i + 1; j < others.size(); ++j)
+      if (on_a_line(target, others[i], others[j])) return true;
+  return false;
 }
 
 // Chooses places by what each takes from the mean square error, without an adjustment for each: a target's
@@ -58,34 +116,24 @@ std::vector<Target> places_of(Site& site, std::span<const PlacedStation> station
 class TargetChooser {
  public:
   TargetChooser(const RegistrationAdjustment& adjustment, std::span<const RegistrationTarget> places)
-      : adjustment_(adjustment),
-        covariance_(adjustment.covariance()),
-        metric_(adjustment.metric()),
-        open_(places.size(), true) {
+      : adjustment_(adjustment), covariance_(adjustment.covariance()), metric_(adjustment.metric()) {
+    weighted_ = covariance_ * metric_ * covariance_;
     for (const RegistrationTarget& place : places) rows_.push_back(rows_of(place));
   }
 
-  double mean_square() const { return (metric_.cwiseProduct(covariance_)).sum(); }
+  double mean_square() const { return std::max((metric_.cwiseProduct(covariance_)).sum(), 0.0); }
 
-  // Takes the best place that is left; empty if none gains the least share. REQUIRES: symmetric matrices.
-  std::optional<std::size_t> take(double least_share) {
-    const MatrixXd weighted = covariance_ * metric_ * covariance_;
-    double best_gain = least_share * mean_square();
-    std::optional<std::size_t> best;
-    for (std::size_t k = 0; k < rows_.size(); ++k) {
-      if (!open_[k] || rows_[k].columns.empty()) continue;
-      const double gain = inner(k).llt().solve(product(k, weighted)).trace();
-      if (gain > best_gain) best_gain = gain, best = k;
-    }
-    if (!best) return best;
-    open_[*best] = false;
-    const Rows& rows = rows_[*best];
-    MatrixXd by_covariance = MatrixXd::Zero(rows.values.rows(), covariance_.cols());
-    for (std::size_t c = 0; c < rows.columns.size(); ++c)
-      by_covariance += rows.values.col(static_cast<Index>(c)) * covariance_.row(rows.columns[c]);
-    covariance_ -= by_covariance.transpose() * inner(*best).llt().solve(by_covariance);
-    return best;
+  // What a target at a place takes from the mean square error; 0 if fewer than two stations measure it.
+  double gain(std::size_t place) const {
+    if (rows_[place].columns.empty()) return 0;
+    return (identity(place) + product(place, covariance_)).llt().solve(product(place, weighted_)).trace();
   }
+  // What it grows by without the target at a place, which was put there.
+  double loss(std::size_t place) const {
+    return (identity(place) - product(place, covariance_)).llt().solve(product(place, weighted_)).trace();
+  }
+  void put(std::size_t place) { change(place, 1); }
+  void take_away(std::size_t place) { change(place, -1); }
 
  private:
   // U without its columns of zeros.
@@ -128,17 +176,63 @@ class TargetChooser {
     const Rows& rows = rows_[place];
     return rows.values * m(rows.columns, rows.columns) * rows.values.transpose();
   }
-  // I + U C Uᵀ
-  MatrixXd inner(std::size_t place) const {
-    const Index size = rows_[place].values.rows();
-    return MatrixXd::Identity(size, size) + product(place, covariance_);
+  MatrixXd identity(std::size_t place) const {
+    return MatrixXd::Identity(rows_[place].values.rows(), rows_[place].values.rows());
+  }
+  // The covariance C becomes C ∓ B with B = C Uᵀ (I ± U C Uᵀ)⁻¹ U C, and C M C with it: a few rows by all columns.
+  void change(std::size_t place, double sign) {
+    const Rows& rows = rows_[place];
+    MatrixXd uc = MatrixXd::Zero(rows.values.rows(), covariance_.cols());
+    for (std::size_t c = 0; c < rows.columns.size(); ++c)
+      uc += rows.values.col(static_cast<Index>(c)) * covariance_.row(rows.columns[c]);
+    const MatrixXd solved = (identity(place) + sign * product(place, covariance_)).llt().solve(uc);
+    const MatrixXd ucm = uc * metric_, ucmc = ucm * covariance_, inner = ucm * uc.transpose();
+    const MatrixXd cross = solved.transpose() * ucmc;
+    weighted_ += solved.transpose() * inner * solved - sign * (cross + cross.transpose());
+    covariance_ -= sign * solved.transpose() * uc;
   }
 
   const RegistrationAdjustment& adjustment_;
-  MatrixXd covariance_, metric_;
+  MatrixXd covariance_, metric_, weighted_;  // C, M and C M C
   std::vector<Rows> rows_;
-  std::vector<bool> open_;
 };
+
+// Places for targets, in the order of their choice: the fewest that greedy choice finds, without those that later ones
+// made needless. Returns nothing if it was stopped.
+std::optional<std::vector<std::size_t>> choose(TargetChooser& chooser, std::span<const Target> places,
+                                               std::vector<Target> there, std::size_t stations,
+                                               const TargetOptions& options, const Progress& progress) {
+  const double allowed = allowed_rms_m(options) * allowed_rms_m(options);
+  std::vector<std::size_t> chosen;
+  std::vector<bool> open(places.size(), true);
+  while (chosen.size() < options.most && (chooser.mean_square() > allowed || chosen.size() < options.least)) {
+    if (progress.stopped()) return std::nullopt;
+    std::vector<std::pair<double, std::size_t>> gains;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (open[k]) gains.emplace_back(chooser.gain(k), k);
+    std::ranges::stable_sort(gains, std::ranges::greater{}, &std::pair<double, std::size_t>::first);
+    const double least = chosen.size() < options.least
+                             ? 0
+                             : kLeastGain / static_cast<double>(stations) * chooser.mean_square();
+    const auto best = std::ranges::find_if(gains, [&](const auto& one) {
+      // Further targets do not mend a line.
+      if (one.first > least && on_a_line_with_any(places[one.second], there)) open[one.second] = false;
+      return open[one.second];
+    });
+    if (best == gains.end() || !(best->first > least)) break;
+    open[best->second] = false;
+    chooser.put(best->second);
+    chosen.push_back(best->second);
+    there.push_back(places[best->second]);
+  }
+  while (chosen.size() > options.least && chooser.mean_square() <= allowed) {
+    const auto needless = std::ranges::min_element(chosen, {}, [&](std::size_t k) { return chooser.loss(k); });
+    if (chooser.mean_square() + chooser.loss(*needless) > allowed) break;
+    chooser.take_away(*needless);
+    chosen.erase(needless);
+  }
+  return chosen;
+}
 
 }  // namespace
 
@@ -149,8 +243,12 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   const bool all = registration.surfaces == RegistrationSurfaces::all;
   Simulator& simulator = site.simulator();
   const Network network = to_network(stations);
-  const SampleOptions sampled{.voxels = kSampleVoxels, .registration = registration.model};
-  const NetworkCounts counts = simulator.evaluate_sampled({&network, 1}, sampled, progress).front();
+  const NetworkCounts counts =
+      options.exact ? simulator.evaluate(network, {.registration = registration.model}, progress)
+                    : simulator
+                          .evaluate_sampled({&network, 1},
+                                            {.voxels = kSampleVoxels, .registration = registration.model}, progress)
+                          .front();
   NetworkCounts around;
   if (all && !counts.cancelled)
     around = site.surroundings().evaluate(network, {.registration = registration.model},
@@ -158,34 +256,39 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   if (counts.cancelled || around.cancelled) return std::nullopt;
   const std::uint64_t around_voxels = all ? site.surroundings().voxel_count() : 0;
   const NetworkCounts* const surroundings = all ? &around : nullptr;
+  const auto predicted = [&](std::span<const RegistrationTarget> targets) {
+    return registration_error(counts, simulator.voxel_count(), registration, surroundings, around_voxels, targets);
+  };
 
   TargetProposal proposal{.targets = std::move(given), .reach_m = target_reach_m(site.scanner(), options)};
   std::vector<RegistrationTarget> sighted = sight_targets(simulator, site.clash(), stations, proposal.targets, options);
-  proposal.without =
-      registration_error(counts, simulator.voxel_count(), registration, surroundings, around_voxels, sighted);
+  proposal.without = predicted({});
+  proposal.with = sighted.empty() ? proposal.without : predicted(sighted);
+  const bool enough = proposal.with.rms_m <= allowed_rms_m(options) && options.least == 0;
+  if (enough || options.most == 0 || stations.size() < 2) return proposal;
 
   std::vector<Target> places = places_of(site, stations, options);
+  sight_targets(simulator, site.clash(), stations, places, options);
+  places = useful(site.clash(), std::move(places));
   const std::vector<RegistrationTarget> all_places = sight_targets(simulator, site.clash(), stations, places, options);
   const RegistrationInputs inputs =
       registration_inputs(counts, simulator.voxel_count(), registration, surroundings, around_voxels);
   const RegistrationAdjustment adjustment(inputs.held_by, inputs.share, inputs.covered, registration, sighted);
-  std::vector<RegistrationTarget> chosen = sighted;
-  if (adjustment.covers_something()) {
-    TargetChooser chooser(adjustment, all_places);
-    for (std::size_t many = 0; many < options.most; ++many) {
-      if (progress.stopped()) return std::nullopt;
-      if (error_at_95_percent(std::sqrt(std::max(chooser.mean_square(), 0.0))) <= largest_error_m(options.wanted))
-        break;
-      const std::optional<std::size_t> best =
-          chooser.take(kLeastGain / static_cast<double>(adjustment.stations().size()));
-      if (!best) break;
-      proposal.targets.push_back(places[*best]);
-      proposal.targets.back().name = "T" + std::to_string(many + 1);
-      chosen.push_back(all_places[*best]);
-    }
+  if (!adjustment.covers_something() || places.empty()) return proposal;
+  TargetChooser chooser(adjustment, all_places);
+  const auto chosen =
+      choose(chooser, places, proposal.targets, adjustment.stations().size(), options, progress);
+  if (!chosen) return std::nullopt;
+  std::set<std::string> names;
+  for (const Target& target : proposal.targets) names.insert(target.name);
+  std::size_t number = 0;
+  for (const std::size_t k : *chosen) {
+    Target& target = proposal.targets.emplace_back(places[k]);
+    do target.name = "T" + std::to_string(++number);
+    while (names.contains(target.name));
+    sighted.push_back(all_places[k]);
   }
-  proposal.with =
-      registration_error(counts, simulator.voxel_count(), registration, surroundings, around_voxels, chosen);
+  if (!chosen->empty()) proposal.with = predicted(sighted);
   return proposal;
 }
 

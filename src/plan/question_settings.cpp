@@ -196,6 +196,19 @@ const SettingTable<SurveyQuestion>& question_settings() {
                       return FitnessWeights{weights[0], weights[1], weights[2]};
                     })
           .include(registration_settings(), &Question::registration)
+          .group("Targets")
+          .custom(
+              "targets", "auto|off|N",
+              "Targets to propose, spheres or checkerboards that tie scans together: as few as the registration needs "
+              "where surfaces do not hold scans (auto, the default), none, or a number",
+              [](Question& q, const std::string& text, const std::string& what) {
+                if (text == "auto")
+                  q.targets.reset();
+                else
+                  q.targets = text == "off" ? 0 : parse_count(text, what, 0, 1000);
+              },
+              [](const Question& q) { return q.targets.has_value(); })
+          .include(target_settings(), &Question::target)
           .take();
   return table;
 }

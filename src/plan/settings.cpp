@@ -17,6 +17,15 @@ nlohmann::ordered_json to_json(const Objective& objective) {
           {"parameters", objective.parameters}};
 }
 
+nlohmann::ordered_json to_json(const std::vector<Target>& targets) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Target& target : targets)
+    json.push_back({{"name", target.name},
+                    {"centre", {target.centre.x, target.centre.y, target.centre.z}},
+                    {"sigma_m", target.control_m}});
+  return json;
+}
+
 }  // namespace
 
 Settings settings(const OnSiteOptions& options) {
@@ -60,7 +69,17 @@ Settings settings(const SurveyProblem& problem) {
   SettingList setups;
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
   if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
+  // Targets are proposed for the answer of a search, and decide nothing in it.
+  if (problem.targets) setups.add("targets", *problem.targets, {"targets", false});
+  if (!problem.existing_targets.empty())
+    setups.add("existing_targets", to_json(problem.existing_targets), {.decides = false});
   for (Setting& setting : setups.take()) list.push_back(std::move(setting));
+  const Settings usual_target = settings(TargetOptions{});
+  Settings target = settings(problem.target);
+  for (std::size_t k = 0; k < target.size(); ++k) {
+    target[k].decides = false;
+    if (target[k].json != usual_target[k].json) list.push_back(std::move(target[k]));
+  }
   const Settings usual = settings(RegistrationOptions{});
   for (std::size_t k = 0; k < usual.size(); ++k) {
     Setting setting = settings(problem.registration)[k];

@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-constexpr double kPanelWidth = 196, kMark = 9;                // radius of a station's mark
+constexpr double kPanelWidth = 196, kMark = 9, kTargetMark = 4.5;  // radii of the marks of stations and targets
 constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;  // ratios at which walls and marks still tell apart
 constexpr std::size_t kPixels = 2;  // a point that a map is painted with; twice as many, halved, on A4
 constexpr double kFaded = 0.5;      // of a map's colours, so that pencil shows
@@ -187,6 +187,28 @@ class MapSheet {
         tape(spots[i], at(corner.x, corner.y), corner.distance_m);
   }
 
+  // Marks of the targets with their names, and their distances to corners.
+  void targets(std::span<const Target> targets, const std::vector<TargetFacts>& facts) {
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < targets.size(); ++k)
+      if (stands_on(targets[k], level_) && holds(targets[k].centre)) shown.push_back(k);
+    const auto spot = [&](std::size_t k) { return at(targets[k].centre); };
+    for (const std::size_t k : shown) {
+      const Point p = spot(k);
+      taken_.push_back({p.x - kTargetMark, p.y - kTargetMark, 2 * kTargetMark, 2 * kTargetMark});
+      for (const WallCorner& corner : facts[k].corners) {
+        sheet.canvas->line(p, at(corner.x, corner.y), {.colour = kTape, .width = 0.6});
+        sheet.canvas->disc(at(corner.x, corner.y), 1.6, kTape);
+      }
+    }
+    for (const std::size_t k : shown) draw_target(*sheet.canvas, spot(k), targets[k].control_m > 0, kTargetMark);
+    for (const std::size_t k : shown)
+      label(spot(k), kTargetMark + 2, targets[k].name, {.size = 8, .bold = true, .across = Align::middle, .halo = 1.5},
+            true);
+    for (const std::size_t k : shown)
+      for (const WallCorner& corner : facts[k].corners) tape(spot(k), at(corner.x, corner.y), corner.distance_m);
+  }
+
   void rooms(std::span<const Room> rooms) {
     for (const Room& room : rooms) {
       const Vec3 middle = room.box.centre();
@@ -320,7 +342,7 @@ class SheetPanel {
          {.size = 7.5, .colour = kFaintInk}, 14);
   }
 
-  void legend(bool cut, bool route, bool tape, bool kept, bool left_out) {
+  void legend(bool cut, bool route, bool tape, bool kept, bool left_out, bool targets, bool control) {
     Canvas& canvas = *sheet_.canvas;
     constexpr TextStyle text{.size = 8};
     const auto words = [&](const std::string& what) {
@@ -339,6 +361,14 @@ class SheetPanel {
       example.existing = false, example.status = StationStatus::clash;
       draw_station(canvas, {x_ + 9, y_}, "S2", example, 6.5);
       words("left out: no place to stand");
+    }
+    if (targets) {
+      draw_target(canvas, {x_ + 9, y_}, false, kTargetMark);
+      words("target: sphere or checkerboard");
+    }
+    if (control) {
+      draw_target(canvas, {x_ + 9, y_}, true, kTargetMark);
+      words("control point: known coordinates");
     }
     if (route) {
       canvas.line({x_, y_}, {x_ + 18, y_}, {.colour = kRoute, .width = 1.1, .dashes = {5, 2.5}});
@@ -382,6 +412,7 @@ class SheetPanel {
                   figures);
       std::string more = f.note;
       const auto add = [&](const std::string& text) { more += (more.empty() ? "" : "; ") + text; };
+      if (!f.targets.empty()) add("targets " + f.targets);
       if (!f.corners.empty()) add("corners " + tape_text(f.corners));
       if (!three && f.alone > 0) add("alone: " + f.alone_where);
       canvas.text({x_ + 17, y_ + 9}, fitted(canvas, more, room - x_ - 17, faint), faint);
@@ -407,7 +438,8 @@ class SheetPanel {
 
 }  // namespace
 
-FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, Site& site) {
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
+                         const std::vector<TargetFacts>& of_targets, Site& site) {
   const Scene& scene = site.scene();
   const Evaluation& network = report.shown();
   const std::vector<PlacedStation>& stations = network.stations;
@@ -431,6 +463,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     } else {
       if (network.visit) map.route(*network.visit);
       map.stations(stations, facts);
+      map.targets(network.targets, of_targets);
     }
     map.rooms(scene.rooms());
     map.unclip();
@@ -448,11 +481,16 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     panel.scale_and_north(report.crs);
     if (level.cut) panel.cut_over(*level.cut - level.floor);
     const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
+    const auto target_here = [&](bool control) {
+      return std::ranges::any_of(network.targets, [&](const Target& target) {
+        return (target.control_m > 0) == control && stands_on(target, level) && map.holds(target.centre);
+      });
+    };
     if (!overview)
       panel.legend(level.cut.has_value(), network.visit && !overview,
                    any([&](std::size_t k) { return !facts[k].corners.empty(); }),
                    any([&](std::size_t k) { return stations[k].existing; }),
-                   any([&](std::size_t k) { return !active(stations[k]); }));
+                   any([&](std::size_t k) { return !active(stations[k]); }), target_here(false), target_here(true));
     panel.list(shown, facts, stations);
     all.sheets.push_back(std::move(map.sheet));
     all.names.push_back(name);
@@ -466,7 +504,10 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
                                                ", floor at z = " + fixed(level.floor, 2) + " m"
                                          : "Map of the stations";
     name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
-    const SheetLayout layout = layout_of(level, site.area().mesh(), spots);
+    std::vector<Vec3> marks = spots;
+    for (const Target& target : network.targets)
+      if (stands_on(target, level)) marks.push_back(target.centre);
+    const SheetLayout layout = layout_of(level, site.area().mesh(), marks);
     if (layout.tiles.size() > 1) {
       Box box;
       for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);

@@ -18,6 +18,7 @@ struct FieldSheets {
 };
 
 // Each level with a station, from the lowest; an overview before those that take several sheets.
-FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, Site& site);
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
+                         const std::vector<TargetFacts>& of_targets, Site& site);
 
 }  // namespace vantage

@@ -30,6 +30,7 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
   }
   for (const PlanEntry& entry : result.front) report.networks.push_back({entry, entry.dominated});
   report.facts = report_facts(report, site.simulator());
+  report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   return report;
 }
 
@@ -44,6 +45,7 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
     if (evaluation.values.contains(name)) report.measures.push_back(make_objective(name));
   if (!report.options.field && !evaluation.field.count.empty()) report.options.field = &evaluation.field;
   report.facts = report_facts(report, site.simulator());
+  report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   return report;
 }
 

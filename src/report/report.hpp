@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "report/accuracy.hpp"
 #include "vantage/report.hpp"
 #include "vantage/summary.hpp"
 
@@ -32,6 +34,7 @@ struct Report {
   std::vector<SummaryLine> ground = {};        // a plane laid under the model, and floor that is not entered
   std::string parameters = "{}";               // JSON text of an object
   std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
+  std::optional<Accuracy> accuracy = {};                        // of the answer, by room or mesh
   // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 

@@ -57,11 +57,15 @@
     factWords(at('facts'), report.facts.filter((f) => k === report.answer || !['stations', 'at each', 'in all'].includes(f.heading)));
     stationTable(at('stations'), network, pick);
     at('round').textContent = roundWords(network);
+    targetTable(at('targets'), network);
+    at('targets-section').hidden = !network.targets.length;
+    accuracyTable(at('accuracy'), at('accuracy-words'), k === report.answer ? report.accuracy : null);
+    at('accuracy-section').hidden = k !== report.answer || !report.accuracy;
     linkTable(at('links'), at('links-words'), network);
     valuesTable(at('values'), report, network);
     only = null;
     if (view) {
-      view.setNetwork(network.stations, network.links || [], network.visit);
+      view.setNetwork(network.stations, network.links || [], network.visit, network.targets);
       const kept = report.view.cells && report.view.cells.networks[k];
       const [coverage, alone] = kept ? await Promise.all([unpack(kept.coverage), unpack(kept.only)]) : [null, null];
       if (current !== k) return;  // another was picked meanwhile
@@ -86,6 +90,8 @@
     if (mode !== 'plain') item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed');
     if (view.known && mode !== 'plain') item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees');
     item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke');
+    if (network.targets.length)
+      item(`background:conic-gradient(${VIEW_COLOURS.target[1]} 25%,${VIEW_COLOURS.target[0]} 0 50%,${VIEW_COLOURS.target[1]} 0 75%,${VIEW_COLOURS.target[0]} 0);border-radius:50%;border:1.5px solid ${VIEW_COLOURS.target[0]}`, 'target or control point', 'disc');
     if (network.visit && network.visit.ways.length) item(`background:${VIEW_COLOURS.route}`, 'the round', 'stroke');
     item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke');
     if (kept && kept.sample > 0 && mode === 'coverage') items.push(element('span', { class: 'muted' }, `colours from a sample of ${grouped(kept.sample)} voxels`));

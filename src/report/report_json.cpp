@@ -100,6 +100,18 @@ ordered_json visit_json(const Visit& visit, std::size_t kept, bool paths) {
           {"walk_min", visit.walk_min}, {"minutes", visit.minutes},       {"ways", std::move(ways)}};
 }
 
+// Stations by their places in the network.
+ordered_json targets_json(const std::vector<Target>& targets) {
+  ordered_json json = ordered_json::array();
+  for (const Target& target : targets)
+    json.push_back({{"name", target.name},
+                    {"at", point_json(target.centre)},
+                    {"control_mm", target.control_m > 0 ? ordered_json(1e3 * target.control_m) : ordered_json()},
+                    {"proposed", target.proposed},
+                    {"stations", target.stations}});
+  return json;
+}
+
 }  // namespace
 
 ordered_json network_json(const Evaluation& network, std::span<const Requirement> requirements) {
@@ -122,6 +134,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
     const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
     json["visit"] = visit_json(*network.visit, kept, true);
   }
+  json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
   if (network.visit) json["seconds_on_site"] = 60 * network.visit->minutes;
   if (const auto links = network.links()) {
@@ -173,6 +186,21 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
   return json;
 }
 
+ordered_json accuracy_json(const Report& report) {
+  if (!report.accuracy) return nullptr;
+  ordered_json rows = ordered_json::array();
+  for (const PlaceAccuracy& place : report.accuracy->places)
+    rows.push_back({{"name", place.name},
+                    {"mean_mm", 1000 * place.mean_m},
+                    {"worst_mm", 1000 * place.worst_m},
+                    {"beyond", place.beyond}});
+  const AccuracyClass wanted = report.shown().accuracy_class;
+  return {{"by", report.accuracy->by_room ? "room" : "mesh"},
+          {"class", to_string(wanted)},
+          {"allowed_mm", 1000 * largest_error_m(wanted)},
+          {"rows", std::move(rows)}};
+}
+
 // As the address of a picture in a page; empty: none.
 std::string logo_json(const std::filesystem::path& file) {
   if (file.empty()) return "";
@@ -215,6 +243,7 @@ ordered_json report_json(const Report& report) {
           {"measures", std::move(measures)},
           {"networks", std::move(networks)},
           {"missed", missed_json(report)},
+          {"accuracy", accuracy_json(report)},
           {"trade_off", trade_off_json(report.trade_off)},
           {"parameters", ordered_json::parse(report.parameters)}};
 }

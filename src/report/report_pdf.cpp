@@ -48,7 +48,8 @@ void front_plans(Sheet& sheet, const Evaluation& network, Site& site) {
                                          .names = station_names(network.stations, network.names),
                                          .links = links,
                                          .title = "Stations and links",
-                                         .errors = errors});
+                                         .errors = errors,
+                                         .targets = network.targets});
   std::vector<const Canvas*> plans;
   for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k) plans.push_back(pages[k].canvas.get());
   const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), network.stations);
@@ -166,6 +167,51 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
               });
 }
 
+// Where each target stands, and then which of them each station must see.
+void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<StationFacts>& facts,
+                    const std::vector<TargetFacts>& of_targets) {
+  sheets.emplace_back(a4());
+  const auto head = [&](const std::string& title, const std::string& words) {
+    Sheet& sheet = sheets.back();
+    sheet.heading(title);
+    sheet.words(Sheet::kMargin, words, {.size = 9, .colour = kFaintInk});
+    sheet.y += 6;
+  };
+  head("Targets",
+       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks. "
+       "Put all up before the first scan, and leave them until the last.");
+  write_table(sheets, a4(),
+              {{"Target", 50, Align::start},
+               {"x", 66},
+               {"y", 66},
+               {"z", 48},
+               {"Corners", 88},
+               {"Kind", 78, Align::start},
+               {"Measured by", 130, Align::start}},
+              of_targets.size(), of_targets.size(), "", [&](std::size_t k) -> std::vector<std::string> {
+                const Target& target = network.targets[k];
+                return {target.name,
+                        fixed(target.centre.x, 3),
+                        fixed(target.centre.y, 3),
+                        fixed(target.centre.z, 3),
+                        tape_text(of_targets[k].corners),
+                        of_targets[k].kind,
+                        of_targets[k].stations.empty() ? "no station" : of_targets[k].stations};
+              });
+  std::vector<std::size_t> order = visiting_order(facts);
+  std::erase_if(order, [&](std::size_t k) { return facts[k].targets.empty(); });
+  constexpr double kLeastLeft = 140;
+  if (sheets.back().left() < kLeastLeft) sheets.emplace_back(a4());
+  sheets.back().y += 18;
+  head("Targets that each station must see",
+       "In the order of visiting. Before a scan, look along the line to each: nothing may stand in it.");
+  write_table(sheets, a4(), {{"No.", 30}, {"Station", 70, Align::start}, {"Targets", 380, Align::start}}, order.size(),
+              order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
+                const StationFacts& f = facts[order[row]];
+                return {f.visit > 0 ? std::to_string(f.visit) : "", f.name, f.targets};
+              });
+}
+
 // The links that the survey depends on, its maximum spanning tree: bridges first, then the weakest.
 std::vector<ShownLink> tree_of(const StationLinks& network) {
   std::vector<ShownLink> links = links_of(network);
@@ -197,6 +243,28 @@ void links_table(std::vector<Sheet>& sheets, const StationLinks& network, const 
                 if (network.weakest == std::pair(link.a, link.b))
                   note += std::string(note.empty() ? "" : ", ") + "weakest that the survey depends on";
                 return {names[link.a], names[link.b], percent(link.overlap), note};
+              });
+}
+
+void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, AccuracyClass wanted) {
+  Sheet& sheet = sheets.back();
+  sheet.heading(accuracy.by_room ? "Accuracy by room" : "Accuracy by mesh");
+  sheet.words(Sheet::kMargin,
+              "Predicted registration error at 95 %, the worst first. " + to_string(wanted) + " allows " +
+                  number(1000 * largest_error_m(wanted)) + " mm; beyond: share of the seen surface with more.",
+              {.size = 9, .colour = kFaintInk});
+  sheet.y += 6;
+  const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
+  write_table(sheets, a4(),
+              {{accuracy.by_room ? "Room" : "Mesh", 230, Align::start},
+               {"mean, mm", 75},
+               {"worst place, mm", 95},
+               {"beyond", 70},
+               {"", 60, Align::start}},
+              accuracy.places.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+                const PlaceAccuracy& place = accuracy.places[k];
+                return {place.name, fixed(1000 * place.mean_m, 2), fixed(1000 * place.worst_m, 2),
+                        percent(place.beyond), place.beyond > 0 ? "not met" : "met"};
               });
 }
 
@@ -259,13 +327,19 @@ void write_report_pdf(const std::filesystem::path& file, const Report& report, S
   const std::vector<StationFacts> facts = station_facts(report, site.simulator());
   std::vector<Sheet> sheets;
   sheets.push_back(front_sheet(report, site));
-  FieldSheets maps = field_sheets(report, facts, site);
+  const std::vector<TargetFacts> of_targets = target_facts(report, site.simulator());
+  FieldSheets maps = field_sheets(report, facts, of_targets, site);
   const std::size_t first_map = sheets.size() + 1;
   std::ranges::move(maps.sheets, std::back_inserter(sheets));
   stations_table(sheets, network, facts, maps.of_station, first_map);
+  if (!network.targets.empty()) targets_tables(sheets, network, facts, of_targets);
   if (const auto links = network.links()) {
     sheets.emplace_back(a4());
     links_table(sheets, *links, station_names(network.stations, network.names));
+  }
+  if (report.accuracy && !report.accuracy->places.empty()) {
+    sheets.emplace_back(a4());
+    accuracy_table(sheets, *report.accuracy, network.accuracy_class);
   }
   if (report.options.missed && !report.options.missed->shares.empty()) {
     sheets.emplace_back(a4());

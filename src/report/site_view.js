@@ -14,6 +14,7 @@ const VIEW_COLOURS = {
   route: '#e07b00',
   station: '#1d4f91',
   existing: '#6b2a70',
+  target: ['#1a1a1f', '#ffffff'],
 };
 
 const vertexShader = `
@@ -202,6 +203,7 @@ class SiteView {
     this.size.textContent = `${across[0].toFixed(1)} × ${across[1].toFixed(1)} m, ${across[2].toFixed(1)} m high`;
     this.labels = [];
     this.stations = [];
+    this.targets = [];
     this.visit = null;
     this.links = [];
     this.selected = null;
@@ -256,8 +258,9 @@ class SiteView {
   local(point) { return new THREE.Vector3(...point.map((v, k) => v - this.view.origin[k])); }
 
   // `stations` and `links` in the form of the report.
-  setNetwork(stations, links, visit = null) {
+  setNetwork(stations, links, visit = null, targets = []) {
     this.stations = stations;
+    this.targets = targets;
     this.visit = visit;
     // Of many links those that the survey depends on.
     const kMost = 4 * stations.length;
@@ -274,17 +277,26 @@ class SiteView {
       label.hidden = !station.head;
       this.holder.append(label);
       return label;
-    });
+    }).concat(targets.map((target) => {
+      const label = document.createElement('span');
+      label.className = 'label target';
+      label.textContent = target.name;
+      this.holder.append(label);
+      return label;
+    }));
     this.drawMarks();
   }
+
+  // Of the k-th label.
+  placeOf(k) { return k < this.stations.length ? this.stations[k].head : this.targets[k - this.stations.length].at; }
 
   // The same stations at other positions.
   moveStations(stations, links) {
     this.stations = stations;
     this.links = links;
-    this.labels.forEach((label, k) => {
-      label.classList.toggle('left-out', !stations[k].active);
-      label.hidden = !stations[k].head;
+    stations.forEach((station, k) => {
+      this.labels[k].classList.toggle('left-out', !station.active);
+      this.labels[k].hidden = !station.head;
     });
     this.drawMarks();
   }
@@ -312,6 +324,12 @@ class SiteView {
       add(new THREE.SphereGeometry(size, 20, 14), colour, head);
       rod(this.local(station.ground), head, size * 0.18, colour);
     });
+    for (const target of this.targets) {
+      const at = this.local(target.at);
+      if (!this.shown(at)) continue;
+      for (let k = 0; k < 4; ++k)  // checkered all around
+        add(new THREE.SphereGeometry(0.8 * size, 6, 12, (k * Math.PI) / 2, Math.PI / 2), VIEW_COLOURS.target[k % 2], at);
+    }
     if (this.visit) this.addRoute(size);
     const most = Math.max(0.5, ...this.links.map((link) => link.value));
     for (const link of this.links) {
@@ -512,9 +530,9 @@ class SiteView {
       return keys;
     };
     const places = this.labels.map((label, k) => {
-      const station = this.stations[k];
-      if (!station.head) return null;
-      const head = this.local(station.head), at = head.clone().project(this.camera);
+      const place = this.placeOf(k);
+      if (!place) return null;
+      const head = this.local(place), at = head.clone().project(this.camera);
       label.hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05 || Boolean(this.standing);
       return label.hidden ? null : { k, label, off: !this.shown(head), z: at.z, x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height };
     }).filter((place) => place);

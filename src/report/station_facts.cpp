@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "core/text.hpp"
 #include "export/section.hpp"
 #include "report/coverage_cells.hpp"
+#include "report/place_names.hpp"
 
 namespace vantage {
 namespace {
@@ -33,14 +35,15 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network, cons
   }
 }
 
-void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation> stations, const SceneData& scene) {
+// Of each spot, in plan, by walls at nearly its height; none where it is not a number.
+std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, const SceneData& scene) {
   std::map<long, std::vector<std::size_t>> by_height;
-  for (std::size_t k = 0; k < stations.size(); ++k)
-    if (active(stations[k]))  // the others are not set up
-      by_height[std::lround((stations[k].ground.z + kWall_m) / kHeights_m)].push_back(k);
+  for (std::size_t k = 0; k < spots.size(); ++k)
+    if (std::isfinite(spots[k].z)) by_height[std::lround(spots[k].z / kHeights_m)].push_back(k);
+  std::vector<std::vector<WallCorner>> found(spots.size());
   for (const auto& [height, here] : by_height) {
     Box box;
-    for (const std::size_t k : here) box.extend(stations[k].ground);
+    for (const std::size_t k : here) box.extend(spots[k]);
     std::vector<std::array<Vec3, 2>> lines = section_lines(scene, static_cast<double>(height) * kHeights_m);
     std::erase_if(lines, [&](const std::array<Vec3, 2>& line) {
       const auto [low, high] = std::minmax({line[0].x, line[1].x});
@@ -49,27 +52,19 @@ void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation
              north < box.min.y - WallCorners::kReach_m || south > box.max.y + WallCorners::kReach_m;
     });
     const WallCorners corners(lines);
-    for (const std::size_t k : here) facts[k].corners = corners.nearest(stations[k].ground.x, stations[k].ground.y);
+    for (const std::size_t k : here) found[k] = corners.nearest(spots[k].x, spots[k].y);
   }
+  return found;
 }
 
-// The room that holds a point, or the mesh that it is of.
-class PlaceNames {
- public:
-  explicit PlaceNames(const Scene& scene) : scene_(scene) {}
-  const std::string& of(const VoxelPatch& patch) const {
-    constexpr double kSkin_m = 0.15;  // surfaces around a room stand for it
-    for (const Room& room : scene_.rooms())
-      if (patch.point.x > room.box.min.x - kSkin_m && patch.point.x < room.box.max.x + kSkin_m &&
-          patch.point.y > room.box.min.y - kSkin_m && patch.point.y < room.box.max.y + kSkin_m &&
-          patch.point.z > room.box.min.z - kSkin_m && patch.point.z < room.box.max.z + kSkin_m)
-        return room.name;
-    return scene_.meshes()[patch.mesh].name;
-  }
-
- private:
-  const Scene& scene_;
-};
+void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation> stations, const SceneData& scene) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Vec3> spots;
+  for (const PlacedStation& s : stations)  // others are not set up
+    spots.push_back(active(s) ? s.ground + Vec3{0, 0, kWall_m} : Vec3{kNone, kNone, kNone});
+  const auto corners = corners_of(spots, scene);
+  for (std::size_t k = 0; k < facts.size(); ++k) facts[k].corners = corners[k];
+}
 
 void add_alone(std::vector<StationFacts>& facts, const VoxelField* field, const Simulator& simulator) {
   if (!field || field->stations.empty() || simulator.voxel_count() == 0) return;
@@ -109,9 +104,30 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
                     : active(s)                       ? ""
                                                       : "left out";
   }
+  for (const Target& target : network.targets)
+    for (const std::size_t k : target.stations)
+      facts[k].targets += (facts[k].targets.empty() ? "" : ", ") + target.name;
   add_round(facts, network, simulator);
   add_corners(facts, network.stations, simulator.scene().data());
   add_alone(facts, report.options.field, simulator);
+  return facts;
+}
+
+std::vector<TargetFacts> target_facts(const Report& report, const Simulator& simulator) {
+  const Evaluation& network = report.shown();
+  const std::vector<std::string> names = station_names(network.stations, network.names);
+  std::vector<Vec3> spots;
+  for (const Target& target : network.targets) spots.push_back(target.centre);
+  const auto corners = corners_of(spots, simulator.scene().data());
+  std::vector<TargetFacts> facts;
+  for (std::size_t k = 0; k < network.targets.size(); ++k) {
+    const Target& target = network.targets[k];
+    TargetFacts& one = facts.emplace_back(TargetFacts{.corners = corners[k]});
+    one.kind = target.proposed        ? "proposed"
+               : target.control_m > 0 ? "known to " + number(1000 * target.control_m) + " mm"
+                                      : "there before";
+    for (const std::size_t station : target.stations) one.stations += (one.stations.empty() ? "" : ", ") + names[station];
+  }
   return facts;
 }
 

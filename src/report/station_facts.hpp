@@ -18,8 +18,17 @@ struct StationFacts {
   std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
   double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
   std::string alone_where = {};          // the rooms, or meshes, with most of that
+  std::string targets = {};              // that it measures: "T1, T3"
   std::string note = {};                 // "there before", what is wrong with its place, or nothing
 };
+
+struct TargetFacts {
+  std::vector<WallCorner> corners = {};  // to find its spot by
+  std::string kind = {};                 // "proposed", "there", "known to 2 mm"
+  std::string stations = {};             // that measure it: "S1, S4"
+};
+// Of all targets of the answer, in their order.
+std::vector<TargetFacts> target_facts(const Report& report, const Simulator& simulator);
 
 // Of all stations of the answer, in their order.
 std::vector<StationFacts> station_facts(const Report& report, const Simulator& simulator);

@@ -105,17 +105,36 @@ function visitingOrder(network) {
 
 function stationTable(holder, network, pick) {
   const place = new Map((network.visit ? network.visit.order : []).map((k, stop) => [k, stop]));
+  const targets = network.targets.length > 0;
+  const seen = (k) => network.targets.filter((t) => t.stations.includes(k)).map((t) => t.name).join(', ') || null;
   const row = (k) => {
     const s = network.stations[k];
     const name = element('button', { type: 'button', 'data-station': k }, s.name);
     name.addEventListener('click', () => pick(k));
     const cells = [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
       s.points === null ? null : grouped(s.points), s.linked === undefined ? null : s.linked];
+    if (targets) cells.push(seen(k));
     if (place.size) cells.push(place.has(k) ? place.get(k) + 1 : null, place.has(k) ? network.visit.legs_m[place.get(k)].toFixed(1) : null);
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
-  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
+  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
   holder.replaceChildren(...foldedTable(titles, visitingOrder(network).map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
+}
+
+function targetTable(holder, network) {
+  const kind = (t) => (t.control_mm !== null ? `control point, known to ${t.control_mm} mm` : t.proposed ? 'proposed' : 'there before');
+  holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'z (m)', 'Kind', 'Measured by'], network.targets.map((t) => [t.name, ...t.at.map(metres), kind(t),
+    t.stations.length ? t.stations.map((k) => network.stations[k].name).join(', ') : element('span', { class: 'tag weak' }, 'no station')]), [0, 4, 5]));
+}
+
+// `accuracy`: of the report, or null.
+function accuracyTable(holder, wordsHolder, accuracy) {
+  if (!accuracy) return;
+  wordsHolder.textContent = `Predicted registration error at 95 % by ${accuracy.by}, the worst first; ${accuracy.class} allows ${accuracy.allowed_mm} mm.`;
+  const kShown = 20;
+  holder.replaceChildren(...foldedTable([accuracy.by === 'room' ? 'Room' : 'Mesh', 'Mean (mm)', 'Worst place (mm)', 'Beyond the class', ''],
+    accuracy.rows.map((r) => [r.name, r.mean_mm.toFixed(2), r.worst_mm.toFixed(2), percent(r.beyond),
+      r.beyond > 0 ? element('span', { class: 'tag weak' }, 'not met') : 'met']), [0, 4], kShown, (n) => `${n} more`));
 }
 
 // The round in a sentence.

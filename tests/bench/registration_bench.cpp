@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Predicted registration errors, and figures of overlap, against the errors that an adjustment of simulated scans
-// really has: over networks of one of the reference sites.
+// really has: over networks of a reference site, or of any other.
 #include <spdlog/fmt/fmt.h>
 #include <tbb/parallel_for.h>
 
@@ -16,16 +16,19 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
 
 #include "simulated_adjustment.hpp"
 #include "sites/site.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage::bench {
 namespace {
@@ -122,6 +125,17 @@ std::vector<Vec3> draw_heads(const test::KnownSite& site, const Scene& scene, co
       heads.push_back(ground + Vec3{0, 0, scanner.height_m});
   }
   if (heads.size() < many) throw Error(Errc::invalid_argument, "the site has no room for so many stations");
+  return heads;
+}
+
+// Heads over the ground that a person can reach from the entrance of any site.
+std::vector<Vec3> draw_heads(Site& site, std::size_t many, std::mt19937_64& random) {
+  constexpr std::size_t kPlaces = 2000;
+  std::vector<PlacedStation> places = candidate_positions(site, kPlaces);
+  std::shuffle(places.begin(), places.end(), random);
+  if (places.size() < many) throw Error(Errc::invalid_argument, "the site has no room for so many stations");
+  std::vector<Vec3> heads;
+  for (std::size_t k = 0; k < many; ++k) heads.push_back(places[k].position);
   return heads;
 }
 
@@ -232,23 +246,33 @@ class Samples {
 };
 
 void run(const Options& o) {
-  const test::KnownSite site = test::make_site(o.site);
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("registration_{}_{}.glb", o.site, o.seed);
-  test::write_site(site, {}, file);
-  const Scene scene = Scene::load(file);
-  std::filesystem::remove(file);
-  Scanner scanner{.azimuth_step = Angle::degrees(o.step_deg),
+  const auto known = test::site_names();
+  const bool own = std::ranges::find(known, o.site) == known.end();
+  const Scanner scanner{.azimuth_step = Angle::degrees(o.step_deg),
                   .zenith_step = Angle::degrees(o.step_deg),
                   .height_m = 1.7,
                   .min_range_m = 0.5,
                   .max_range_m = 60,
                   .noise = rtc360_noise()};
+  std::optional<Site> opened;
+  std::optional<Scene> made;
+  if (own) {
+    opened = Site::open(o.site, {.scanners = {scanner}, .engine = Engine::embree});
+  } else {
+    const auto file = std::filesystem::temp_directory_path() / fmt::format("registration_{}_{}.glb", o.site, o.seed);
+    test::write_site(test::make_site(o.site), {}, file);
+    made = Scene::load(file);
+    std::filesystem::remove(file);
+  }
+  const Scene& scene = own ? opened->scene() : *made;
   Simulator simulator(
       scene, scanner,
       {.engine = Engine::embree, .user_size_m = o.user_size_m, .point_spacing_m = 0.05, .noise = false});
   std::mt19937_64 random(o.seed);
   Pool pool = read_plans(o.plans);
-  if (pool.given.empty()) pool.heads = draw_heads(site, scene, scanner, o.pool, random);
+  if (pool.given.empty())
+    pool.heads = own ? draw_heads(*opened, o.pool, random)
+                     : draw_heads(test::make_site(o.site), scene, scanner, o.pool, random);
   const std::vector<Vec3>& heads = pool.heads;
   const std::size_t networks = pool.given.empty() ? o.networks : pool.given.size();
   std::vector<ThinnedScan> scans;
@@ -358,7 +382,7 @@ void run(const Options& o) {
 int main(int argc, char** argv) {
   vantage::bench::Options o;
   CLI::App app("Predicted registration errors against simulated adjustments");
-  app.add_option("site", o.site, "office, house, street or plant")->required();
+  app.add_option("site", o.site, "office, house, street or plant, or the file of any other site")->required();
   app.add_option("--stations", o.stations, "Of a network");
   app.add_option("--pool", o.pool, "Stations that networks are drawn from");
   app.add_option("--networks", o.networks, "How many");

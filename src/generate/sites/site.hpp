@@ -55,5 +55,8 @@ Site office();
 Site house();
 Site street();
 Site plant();
+Site tunnel();
+Site corridor();
+Site facade();
 
 }  // namespace vantage::sites

@@ -183,8 +183,16 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }},
     {"fewest", [](SurveyProblem& p) { p.fewest = true; }},
     {"attainable", [](SurveyProblem& p) { p.attainable = 0.7; }},
-    {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }}};
-static_assert(member_count<SurveyProblem>() == 14);
+    {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }},
+    // Targets are of the answer, and decide nothing in its search.
+    {"targets", [](SurveyProblem& p) { p.targets = 4; }, false},
+    {"existing_targets",
+     [](SurveyProblem& p) {
+       p.existing_targets = {{.name = "C1", .centre = {1, 2, 3}, .control_m = 0.002}};
+     },
+     false},
+    {"target", [](SurveyProblem& p) { p.target.diameter_m = 0.2; }, false}};
+static_assert(member_count<SurveyProblem>() == 17);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},

@@ -21,6 +21,48 @@ Evaluation seven_stations() {
   return network;
 }
 
+TEST(Summary, TellsTheErrorOfWhatIsAttainable) {
+  Evaluation network{.stations = std::vector<PlacedStation>(1), .exact = true, .values = {{"coverage", {0.5, 0}}}};
+  network.values["capture"] = {0.9, 0};
+  const auto captured = [&](double growth) {
+    network.attainable_growth = growth;
+    return summary_lines(network).front().text;
+  };
+  EXPECT_EQ(captured(0), "50.0 % of the site, 90.0 % of what is attainable");
+  EXPECT_EQ(captured(0.007), "50.0 % of the site, 90.0 % of what is attainable, which is known to 0.7 %");
+  EXPECT_EQ(captured(1),
+            "50.0 % of the site, 90.0 % of what is attainable from the few places that were looked at");
+}
+
+TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
+  Evaluation network{.stations = std::vector<PlacedStation>(5), .exact = true, .values = {{"coverage", {1, 0}}}};
+  const auto told = [&](double rms_mm) {
+    network.values["registration"] = {rms_mm, 0};
+    std::string text;
+    for (const SummaryLine& line : summary_lines(network))
+      if (line.heading == "registered") text = line.text;
+    return text;
+  };
+  network.registration.emplace().stations.resize(5);
+  EXPECT_EQ(told(5), "to about 5.00 mm, as predicted; LOA30 (15 mm at 95 %) is met with 5.2 mm to spare");
+  network.registration->stations[3].rms_m = 0.01;
+  EXPECT_EQ(told(5),
+            "to about 5.00 mm, as predicted; LOA30 (15 mm at 95 %) is met with 5.2 mm to spare, but not at S4 (19.6 mm)");
+  for (const std::size_t k : {0, 1, 2}) network.registration->stations[k].rms_m = 0.02 + 0.01 * static_cast<double>(k);
+  EXPECT_EQ(told(20),
+            "to about 20.00 mm, as predicted; LOA30 (15 mm at 95 %) is missed by 24.2 mm, most at S3 (78.4 mm), S2 "
+            "(58.8 mm), S1 (39.2 mm) and 1 more");
+  const auto advice = [&] { return summary_lines(network).back().text; };
+  EXPECT_NE(advice().find("let targets be proposed"), std::string::npos);
+  network.without_targets_m = 0.02;
+  EXPECT_NE(advice().find("no place for a target is near enough to two stations"), std::string::npos);
+  network.targets = {{.name = "T1", .proposed = true, .stations = {0, 1}}};
+  EXPECT_NE(advice().find("nor do the proposed targets"), std::string::npos);
+  network.registration->stations.assign(5, {});
+  EXPECT_EQ(told(2), "to about 2.00 mm, as predicted, with 1 target that ties scans together (20.00 mm without); LOA30 "
+                     "(15 mm at 95 %) is met with 11.1 mm to spare");
+}
+
 TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   Evaluation network{.stations = std::vector<PlacedStation>(7), .exact = true, .values = {{"coverage", {0.7125, 0}}}};
   EXPECT_EQ(summary_text(network), "captured   71.2 % of the site\n");
@@ -34,7 +76,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       summary_text(network),
       "captured   71.2 % ± 0.4 % of the site, 92.0 % ± 1.0 % of what is attainable\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
-      "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met\n"
+      "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met with 12.6 mm to spare\n"
       "on site    about 3 h 25 min\n"
       "to do      link S4 to S3, the nearest to it with 0.004: put a station on the way between "
       "them, in a doorway if there is one, or move them closer\n"

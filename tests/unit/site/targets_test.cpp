@@ -4,15 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <sstream>
 
 #include "evaluate/sight_targets.hpp"
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
+#include "vantage/question.hpp"
 #include "vantage/site.hpp"
 
 namespace vantage {
@@ -95,6 +98,183 @@ TEST(Targets, AreProposedWhereTheyHelpMost) {
     EXPECT_GE(given->with.rms_m, best->with.rms_m * (1 - 1e-6)) << other.centre.x << " " << other.centre.y;
   }
   EXPECT_GT(tried, 5);
+}
+
+TEST(Targets, AreAsFewAsTheClassTakes) {
+  Site site = tunnel();
+  const auto stations = stations_of(site);
+  for (const AccuracyClass wanted : {AccuracyClass::loa20, AccuracyClass::loa30, AccuracyClass::loa40}) {
+    const TargetOptions options{.wanted = wanted, .exact = true};
+    const auto proposal = propose_targets(site, stations, {}, options);
+    ASSERT_TRUE(proposal);
+    ASSERT_LE(proposal->with.rms_m, allowed_rms_m(options)) << to_string(wanted);
+    for (std::size_t k = 0; k < proposal->targets.size(); ++k) {
+      std::vector<Target> others = proposal->targets;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+      const auto fewer = propose_targets(site, stations, {}, {.most = 0, .exact = true}, others);
+      EXPECT_GT(fewer->with.rms_m, allowed_rms_m(options)) << proposal->targets[k].name << " is needless";
+      EXPECT_DOUBLE_EQ(fewer->without.rms_m, proposal->without.rms_m);
+    }
+  }
+  const auto seven = propose_targets(site, stations, {}, {.least = 7, .most = 7});
+  EXPECT_EQ(seven->targets.size(), 7u);
+  const auto strict = propose_targets(site, stations, {}, {.largest_rms_m = 0.002});
+  EXPECT_LE(strict->with.rms_m, 0.0021);
+}
+
+// Height of a triangle over its longest side, as a share of that.
+double flatness(const Target& a, const Target& b, const Target& c) {
+  const auto length = [](const Vec3& v) { return std::sqrt(dot(v, v)); };
+  const double x = length(b.centre - a.centre), y = length(c.centre - a.centre), z = length(c.centre - b.centre);
+  const double longest = std::max({x, y, z}), half = (x + y + z) / 2;
+  return 2 * std::sqrt(std::max(half * (half - x) * (half - y) * (half - z), 0.0)) / (longest * longest);
+}
+
+TEST(Targets, OfAScanDoNotLieOnALine) {
+  Site site = tunnel();
+  const auto stations = stations_of(site);
+  const auto proposal = propose_targets(site, stations, {}, {.least = 12, .most = 12});
+  ASSERT_GT(proposal->targets.size(), 6u);
+  int together = 0;
+  for (const Target& a : proposal->targets)
+    for (const Target& b : proposal->targets)
+      for (const Target& c : proposal->targets) {
+        if (&a >= &b || &b >= &c) continue;
+        const bool of_one_scan = std::ranges::any_of(a.stations, [&](std::size_t k) {
+          return std::ranges::count(b.stations, k) > 0 && std::ranges::count(c.stations, k) > 0;
+        });
+        if (!of_one_scan) continue;
+        ++together;
+        EXPECT_GE(flatness(a, b, c), 0.05) << a.name << " " << b.name << " " << c.name;
+      }
+  EXPECT_GT(together, 5);
+  // A target that is there counts too.
+  const Vec3 first = proposal->targets[0].centre, second = proposal->targets[1].centre;
+  EXPECT_NE(first.y, second.y);
+}
+
+// Two rooms of 3 m with a door of 0.9 m in the wall of 0.1 m between them; `glass`: the floor of the second is a pane.
+constexpr double kRoom_m = 3, kDoor_m = 0.9;
+Site two_rooms(bool glass) {
+  test::QuadScene scene;
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const float height = 2.6F, side = f(kRoom_m), end = f(2 * kRoom_m + 0.1);
+  const float wall = f(kRoom_m), low = f((kRoom_m - kDoor_m) / 2), high = f((kRoom_m + kDoor_m) / 2);
+  scene.quad({0, 0, 0}, {wall + 0.1F, 0, 0}, {0, side, 0});
+  scene.quad({0, 0, height}, {0, side, 0}, {end, 0, 0});
+  scene.quad({0, 0, 0}, {0, 0, height}, {end, 0, 0}).quad({0, side, 0}, {end, 0, 0}, {0, 0, height});
+  scene.quad({0, 0, 0}, {0, side, 0}, {0, 0, height}).quad({end, 0, 0}, {0, 0, height}, {0, side, 0});
+  for (const float x : {wall, wall + 0.1F}) {
+    scene.quad({x, 0, 0}, {0, low, 0}, {0, 0, height}).quad({x, high, 0}, {0, side - high, 0}, {0, 0, height});
+    scene.quad({x, low, 2.1F}, {0, high - low, 0}, {0, 0, height - 2.1F});
+  }
+  for (const float y : {low, high}) scene.quad({wall, y, 0}, {0.1F, 0, 0}, {0, 0, 2.1F});
+  // Meshes of glass come last.
+  scene.quad({wall + 0.1F, 0, 0}, {side, 0, 0}, {0, side, 0}, glass ? Role::blocking : Role::surveyed);
+  scene.data().meshes.back().glass = glass;
+  SiteOptions options;
+  options.engine = Engine::embree;
+  options.user_size_m = 0.2, options.spacing_m = 0.05;
+  options.steps = std::array{Angle::degrees(0.2), Angle::degrees(0.2)};
+  return Site(scene.scene(), options);
+}
+
+std::vector<PlacedStation> stations_in_rooms(Site& site) {
+  std::vector<PlacedStation> stations;
+  for (const double x : {0.5, 2 * kRoom_m - 0.4})
+    for (const double y : {0.5, 2.5}) stations.push_back(site.place_head({x, y, site.scanner().height_m}).station);
+  return stations;
+}
+
+TEST(Targets, StandInNoDoorwayAndWhereNoLeafSwings) {
+  Site site = two_rooms(false);
+  const auto stations = stations_in_rooms(site);
+  const auto to_door = [](const Vec3& p) { return std::hypot(p.x - kRoom_m - 0.05, p.y - kRoom_m / 2); };
+  const auto all = candidate_positions(site, 400);
+  EXPECT_GT(std::ranges::count_if(all, [&](const PlacedStation& s) { return to_door(s.ground) < kDoor_m; }), 10);
+  const auto proposal = propose_targets(site, stations, {}, {.least = 40, .most = 40});
+  ASSERT_GT(proposal->targets.size(), 3u);
+  for (const Target& target : proposal->targets)
+    EXPECT_GE(to_door(target.centre), kDoor_m) << target.centre.x << " " << target.centre.y;
+}
+
+TEST(Targets, StandOnNoGlass) {
+  for (const bool glass : {false, true}) {
+    Site site = two_rooms(glass);
+    const auto stations = stations_in_rooms(site);
+    const auto beyond = [](const Vec3& p) { return p.x > kRoom_m + 0.1; };
+    const auto all = candidate_positions(site, 400);
+    EXPECT_GT(std::ranges::count_if(all, [&](const PlacedStation& s) { return beyond(s.ground); }), 10);
+    const auto proposal = propose_targets(site, stations, {}, {.least = 40, .most = 40});
+    const auto there = std::ranges::count_if(proposal->targets, [&](const Target& t) { return beyond(t.centre); });
+    EXPECT_EQ(there == 0, glass) << there;
+    EXPECT_GT(proposal->targets.size(), 1u);
+  }
+}
+
+// The question of a surveyor, in the tunnel.
+SurveyQuestion short_question() {
+  SurveyQuestion question;
+  question.stations = {4, 4};
+  return question;
+}
+const PlanConfig kShort{.population = 6, .iterations = 2, .sample_voxels = 2000};
+
+TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
+  Site site = tunnel();
+  const PlanResult plain = [&] {
+    SurveyQuestion question = short_question();
+    question.targets = 0;
+    return plan(site, question, kShort);
+  }();
+  const PlanEntry& bare = plain.front[answer(plain)];
+  EXPECT_TRUE(bare.targets.empty());
+  EXPECT_FALSE(bare.without_targets_m);
+  ASSERT_GT(bare.value("registration"), 1000 * allowed_rms_m({})) << "the tunnel holds no scan";
+
+  const PlanResult found = plan(site, short_question(), kShort);
+  const PlanEntry& entry = found.front[answer(found)];
+  ASSERT_EQ(entry.stations.size(), bare.stations.size());
+  for (std::size_t k = 0; k < entry.stations.size(); ++k) EXPECT_EQ(entry.stations[k].position, bare.stations[k].position);
+  ASSERT_FALSE(entry.targets.empty());
+  EXPECT_NEAR(1000 * *entry.without_targets_m, bare.value("registration"), 1e-9);
+  EXPECT_LE(entry.value("registration"), 1000 * allowed_rms_m({}));
+  EXPECT_NEAR(entry.value("registration"), 1000 * entry.registration->rms_m, 1e-12);
+  const Evaluation same = site.evaluate(
+      entry.stations, {.registration = RegistrationOptions(), .targets = entry.targets});
+  EXPECT_NEAR(same.value("registration"), entry.value("registration"), 1e-9);
+
+  SurveyQuestion three = short_question();
+  three.targets = 3;
+  const PlanResult with_three = plan(site, three, kShort);
+  EXPECT_EQ(with_three.front[answer(with_three)].targets.size(), 3u);
+}
+
+TEST(Targets, OfARequirementMeetIt) {
+  Site site = tunnel();
+  SurveyQuestion question = short_question();
+  question.requirements = {"registration<=2"};
+  const PlanResult found = plan(site, question, kShort);
+  const PlanEntry& entry = found.front[answer(found)];
+  EXPECT_LE(entry.value("registration"), 2);
+  EXPECT_EQ(entry.violation, violation_of(entry, found.problem.requirements));
+}
+
+TEST(Targets, ThatAreThereCountInAPlan) {
+  Site site = tunnel();
+  SurveyQuestion question = short_question();
+  question.targets = 0;
+  const PlanResult bare = plan(site, question, kShort);
+  for (const PlacedStation& station : bare.front[answer(bare)].stations)
+    for (const double aside : {-1.2, 1.2})
+      question.existing_targets.push_back({.name = "C" + std::to_string(question.existing_targets.size()),
+                                           .centre = {station.ground.x + 1.5, aside, 1.2},
+                                           .control_m = 0.002});
+  const PlanResult found = plan(site, question, kShort);
+  const PlanEntry& entry = found.front[answer(found)];
+  EXPECT_EQ(entry.targets.size(), question.existing_targets.size());
+  EXPECT_LT(entry.value("registration"), bare.front[answer(bare)].value("registration"));
+  EXPECT_TRUE(entry.registration->absolute_rms_m);
 }
 
 TEST(Targets, AreMeasuredNearEnoughInFieldAndInFreeView) {
