@@ -249,9 +249,8 @@ struct Simulator::Impl {
           return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
         },
         [&] {
-          return SamplePatches{from, std::make_shared<Patches>(make_patches(data(), *grid, voxel_indices,
-                                                                            make_pattern(registered.front()), model,
-                                                                            stop))};
+          return SamplePatches{from, std::make_shared<Patches>(make_patches(
+                                         data(), *grid, voxel_indices, make_pattern(registered.front()), model, stop))};
         });
     if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
     if (patch_scanners.empty()) {

@@ -29,9 +29,9 @@ struct VoxelSurface {
 // Clips every surveyed triangle to the voxel's cube, in double. Of two parallel sheets in one voxel, as of a thin wall,
 // the larger counts. A plane has at most the area of its section with the cube, so a sheet modelled twice counts once.
 // A window of `window_m` metres around each plane's point, if wider than a voxel, reduces its share to the flat part at
-// that scale. A stop ends it early, with no surfaces. Parallel; a voxel's surface depends neither on the other voxels nor on the number of threads. REQUIRES:
-// voxel_indices ascending, without duplicates, below grid.size(). Throws Error out_of_memory as `triangles_touching`
-// does.
+// that scale. A stop ends it early, with no surfaces. Parallel; a voxel's surface depends neither on the other voxels
+// nor on the number of threads. REQUIRES: voxel_indices ascending, without duplicates, below grid.size(). Throws Error
+// out_of_memory as `triangles_touching` does.
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
                                          std::span<const std::uint32_t> voxel_indices, double window_m = 0,
                                          const std::stop_token& stop = {});

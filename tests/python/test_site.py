@@ -46,18 +46,18 @@ class Sites(unittest.TestCase):
     def test_a_problem_by_name_detects_every_echo_in_all_three(self):
         settings = {**COARSE, "scanner": "rtc360"}
         self.assert_same_as_the_program(FOUR_WALLS, settings, {
-            "problem": "coverage-min", "stations": 3, "population": 6, "iterations": 2, "sample": 300})
+            "problem": "coverage-fix", "stations": 3, "population": 6, "iterations": 2, "sample": 300})
         site = vantage.Site.open(FOUR_WALLS, **settings)
         self.assertGreater(site.scanners[0].detection_range_m, 0)
-        site.plan(problem="coverage-min", stations=2, population=4, iterations=1, sample=100)
+        site.plan(problem="coverage-fix", stations=2, population=4, iterations=1, sample=100)
         self.assertEqual(site.scanners[0].detection_range_m, 0)
         given = vantage.Site.open(FOUR_WALLS, detection=(50, 0.5), **settings)
-        given.plan(problem="coverage-min", stations=2, population=4, iterations=1, sample=100)
+        given.plan(problem="coverage-fix", stations=2, population=4, iterations=1, sample=100)
         self.assertEqual(given.scanners[0].detection_range_m, 50)
         late = vantage.Site.open(FOUR_WALLS, **settings)
         late.evaluate([[8, 0, 1.5]])
         with self.assertRaisesRegex(vantage.Error, "detection: the problems by name"):
-            late.plan(problem="coverage-min", stations=2)
+            late.plan(problem="coverage-fix", stations=2)
 
     def test_an_evaluation_has_every_figure_of_the_program(self):
         heads = [[8, 0, 1.5], [9, 8, 1.5], [0, 12, 1.5]]
