@@ -146,6 +146,24 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   return lines;
 }
 
+namespace {
+// A pattern for a name, in single quotes for a shell.
+std::string quoted_pattern(std::string name) {
+  std::ranges::replace_if(name, [](unsigned char c) { return c == '\'' || c < 0x20; }, '?');
+  return "'" + name + "'";
+}
+
+// "14.2 m² of floor behind a closed door; plan it too with ignore 'Door 12'"
+std::string behind_doors(const NotEntered& part) {
+  std::string text = fixed(part.area_m2, 1) + " m² of floor behind " +
+                     (part.doors.size() == 1 ? "a closed door" : number(part.doors.size()) + " closed doors") +
+                     "; plan it too with ";
+  for (std::size_t k = 0; k < part.doors.size(); ++k)
+    text += (k > 0 ? " and ignore " : "ignore ") + quoted_pattern(part.doors[k]);
+  return text;
+}
+}  // namespace
+
 std::vector<SummaryLine> ground_lines(const SearchArea& area) {
   constexpr std::size_t kMost = 5;
   std::vector<SummaryLine> lines;
@@ -158,6 +176,8 @@ std::vector<SummaryLine> ground_lines(const SearchArea& area) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (k >= kMost)
       rest += parts[k].area_m2;
+    else if (!parts[k].doors.empty())
+      lines.push_back({"closed", behind_doors(parts[k])});
     else
       lines.push_back({"closed", fixed(parts[k].area_m2, 1) + " m² of floor that nothing leads to; plan it too with " +
                                      entries + "enter " + place(parts[k].place)});
