@@ -32,6 +32,20 @@ std::map<std::string, std::map<std::string, double>> shares_of(const MissedVoxel
   return shares;
 }
 
+py::list rooms_of(const MissedVoxels& missed) {
+  py::list rooms;
+  for (const RoomShare& room : missed.rooms) {
+    py::dict shares;
+    for (std::size_t k = 0; k < why_missed_count; ++k)
+      shares[py::str(to_string(static_cast<WhyMissed>(k)))] = room.share.share(static_cast<WhyMissed>(k));
+    py::dict out;
+    out["name"] = room.share.node, out["voxels"] = room.share.voxels, out["shares"] = shares;
+    out["ground_m2"] = room.ground_m2, out["why_no_station"] = why_no_station(room);
+    rooms.append(out);
+  }
+  return rooms;
+}
+
 }  // namespace
 
 void add_missed(py::module_& m) {
@@ -63,6 +77,9 @@ void add_missed(py::module_& m) {
       .def_property_readonly(
           "shares", &shares_of,
           "Shares of the goal points by reason, which add up to 1, for each node by its name; '': the whole site.")
+      .def_property_readonly("rooms", &rooms_of,
+                             "For each of the scene's rooms: 'name', 'voxels' and 'shares' of those in it, 'ground_m2' "
+                             "of the search area, and\n'why_no_station' if no station stands in it.")
       .def_readonly("candidates", &MissedVoxels::candidates, "Number of positions from which lines were drawn.");
   add_pickle(type);
   const auto options = missed_options();

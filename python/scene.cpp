@@ -27,7 +27,7 @@ Options<SceneOptions> scene_options() {
       .add("scene_index", &SceneOptions::scene_index, "Which glTF scene; None: the file's own.")
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
-      .add("up", &SceneOptions::up, "'y' or 'z'; None: recognised.")
+      .add("up", &SceneOptions::up, "'x', 'y' or 'z'; None: recognised.")
       .add("wall_layers", &SceneOptions::wall_layers, "Patterns of the layers of a floor plan's walls; []: recognised.")
       .add("wall_height_m", &SceneOptions::wall_height_m, "Height of a floor plan's walls, metres; None: 2.7.")
       .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Memory limit of the load; 0: half of the free memory.")
@@ -86,6 +86,30 @@ void add_mesh_info(py::module_& m) {
   add_pickle(type);
 }
 
+void add_room(py::module_& m) {
+  py::class_<Room> type(m, "Room", "A room that the file names, as IFC does.");
+  type.def_readonly("name", &Room::name, "Its number and its long name.")
+      .def_readonly("storey", &Room::storey, "Name of its storey; '' if there is none.")
+      .def_property_readonly(
+          "floor_m2", [](const Room& room) { return floor_area(room); }, "Area of its floor, m².")
+      .def_property_readonly(
+          "box", [](const Room& room) { return adopt(std::vector<Vec3>{room.box.min, room.box.max}); },
+          "Lowest and highest corner: (2, 3), metres.")
+      .def_property_readonly(
+          "outline",
+          [](const Room& room) {
+            std::vector<py::array_t<double>> loops;
+            for (const auto& loop : room.outline) {
+              auto& out = loops.emplace_back(std::vector<py::ssize_t>{static_cast<py::ssize_t>(loop.size()), 2});
+              if (!loop.empty()) std::memcpy(out.mutable_data(), loop.data(), loop.size() * sizeof(loop[0]));
+            }
+            return loops;
+          },
+          "Loops around its floor, seen from above: (n, 2) each, metres; none: the box alone.")
+      .def("__repr__", [](const Room& room) { return "<vantage.Room '" + room.name + "'>"; });
+  add_pickle(type);
+}
+
 void add_scene(py::module_& m) {
   const auto options = scene_options();
   py::class_<Scene>(m, "Scene",
@@ -123,6 +147,9 @@ void add_scene(py::module_& m) {
           "meshes",
           [](const Scene& scene) { return std::vector<MeshInfo>(scene.meshes().begin(), scene.meshes().end()); },
           "Its meshes, by the numbers that scans give them.")
+      .def_property_readonly(
+          "rooms", [](const Scene& scene) { return std::vector<Room>(scene.rooms().begin(), scene.rooms().end()); },
+          "Rooms that the file names, in its order.")
       .def_property_readonly("triangle_count", &Scene::triangle_count, "Number over all meshes.")
       .def_property_readonly("has_search_area", &Scene::has_search_area, "Whether the file marks a search area.")
       .def_property_readonly(
@@ -180,6 +207,7 @@ void add_builder(py::module_& m) {
 
 void add_scenes(py::module_& m) {
   add_mesh_info(m);
+  add_room(m);
   add_scene(m);
   add_builder(m);
   m.def(

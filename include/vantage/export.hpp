@@ -166,6 +166,11 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
+/// CSV, a line for each of the scene's rooms: `storey,room,floor_m2,ground_m2,stations,why_no_station,voxels` and the
+/// reasons as above. `ground_m2` is the search area in it; stations are listed by their `names`. REQUIRES: one of
+/// `shares` for each of `rooms`.
+void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> rooms, std::span<const RoomShare> shares,
+                     std::span<const PlacedStation> stations, std::span<const std::string> names);
 /// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY, survey frame.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);

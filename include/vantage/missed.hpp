@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,6 +60,18 @@ struct MissedShare {
   double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }
 };
 
+/// What a network captures of a room, and where one can stand in it.
+struct RoomShare {
+  MissedShare share = {};  ///< Of the voxels in the room or at its boundary; its node is the room's name.
+  double ground_m2 = 0;    ///< Area of the search area in it.
+  std::optional<LeftOutReason> left_out = {};  ///< Reason of most of the floor in it that one cannot stand on, if any.
+};
+/// Why a room has no station, in words.
+std::string why_no_station(const RoomShare& room);
+/// Active stations in each room, by where they stand.
+std::vector<std::vector<std::size_t>> stations_in_rooms(std::span<const Room> rooms,
+                                                        std::span<const PlacedStation> stations);
+
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
   std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending.
@@ -67,6 +80,7 @@ struct MissedVoxels {
   /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one. The
   /// whole site's captured share is its coverage, from all voxels; the sample splits the rest.
   std::vector<MissedShare> shares = {};
+  std::vector<RoomShare> rooms = {};  ///< Of the sample, one for each of the scene's rooms.
   std::size_t candidates = 0;  ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.

@@ -78,6 +78,8 @@ struct LeftOut {
 struct NotEntered {
   double area_m2 = 0;
   Vec3 place;  ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
+  /// Names of the meshes that are closed doors on the shortest way to it; empty if doors alone do not open it.
+  std::vector<std::string> doors = {};
 };
 
 /// The search area: maps (u, v) to the ground through a quadtree (section 4.2). Immutable; copies share storage; safe

@@ -43,11 +43,22 @@ struct MeshInfo {
   double accuracy_m = 0;  ///< Largest range noise (one standard deviation) of a point that counts, in metres; 0: any.
 };
 
-/// A room that the file names, as IFC does.
+/// A room that the file names, as IFC does (`IfcSpace`). Survey frame.
 struct Room {
-  std::string name;
-  Box box;  ///< Survey frame.
+  std::string name;    ///< Its number and its long name.
+  std::string storey;  ///< Of the `IfcBuildingStorey` above it; "" if there is none.
+  Box box;
+  /// Loops around its floor, seen from above: corners (x, y). A point is in the room if it is within an odd number of
+  /// them. Empty: the box alone.
+  std::vector<std::vector<std::array<double, 2>>> outline = {};
 };
+/// Area of a room's floor, m².
+double floor_area(const Room& room);
+/// Distance of a point from a room, level and upright, at most `most_m`; 0 inside.
+double distance_to(const Room& room, const Vec3& point, double most_m);
+/// The room that holds a point, or the nearest one up to `within_m` away, as surfaces around a room stand for it; the
+/// first of those equally near. Empty: there is none.
+std::optional<std::size_t> room_at(std::span<const Room> rooms, const Vec3& point, double within_m = 0.15);
 
 /// Unit of length of a file.
 enum class Unit { metre, centimetre, millimetre, inch, foot };
@@ -58,9 +69,9 @@ const char* to_string(Unit unit) noexcept;
 Unit unit_from_string(const std::string& text);
 
 /// Axis of a file that points up.
-enum class UpAxis { y, z };
+enum class UpAxis { x, y, z };
 const char* to_string(UpAxis up) noexcept;
-/// Throws Error invalid_argument unless the text is "y" or "z".
+/// Throws Error invalid_argument unless the text is "x", "y" or "z".
 UpAxis up_axis_from_string(const std::string& text);
 
 /// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names; a node without a name goes by its

@@ -23,6 +23,18 @@ class Error(RuntimeError):
     code: str
     details: Tuple[str, ...]
 
+class Room:
+    @property
+    def name(self) -> str: ...
+    @property
+    def storey(self) -> str: ...
+    @property
+    def floor_m2(self) -> float: ...
+    @property
+    def box(self) -> Floats: ...
+    @property
+    def outline(self) -> List[Floats]: ...
+
 class MeshInfo:
     @property
     def name(self) -> str: ...
@@ -63,7 +75,7 @@ class Scene:
         scene_index: Optional[int] = None,
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
-        up: Optional[Literal["y", "z"]] = None,
+        up: Optional[Literal["x", "y", "z"]] = None,
         wall_layers: Sequence[str] = [],
         wall_height_m: Optional[float] = None,
         max_memory_bytes: int = 0,
@@ -75,6 +87,8 @@ class Scene:
     def bounds(self) -> Floats: ...
     @property
     def meshes(self) -> List[MeshInfo]: ...
+    @property
+    def rooms(self) -> List[Room]: ...
     @property
     def triangle_count(self) -> int: ...
     @property
@@ -148,7 +162,7 @@ def load_gltf(
     scene_index: Optional[int] = None,
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
-    up: Optional[Literal["y", "z"]] = None,
+    up: Optional[Literal["x", "y", "z"]] = None,
     wall_layers: Sequence[str] = [],
     wall_height_m: Optional[float] = None,
     max_memory_bytes: int = 0,
@@ -477,6 +491,8 @@ class MissedVoxels:
     def reasons(self) -> List[str]: ...
     @property
     def shares(self) -> Dict[str, Dict[str, float]]: ...
+    @property
+    def rooms(self) -> List[Dict[str, Any]]: ...
     @property
     def candidates(self) -> int: ...
 

@@ -259,6 +259,8 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
         *judged, site, chosen.stations);
+  if (judged && !judged->rooms.empty())
+    write_rooms_csv(folder / "rooms.csv", site.scene().rooms(), judged->rooms, chosen.stations, chosen.names);
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
   if (!options.no_report && late)
     spdlog::warn("no report: the time was over; vantage evaluate SITE --stations {} --report report.html makes one",

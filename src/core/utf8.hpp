@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether text is UTF-8.
+// Text from outside as UTF-8.
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace vantage {
@@ -32,6 +33,22 @@ inline bool is_utf8(std::string_view text) {
     at += size;
   }
   return true;
+}
+
+// Unchanged if it is UTF-8, else read as Latin-1.
+inline std::string to_utf8(std::string_view text) {
+  if (is_utf8(text)) return std::string(text);
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      out += c;
+    } else {
+      out += static_cast<char>(0xC0 | (byte >> 6));
+      out += static_cast<char>(0x80 | (byte & 0x3F));
+    }
+  }
+  return out;
 }
 
 }  // namespace vantage

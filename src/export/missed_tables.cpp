@@ -21,6 +21,27 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
   write_atomically(file, text);
 }
 
+void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> rooms, std::span<const RoomShare> shares,
+                     std::span<const PlacedStation> stations, std::span<const std::string> names) {
+  const std::vector<std::string> called = station_names(stations, names);
+  const std::vector<std::vector<std::size_t>> in = stations_in_rooms(rooms, stations);
+  std::string text = "storey,room,floor_m2,ground_m2,stations,why_no_station,voxels";
+  for (const MissedStyle& style : kMissedStyles) text += "," + to_string(style.why);
+  text += "\n";
+  for (std::size_t k = 0; k < rooms.size(); ++k) {
+    std::string here;
+    for (const std::size_t station : in[k]) here += (here.empty() ? "" : " ") + called[station];
+    const MissedShare& share = shares[k].share;
+    text += csv_cell(rooms[k].storey) + "," + csv_cell(rooms[k].name) + "," + fixed(floor_area(rooms[k]), 2) + "," +
+            fixed(shares[k].ground_m2, 2) + "," + csv_cell(here) + "," +
+            csv_cell(here.empty() ? why_no_station(shares[k]) : "") + "," + number(share.voxels);
+    // A room without a surveyed surface has no shares.
+    for (const MissedStyle& style : kMissedStyles) text += "," + (share.voxels > 0 ? fixed(share.share(style.why), 4) : "");
+    text += "\n";
+  }
+  write_atomically(file, text);
+}
+
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed) {
   write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.ranks.size(),
                   [&](std::uint64_t k, std::string& bytes) {

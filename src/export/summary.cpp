@@ -140,7 +140,8 @@ std::vector<std::string> registration_advice(const Evaluation& evaluation, doubl
   const bool proposed = std::ranges::any_of(evaluation.targets, &Target::proposed);
   if (!evaluation.without_targets_m || (!proposed && !evaluation.targets.empty()))
     return {what + "let targets be proposed, or add stations that share more walls"};
-  return {what + (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
+  return {what +
+          (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
           "put stations closer together, or take finer steps or larger targets"};
 }
 
@@ -218,6 +219,24 @@ void add_empty_floor(std::vector<SummaryLine>& lines, const std::vector<FloorPar
   }
 }
 
+// A pattern for a name, in single quotes for a shell.
+std::string quoted_pattern(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c == '\'' || c < 0x20; }, '?');
+  return "'" + name + "'";
+}
+
+// "behind a closed door: not reached; plan it too with ignore 'Door 12'"
+std::string behind_doors(const NotEntered& part) {
+  std::string text =
+      "behind " +
+      (part.doors.size() == 1 ? std::string("a closed door") : number(part.doors.size()) + " closed doors") +
+      ": not reached; plan it too with ";
+  for (std::size_t k = 0; k < part.doors.size(); ++k)
+    text += (k > 0 ? " and ignore " : "ignore ") + quoted_pattern(part.doors[k]);
+  return text;
+}
+
 }  // namespace
 
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
@@ -237,17 +256,13 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
       rest += part.area_m2;
       continue;
     }
-    const auto room = std::ranges::find_if(scene.rooms(), [&](const Room& one) {
-      constexpr double kSkin_m = 0.3;  // a box may begin above its floor
-      const Box& box = one.box;
-      const Vec3& p = part.place;
-      return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
-             p.z >= box.min.z - kSkin_m && p.z < box.max.z;
-    });
+    constexpr double kSkin_m = 0.3;  // a room's box may begin above its floor
+    const auto room = room_at(scene.rooms(), part.place, kSkin_m);
+    const std::string why = part.doors.empty() ? "that nothing leads to: not reached; plan it too with " + entries +
+                                                     "enter " + place(part.place)
+                                               : behind_doors(part);
     lines.push_back({"closed", fixed(part.area_m2, 1) + " m² of floor at z = " + fixed(part.place.z, 2) + " m" +
-                                   (room == scene.rooms().end() ? "" : " (" + room->name + ")") +
-                                   " that nothing leads to: not reached; plan it too with " + entries + "enter " +
-                                   place(part.place)});
+                                   (room ? " (" + scene.rooms()[*room].name + ")" : std::string()) + " " + why});
   }
   if (rest > 0)
     lines.push_back(
@@ -294,7 +309,8 @@ std::string trade_off_text(const PlanResult& result) {
     from = to;
   }
   const bool targets = !result.front.empty() && !result.front[answer(result)].targets.empty();
-  std::string text = "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
+  std::string text =
+      "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!shown[k]) continue;
     const TradeOffPoint& point = points[k];

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/utf8.hpp"
 
 namespace vantage::importer {
 namespace {
@@ -81,21 +80,6 @@ std::string glb_bytes(json document, const std::string& binary) {
   append_word(out, binary.size());
   append_word(out, kBinary);
   return out += binary;
-}
-
-std::string utf8(const std::string& text) {
-  if (is_utf8(text)) return text;
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      out += c;
-    } else {
-      out += static_cast<char>(0xC0 | (byte >> 6));
-      out += static_cast<char>(0x80 | (byte & 0x3F));
-    }
-  }
-  return out;
 }
 
 }  // namespace vantage::importer

@@ -32,7 +32,4 @@ class Buffer {
   nlohmann::json views_ = nlohmann::json::array(), accessors_ = nlohmann::json::array();
 };
 
-// Text as UTF-8: unchanged if valid, else read as Latin-1.
-std::string utf8(const std::string& text);
-
 }  // namespace vantage::importer

@@ -11,11 +11,14 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <tuple>
 #include <utility>
 
+#include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
 
@@ -326,8 +329,7 @@ void GroundField::find_parts() {
   }
 }
 
-// Whether a level line of sight, at knee or head height, leads out of the model from the edge of the part.
-bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_t number) const {
+GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, const Part& part, std::uint32_t number) const {
   constexpr std::size_t most = 2000;
   constexpr int ways = 16;
   std::vector<std::uint32_t> edge;
@@ -339,26 +341,28 @@ bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_
   }
   const double far = cell_ * (columns_ + rows_);
   const std::size_t stride = std::max<std::size_t>(1, edge.size() / most);
+  std::size_t looked = 0, out = 0;
   for (std::size_t i = 0; i < edge.size(); i += stride) {
     const glm::dvec2 p = middle(column_[edge[i]]);
     for (int k = 0; k < ways; ++k) {
       const double angle = 2 * 3.14159265358979323846 * k / ways;
       const glm::dvec3 way{far * std::cos(angle), far * std::sin(angle), 0};
-      bool out = true;
-      for (const double share : {0.27, 0.8}) {
+      const auto free = [&](double share) {
         const glm::dvec3 from{p.x, p.y, z_[edge[i]] + share * height_};
-        out = out && !tree.between(from, from + way);
-      }
-      if (out) return true;
+        return !tree.between(from, from + way);
+      };
+      ++looked, out += free(0.27) && free(0.8);
     }
   }
-  return false;
+  return {out > 0, looked > 0 ? static_cast<double>(out) / static_cast<double>(looked) : 0};
 }
 
 std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const {
   // Smallest shares of the largest part. An entrance may be small beside its hall; closed parts must be of similar
   // size.
   constexpr double large_open = 0.2, large_closed = 0.5;
+  // A room with walls around and a door sees less of what is outside; a porch or a niche more.
+  constexpr double most_open = 0.15;
   const double storey = 0.8 * height_;  // parts nearer in height than this are on one level
   struct Candidate {
     std::uint32_t part;
@@ -388,12 +392,19 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   };
   const double largest = std::max(largest_of(open), largest_of(closed));
   only_above(open, large_open * largest);
+  std::vector<Candidate> small = closed;
+  std::erase_if(small, [&](const Candidate& c) { return c.area >= large_open * largest || c.area < 10 * room(); });
   only_above(closed, large_open * largest);
-  std::erase_if(closed, [&](const Candidate& c) {
-    if (!leads_out(tree, parts_[c.part], c.part)) return false;
-    open.push_back(c);
-    return true;
-  });
+  const auto move_to_open = [&](std::vector<Candidate>& some, double most) {
+    std::erase_if(some, [&](const Candidate& c) {
+      const WaysOut ways = ways_out(tree, parts_[c.part], c.part);
+      if (!ways.any || ways.share > most) return false;
+      open.push_back(c);
+      return true;
+    });
+  };
+  move_to_open(closed, 1);
+  if (open.empty()) move_to_open(small, most_open);
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
@@ -467,16 +478,56 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
   look_beyond_high_steps();
 }
 
-std::vector<std::pair<double, glm::dvec3>> GroundField::rooms_not_entered() const {
+std::vector<GroundField::ClosedDoor> GroundField::closed_doors(const SceneData& scene) const {
+  constexpr double kThreshold_m = 0.35;  // height of a sill, or of the gap below a leaf
+  const std::span<const Triangle> triangles(scene.triangles);
+  std::vector<ClosedDoor> doors;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    if (scene.meshes[m].door) continue;
+    const auto leaf = leaf_around(triangles.subspan(scene.ranges[m].first_triangle, scene.ranges[m].triangle_count),
+                                  [&](std::uint32_t vertex) { return to_glm(scene.positions[vertex]); });
+    if (!leaf || !(is_plain_leaf(*leaf) || names_a_door(scene.meshes[m].name))) continue;
+    ClosedDoor door{m, {nowhere, nowhere}};
+    for (int side = 0; side < 2; ++side)
+      for (double away = 0.25; away <= 4 && door.parts[side] == nowhere; away += 0.25) {
+        const glm::dvec3 p = leaf->middle + leaf->through * ((side ? 1 : -1) * (leaf->thickness / 2 + away * radius_));
+        const auto column = column_at(p.x, p.y);
+        const auto sample = column ? nearest(*column, p.z - leaf->height / 2, kThreshold_m) : std::nullopt;
+        if (sample) door.parts[side] = part_[*sample];
+      }
+    if (door.parts[0] != nowhere && door.parts[1] != nowhere && door.parts[0] != door.parts[1]) doors.push_back(door);
+  }
+  return doors;
+}
+
+std::vector<GroundField::NotEntered> GroundField::rooms_not_entered(const SceneData& scene) const {
   const double least = 3 * room();  // 2.7 m² for a passage of 0.6 m, to which walls' margins come
   const double hall = 10 * room();
-  std::vector<std::pair<double, glm::dvec3>> rooms;
+  std::vector<NotEntered> rooms;
+  std::vector<std::uint32_t> part_of;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if ((access_[i] == Access::sealed && parts_[i].area(cell_) >= least) ||
         (access_[i] == Access::unreachable && parts_[i].area(cell_) >= hall &&
          2 * parts_[i].in_the_sky <= parts_[i].samples))
-      rooms.emplace_back(parts_[i].area(cell_), middle_of(i));
-  std::ranges::stable_sort(rooms, [](const auto& a, const auto& b) { return a.first > b.first; });
+      rooms.push_back({parts_[i].area(cell_), middle_of(i)}), part_of.push_back(i);
+  if (rooms.empty()) return rooms;
+  // From what is reached through ever more doors.
+  const std::vector<ClosedDoor> doors = closed_doors(scene);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> way;  // doors on the way to each part found
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t i = 0; i < parts_.size(); ++i)
+    if (access_[i] == Access::reached) way[i] = {}, open.push_back(i);
+  for (std::size_t k = 0; k < open.size(); ++k)
+    for (const ClosedDoor& door : doors)
+      for (int side = 0; side < 2; ++side)
+        if (door.parts[side] == open[k] && !way.contains(door.parts[1 - side])) {
+          std::vector<std::uint32_t> to = way[open[k]];
+          to.push_back(door.mesh);
+          way[door.parts[1 - side]] = std::move(to), open.push_back(door.parts[1 - side]);
+        }
+  for (std::size_t k = 0; k < rooms.size(); ++k)
+    if (const auto found = way.find(part_of[k]); found != way.end()) rooms[k].doors = found->second;
+  std::ranges::stable_sort(rooms, std::ranges::greater{}, &NotEntered::area_m2);
   return rooms;
 }
 

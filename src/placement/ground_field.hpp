@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/glm.hpp"
@@ -49,7 +48,7 @@ class GroundField {
 
   // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
   // where people enter. These are the lowest large parts that are in the open or lead there, by a door or an opening,
-  // as several dwellings do; without one, the largest of the lowest. Throws Error invalid_argument if there is no room
+  // as several dwellings do; without one, the rooms that have a way out, however small; else the largest of the lowest. Throws Error invalid_argument if there is no room
   // for a person near one of `enter`.
   void reach(const MeshTree& tree, std::span<const glm::dvec3> enter);
 
@@ -58,9 +57,13 @@ class GroundField {
   Access at(const glm::dvec3& place) const;
   // Entrances of the reached parts, the largest first; empty if nothing is reached.
   const std::vector<glm::dvec3>& entries() const { return entries_; }
-  // Sealed parts as large as a room, and covered ones as large as a hall beyond a step, with their middles. Largest
-  // first.
-  std::vector<std::pair<double, glm::dvec3>> rooms_not_entered() const;
+  // Sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
+  struct NotEntered {
+    double area_m2 = 0;
+    glm::dvec3 middle{};
+    std::vector<std::uint32_t> doors = {};  // meshes of closed doors on the way from what is reached
+  };
+  std::vector<NotEntered> rooms_not_entered(const SceneData& scene) const;
   // Area of the columns that hold anything.
   double outline() const;
   // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
@@ -87,10 +90,20 @@ class GroundField {
   void find_samples(const SceneData& scene, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
   void find_parts();
-  bool leads_out(const MeshTree& tree, const Part& part, std::uint32_t number) const;
+  // Level lines of sight, at knee and head height, that lead out of the model from the edge of the part.
+  struct WaysOut {
+    bool any = false;
+    double share = 0;  // of all directions at the edge
+  };
+  WaysOut ways_out(const MeshTree& tree, const Part& part, std::uint32_t number) const;
   std::vector<std::uint32_t> choose_parts(const MeshTree& tree) const;
   // The sample of a part nearest to its middle.
   glm::dvec3 middle_of(std::uint32_t part) const;
+  // Parts on both sides of each closed door.
+  struct ClosedDoor {
+    std::uint32_t mesh, parts[2];
+  };
+  std::vector<ClosedDoor> closed_doors(const SceneData& scene) const;
   void tell_apart();
   void look_beyond_high_steps();
 

@@ -231,10 +231,13 @@ std::vector<glm::dvec3> local_entries(const SceneData& scene, const WalkableOpti
   return entries;
 }
 
-void tell_entries(WalkableSurface& surface, const GroundField& field, const Vec3& origin) {
-  for (const glm::dvec3& entry : field.entries()) surface.entries.push_back(to_vec3(entry) + origin);
-  for (const auto& [area, place] : field.rooms_not_entered())
-    surface.not_entered.push_back({.area_m2 = area, .place = to_vec3(place) + origin});
+void tell_entries(WalkableSurface& surface, const GroundField& field, const SceneData& scene) {
+  for (const glm::dvec3& entry : field.entries()) surface.entries.push_back(to_vec3(entry) + scene.origin);
+  for (const GroundField::NotEntered& part : field.rooms_not_entered(scene)) {
+    NotEntered& out = surface.not_entered.emplace_back();
+    out.area_m2 = part.area_m2, out.place = to_vec3(part.middle) + scene.origin;
+    for (const std::uint32_t mesh : part.doors) out.doors.push_back(scene.meshes[mesh].name);
+  }
 }
 
 WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
@@ -267,7 +270,7 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   if (field.entries().empty() || (options.enter.empty() && !around && !inside)) return {};
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
   if (surface.mesh.triangles.empty()) return surface;
-  tell_entries(surface, field, scene.origin);
+  tell_entries(surface, field, scene);
   std::string entries;
   for (const Vec3& entry : surface.entries) entries += (entries.empty() ? "" : " and ") + place_text(entry);
   surface.description = "derived from walkable surfaces, entered near " + entries + ": " + surface.description;

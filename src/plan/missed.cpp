@@ -8,6 +8,7 @@
 
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
+#include "plan/rooms.hpp"
 #include "plan/why_missed.hpp"
 #include "vantage/error.hpp"
 
@@ -154,6 +155,29 @@ std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> c
   return status;
 }
 
+namespace {
+// Sums of shares of goal points, each with its voxels' weight.
+class ShareSum {
+ public:
+  explicit ShareSum(MissedShare& share) : share_(share) {}
+  void add(const VoxelStatus& status, double weight) {
+    const auto part = [&](WhyMissed why, double of) { share_.shares[static_cast<std::size_t>(why)] += weight * of; };
+    ++share_.voxels;
+    weights_ += weight;
+    part(WhyMissed::captured, status.captured);
+    part(WhyMissed::not_chosen, status.attainable - status.captured);
+    part(status.why, 1 - status.attainable);
+  }
+  void finish() const {
+    for (double& share : share_.shares) share /= std::max(weights_, 1.0);
+  }
+
+ private:
+  MissedShare& share_;
+  double weights_ = 0;
+};
+}  // namespace
+
 std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
                                         std::span<const VoxelStatus> status) {
   if (ranks.size() != status.size())
@@ -168,24 +192,12 @@ std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<co
     if (added) shares.push_back({.node = meshes[m].name});
     of_mesh[m] = at->second;
   }
-  std::vector<double> weights(shares.size());
+  std::vector<ShareSum> sums(shares.begin(), shares.end());
   const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    const double weight = simulator.voxel_weight(ranks[i]);
-    const auto& [why, captured, attainable] = status[i];
-    for (const std::size_t k : {std::size_t{0}, of_mesh[patches[i].mesh]}) {
-      const auto add = [&](WhyMissed reason, double part) {
-        shares[k].shares[static_cast<std::size_t>(reason)] += weight * part;
-      };
-      ++shares[k].voxels;
-      weights[k] += weight;
-      add(WhyMissed::captured, captured);
-      add(WhyMissed::not_chosen, attainable - captured);
-      add(why, 1 - attainable);
-    }
-  }
-  for (std::size_t k = 0; k < shares.size(); ++k)
-    for (double& share : shares[k].shares) share /= std::max(weights[k], 1.0);
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    for (const std::size_t k : {std::size_t{0}, of_mesh[patches[i].mesh]})
+      sums[k].add(status[i], simulator.voxel_weight(ranks[i]));
+  for (const ShareSum& sum : sums) sum.finish();
   std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
   return shares;
 }
@@ -206,6 +218,21 @@ void take_whole_coverage(MissedShare& all, const Simulator& simulator, const Vox
   for (std::size_t k = 0; k < why_missed_count; ++k)
     if (k != static_cast<std::size_t>(WhyMissed::captured) && rest > 0) all.shares[k] *= (1 - captured) / rest;
 }
+
+std::vector<RoomShare> missed_by_room(Site& site, const MissedVoxels& judged) {
+  const Simulator& simulator = site.simulator();
+  const std::span<const Room> rooms = simulator.scene().rooms();
+  if (rooms.empty()) return {};
+  std::vector<RoomShare> shares = shares_by_room(rooms, site.area());
+  std::vector<ShareSum> sums;
+  for (std::size_t k = 0; k < rooms.size(); ++k) shares[k].share.node = rooms[k].name, sums.emplace_back(shares[k].share);
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(judged.ranks);
+  for (std::size_t i = 0; i < judged.ranks.size(); ++i)
+    if (const auto room = room_at(rooms, patches[i].point))
+      sums[*room].add(judged.status[i], simulator.voxel_weight(judged.ranks[i]));
+  for (const ShareSum& sum : sums) sum.finish();
+  return shares;
+}
 }  // namespace
 
 MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOptions& options,
@@ -219,6 +246,7 @@ MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOpti
   if (judged.status.empty()) return {};
   judged.shares = missed_by_node(simulator, judged.ranks, judged.status);
   take_whole_coverage(judged.shares.front(), simulator, field);
+  judged.rooms = missed_by_room(site, judged);
   judged.candidates = candidates.size();
   return judged;
 }

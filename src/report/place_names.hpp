@@ -13,13 +13,8 @@ class PlaceNames {
  public:
   explicit PlaceNames(const Scene& scene) : scene_(scene) {}
   const std::string& of(const VoxelPatch& patch) const {
-    constexpr double kSkin_m = 0.15;  // surfaces around a room stand for it
-    for (const Room& room : scene_.rooms())
-      if (patch.point.x > room.box.min.x - kSkin_m && patch.point.x < room.box.max.x + kSkin_m &&
-          patch.point.y > room.box.min.y - kSkin_m && patch.point.y < room.box.max.y + kSkin_m &&
-          patch.point.z > room.box.min.z - kSkin_m && patch.point.z < room.box.max.z + kSkin_m)
-        return room.name;
-    return scene_.meshes()[patch.mesh].name;
+    const auto room = room_at(scene_.rooms(), patch.point);
+    return room ? scene_.rooms()[*room].name : scene_.meshes()[patch.mesh].name;
   }
 
  private:

@@ -12,6 +12,7 @@
 #include <limits>
 #include <tuple>
 
+#include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
@@ -52,7 +53,7 @@ bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
 
 }  // namespace
 
-Columns::Columns(const RawScene& raw, bool z_up) {
+Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out) {
   // Broken vertices count for nothing. But in a site in millimetres, all may lie as far out as broken ones.
   constexpr double kFarthest = 1e12;
   const auto within = [&](const Triangle& t, double limit) {
@@ -63,10 +64,7 @@ Columns::Columns(const RawScene& raw, bool z_up) {
   };
   const bool near = std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return within(t, kFarthest_m); });
   const double limit = near ? kFarthest_m : kFarthest;
-  const auto place = [&](std::uint32_t v) {
-    const glm::dvec3& p = raw.positions[v];
-    return z_up ? glm::dvec3{p.x, p.z, -p.y} : p;
-  };
+  const auto place = [&](std::uint32_t v) { return with_up(up_axis, raw.positions[v]); };
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const Triangle& t : raw.triangles)
     if (within(t, limit))
@@ -107,7 +105,7 @@ Columns::Columns(const RawScene& raw, bool z_up) {
   tbb::parallel_for(std::size_t{0}, upright.size(), [&](std::size_t block) {
     Found& own = found.local();
     for (std::size_t i = block * kBlock; i < std::min(raw.triangles.size(), (block + 1) * kBlock); ++i) {
-      if (!within(raw.triangles[i], limit)) continue;
+      if (!within(raw.triangles[i], limit) || (!left_out.empty() && left_out[i])) continue;
       Corners t;
       for (std::size_t c = 0; c < 3; ++c) t[c] = place(raw.triangles[i][c]) - low;
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);

@@ -24,8 +24,8 @@ class Columns {
     float low = 0, high = 0;
   };
 
-  // `raw`: read by glTF's rule; `z_up`: turned as reinterpret_axes() turns it. Deterministic.
-  Columns(const RawScene& raw, bool z_up);
+  // `raw`: read by glTF's rule. Triangles whose `left_out` is not 0 are not there; it may be empty. Deterministic.
+  Columns(const RawScene& raw, UpAxis up, const std::vector<std::uint8_t>& left_out = {});
 
   bool empty() const { return outline_ == 0; }
   double cell() const { return cell_; }

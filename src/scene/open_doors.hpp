@@ -15,7 +15,8 @@ namespace vantage {
 // door in one of several languages, or it stands in an opening of a thicker wall. `raw`: survey frame, metres.
 std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_t>& candidate);
 
-// Whether a name is that of a door, and no part of furniture.
-bool names_a_door(const std::string& name);
+// Meshes that open_doors() would take out, up to a few dozen, in this unit and with this axis up. `raw`: read by
+// glTF's rule.
+std::vector<std::size_t> leaves_if(const RawScene& raw, Unit unit, UpAxis up);
 
 }  // namespace vantage

@@ -12,6 +12,17 @@ inline Float3 to_float3(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// The survey frame's (x, y, z) of a vector that was read by glTF's rule (Y up), if another axis of the file is up. X up
+// is COLLADA's: −y is to the right, z towards the viewer.
+inline glm::dvec3 with_up(UpAxis up, const glm::dvec3& v) {
+  switch (up) {
+    case UpAxis::x: return {-v.z, v.y, v.x};
+    case UpAxis::y: return v;
+    case UpAxis::z: return {v.x, v.z, -v.y};
+  }
+  return v;
+}
+
 // Turns −0 into 0, so that equal positions have equal bits.
 inline Float3 without_minus_zero(const Float3& v) { return {v.x + 0.0F, v.y + 0.0F, v.z + 0.0F}; }
 

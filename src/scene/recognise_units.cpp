@@ -12,12 +12,14 @@
 #include <utility>
 
 #include "scene/columns.hpp"
+#include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
 namespace {
 
+constexpr std::array<UpAxis, 3> kAxes{UpAxis::y, UpAxis::z, UpAxis::x};
 constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::centimetre, Unit::millimetre};
 
 // A person, and what is built for one. Metres.
@@ -265,11 +267,26 @@ std::string plural(Unit unit) {
 // "millimetres, Z up (60.6 x 30.6 x 10.5 m, 1480 m² of floor, rooms 2.7 m high, stairs)"
 std::string meaning(const Hypothesis& h) {
   constexpr double kSome = 0.5;
-  return plural(h.unit) + ", " + (h.up == UpAxis::y ? "Y" : "Z") + " up (" + rounded(h.size.x) + " x " +
+  return plural(h.unit) + ", " + (h.up == UpAxis::x ? "X" : h.up == UpAxis::y ? "Y" : "Z") + " up (" + rounded(h.size.x) + " x " +
          rounded(h.size.y) + " x " + rounded(h.size.z) + " m" +
          (h.floor_m2 > 0 ? ", " + rounded(h.floor_m2) + " m² of floor" : "") +
          (h.headroom_m > 0 ? ", rooms " + rounded(h.headroom_m) + " m high" : "") + (h.doors > kSome ? ", doors" : "") +
          (h.flights > kSome ? ", stairs" : "") + ")";
+}
+
+// A closed leaf hides its opening. Triangles of leaves in any of the units that are possible.
+std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional<Unit>& unit, UpAxis up) {
+  std::array<std::vector<std::size_t>, kUnits.size()> leaves;
+  tbb::parallel_for(std::size_t{0}, kUnits.size(), [&](std::size_t i) {
+    if (unit.value_or(kUnits[i]) == kUnits[i]) leaves[i] = leaves_if(raw, kUnits[i], up);
+  });
+  std::vector<std::uint8_t> out;
+  for (const auto& some : leaves)
+    for (const std::size_t m : some) {
+      out.resize(raw.triangles.size(), 0);
+      std::fill_n(out.begin() + raw.ranges[m].first_triangle, raw.ranges[m].triangle_count, std::uint8_t{1});
+    }
+  return out;
 }
 
 double score_of(const Hypothesis& h) {
@@ -291,16 +308,18 @@ std::array<double, kFeatures> features_of(const Hypothesis& h) {
           h.upright,
           h.grid,
           h.unit == Unit::metre ? 1.0 : 0.0,
-          h.up == UpAxis::y ? 1.0 : 0.0};
+          h.up == UpAxis::y   ? 1.0
+          : h.up == UpAxis::z ? 0.0
+                              : -2.0};  // few models have X up
 }
 
 std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optional<Unit>& unit,
                                          const std::optional<UpAxis>& up) {
   std::vector<Hypothesis> all;
   const DrawingGrid grid = drawing_grid(raw);
-  for (const UpAxis axis : {UpAxis::y, UpAxis::z}) {
+  for (const UpAxis axis : kAxes) {
     if (up.value_or(axis) != axis) continue;
-    const Columns columns(raw, axis == UpAxis::z);
+    const Columns columns(raw, axis, leaves_in_any(raw, unit, axis));
     if (columns.empty()) return {};
     const std::size_t first = all.size();
     for (const Unit length : kUnits) {
@@ -317,11 +336,14 @@ std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optiona
       Walk(columns, metres).measure(all[i]);
     });
   }
-  double upright = 0.01;  // less than this says nothing
-  for (const UpAxis axis : {UpAxis::y, UpAxis::z})
-    if (const auto h = std::ranges::find(all, axis, &Hypothesis::up); h != all.end()) upright += h->upright;
+  // Pitched roofs stand upright along their ridge: X counts beside the other two, and does not count against them.
+  double upright = 0.01, with_x = 0.01;  // less than this says nothing
+  for (const UpAxis axis : kAxes)
+    if (const auto h = std::ranges::find(all, axis, &Hypothesis::up); h != all.end())
+      (axis == UpAxis::x ? with_x : upright) += h->upright;
+  with_x += upright;
   for (Hypothesis& h : all) {
-    h.upright /= upright;
+    h.upright /= h.up == UpAxis::x ? with_x : upright;
     h.score = score_of(h);
   }
   std::ranges::stable_sort(all, [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
@@ -340,7 +362,8 @@ bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
 // Whether round columns and turned walls stand along the other axis, and no door is along this one.
 bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
   constexpr double kMostUpright = 0.5;
-  return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.upright >= kMostUpright;
+  return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.up != UpAxis::x &&
+         other.upright >= kMostUpright;
 }
 }  // namespace
 
@@ -384,13 +407,13 @@ void turn_faces(RawScene& raw) {
 
 void reinterpret_axes(RawScene& raw, Unit unit, UpAxis up) {
   const double metres = metres_in(unit);
-  const bool turn = up == UpAxis::z;
+  const bool turn = up != UpAxis::y;
   if (metres == 1 && !turn) return;
-  const auto point = [&](const glm::dvec3& p) { return (turn ? glm::dvec3(p.x, p.z, -p.y) : p) * metres; };
+  const auto point = [&](const glm::dvec3& p) { return with_up(up, p) * metres; };
   for (glm::dvec3& p : raw.positions) p = point(p);
   for (glm::dvec3& p : raw.search_positions) p = point(p);
   if (turn)
-    for (Float3& n : raw.normals) n = without_minus_zero({n.x, n.z, -n.y});
+    for (Float3& n : raw.normals) n = without_minus_zero(to_float3(with_up(up, to_glm(n))));
   raw.coarsest_input_spacing_m *= metres;
 }
 

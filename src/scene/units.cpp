@@ -32,12 +32,12 @@ Unit unit_from_string(const std::string& text) {
   throw Error(Errc::invalid_argument, "\"" + text + "\" is no unit of length; use m, cm, mm, in or ft");
 }
 
-const char* to_string(UpAxis up) noexcept { return up == UpAxis::y ? "y" : "z"; }
+const char* to_string(UpAxis up) noexcept { return up == UpAxis::x ? "x" : up == UpAxis::y ? "y" : "z"; }
 
 UpAxis up_axis_from_string(const std::string& text) {
-  for (const UpAxis up : {UpAxis::y, UpAxis::z})
+  for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z})
     if (text == to_string(up)) return up;
-  throw Error(Errc::invalid_argument, "\"" + text + "\" is no axis that can point up; use y or z");
+  throw Error(Errc::invalid_argument, "\"" + text + "\" is no axis that can point up; use x, y or z");
 }
 
 }  // namespace vantage

@@ -10,6 +10,7 @@
 
 #include "core/read_json.hpp"
 #include "core/setting_list.hpp"
+#include "core/utf8.hpp"
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
@@ -271,7 +272,7 @@ Site Site::open(const std::filesystem::path& file, SiteOptions options) {
   if (options.log)
     for (const std::string& note : scene.notes()) options.log(file.string() + ": " + note);
   take_scene_defaults(options, scene, file.string());
-  return Site(std::move(scene), std::move(options), file.stem().string());
+  return Site(std::move(scene), std::move(options), to_utf8(file.stem().string()));
 }
 
 Site::Site(Scene scene, SiteOptions options, std::string name) : impl_(std::make_unique<Impl>(std::move(scene))) {

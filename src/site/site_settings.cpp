@@ -61,7 +61,7 @@ void add_scene(Rows& rows) {
           },
           [](const SiteOptions& o) { return o.scene.unit.has_value(); })
       .custom(
-          "up", "AXIS", "Axis of the file that points up: y or z; recognised by default",
+          "up", "AXIS", "Axis of the file that points up: x, y or z; recognised by default",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.up = named(what, [&] { return up_axis_from_string(text); });
           },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hypotheses [--features] [--as-is] UNIT AXIS FILE...: models whose true unit and up axis are known, written in every
-// unit and with either axis up, or as they are alone. Prints for each whether they are recognised, asked for, or wrong.
+// unit and with each axis up, or as they are alone. Prints for each whether they are recognised, asked for, or wrong.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -29,15 +29,18 @@ int main(int argc, char** argv) {
       const Scene scene =
           Scene::load(argv[i], {.unit = unit_from_string(argv[first]), .up = up_axis_from_string(argv[first + 1])});
       for (const Unit unit : {Unit::metre, Unit::centimetre, Unit::millimetre, Unit::inch, Unit::foot})
-        for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+        for (const UpAxis up : {UpAxis::y, UpAxis::z, UpAxis::x}) {
           if (as_is && (std::string(to_string(unit)) != argv[first] || std::string(to_string(up)) != argv[first + 1]))
             continue;
           RawScene raw;
           for (const Float3& p : scene.data().positions) {
             const glm::dvec3 q = (to_glm(p) + to_glm(scene.data().origin)) / metres_in(unit);
-            raw.positions.push_back(up == UpAxis::y ? q : glm::dvec3{q.x, -q.z, q.y});
+            raw.positions.push_back(up == UpAxis::x   ? glm::dvec3{q.z, q.y, -q.x}
+                                    : up == UpAxis::y ? q
+                                                      : glm::dvec3{q.x, -q.z, q.y});
           }
           raw.triangles = scene.data().triangles;
+          raw.ranges = scene.data().ranges, raw.meshes = scene.data().meshes;
           const auto begun = std::chrono::steady_clock::now();
           const Recognised found = recognise(raw, {}, {});
           const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

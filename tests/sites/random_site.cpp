@@ -250,4 +250,13 @@ class Maker {
 
 RandomSite make_random_site(std::uint64_t seed) { return Maker(seed * 2 + 1).make(); }
 
+void write_site(const RandomSite& random, const std::filesystem::path& file) {
+  KnownSite site = random.site;
+  site.parts.insert(site.parts.end(), random.leaves.begin(), random.leaves.end());
+  if (random.turned)
+    for (Part& part : site.parts)
+      for (auto& t : part.triangles) std::swap(t[1], t[2]);
+  write_site(site, random.variant, file);
+}
+
 }  // namespace vantage::test

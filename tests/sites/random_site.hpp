@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,5 +23,7 @@ struct RandomSite {
 
 // The same seed gives the same site.
 RandomSite make_random_site(std::uint64_t seed);
+// Writes a GLB without roles, with its leaves. Sheets may be turned in the file; the truth keeps them upward.
+void write_site(const RandomSite& random, const std::filesystem::path& file);
 
 }  // namespace vantage::test

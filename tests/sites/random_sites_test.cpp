@@ -25,16 +25,6 @@ using test::Surface;
 
 double area_of(const test::Place& place) { return (place.x1 - place.x0) * (place.y1 - place.y0); }
 
-// Sheets may be turned in the file; the truth keeps them upward.
-void write(const RandomSite& random, const std::filesystem::path& file) {
-  test::KnownSite site = random.site;
-  site.parts.insert(site.parts.end(), random.leaves.begin(), random.leaves.end());
-  if (random.turned)
-    for (test::Part& part : site.parts)
-      for (auto& t : part.triangles) std::swap(t[1], t[2]);
-  write_site(site, random.variant, file);
-}
-
 void stand(const RandomSite& random, const Scene& scene) {
   const SearchArea area = SearchArea::build(scene);
   SCOPED_TRACE(area.description());
@@ -78,7 +68,7 @@ TEST(RandomSites, AreRecognisedOrAskedForAndWalkedAsTheyAre) {
     const RandomSite random = test::make_random_site(static_cast<std::uint64_t>(seed));
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.told);
     const test::TemporaryFolder folder;
-    write(random, folder / "site.glb");
+    write_site(random, folder / "site.glb");
     const double per_metre = random.variant.per_metre;
     Unit unit = Unit::metre;
     for (const Unit u : {Unit::centimetre, Unit::millimetre, Unit::inch, Unit::foot})

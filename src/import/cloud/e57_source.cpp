@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/utf8.hpp"
 #include "import/cloud/e57_records.hpp"
 #include "import/cloud/points.hpp"
-#include "import/glb_bytes.hpp"
 #include "import/program.hpp"
 
 namespace vantage::importer {
@@ -63,13 +63,13 @@ class E57Source final : public PointSource {
  public:
   explicit E57Source(const std::filesystem::path& file) : pages_(file) {
     const XmlElement root = parse_xml(pages_.xml());
-    crs_ = utf8(root.text_at("coordinateMetadata"));
+    crs_ = to_utf8(root.text_at("coordinateMetadata"));
     const XmlElement* all = root.child("data3D");
     for (const XmlElement& element : all ? all->children : std::vector<XmlElement>()) {
       CloudScan scan;
-      scan.name = utf8(element.text_at("name"));
+      scan.name = to_utf8(element.text_at("name"));
       if (scan.name.empty()) scan.name = "scan " + std::to_string(data_.size() + 1);
-      scan.sensor = utf8(element.text_at("sensorModel"));
+      scan.sensor = to_utf8(element.text_at("sensorModel"));
       data_.push_back(data_of(element, scan.name));
       const Data3d& data = data_.back();
       scan.position = data.translation, scan.rotation = data.rotation;

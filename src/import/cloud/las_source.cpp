@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/utf8.hpp"
 #include "import/cloud/byte_file.hpp"
 #include "import/cloud/points.hpp"
-#include "import/glb_bytes.hpp"
 #include "import/program.hpp"
 
 namespace vantage::importer {
@@ -112,7 +112,7 @@ class LasSource final : public PointSource {
     if (foot)
       head_.metres =
           unit.find("US") != std::string::npos || unit.find("urvey") != std::string::npos ? kSurveyFoot : kFoot;
-    if (!foot && !text.starts_with("LOCAL_CS")) crs_ = utf8(text);
+    if (!foot && !text.starts_with("LOCAL_CS")) crs_ = to_utf8(text);
   }
 
   void read_keys(const std::string& keys) {

@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "core/utf8.hpp"
-#include "import/glb_bytes.hpp"
 
 namespace vantage::floor_plan {
 namespace {
@@ -33,13 +32,13 @@ std::string decoded(const std::string& text, const std::string& code_page) {
   const std::size_t number = code_page.find_first_of("0123456789");
   const std::string page = number == std::string::npos ? "CP1252" : "CP" + code_page.substr(number);
   const iconv_t convert = iconv_open("UTF-8", page.c_str());
-  if (convert == reinterpret_cast<iconv_t>(-1)) return importer::utf8(text);
+  if (convert == reinterpret_cast<iconv_t>(-1)) return to_utf8(text);
   std::string out(4 * text.size(), '\0'), in = text;
   char *from = in.data(), *to = out.data();
   std::size_t left = in.size(), free = out.size();
   const bool sound = iconv(convert, &from, &left, &to, &free) != static_cast<std::size_t>(-1);
   iconv_close(convert);
-  if (!sound) return importer::utf8(text);
+  if (!sound) return to_utf8(text);
   out.resize(out.size() - free);
   return out;
 }

@@ -13,6 +13,7 @@
 #include <new>
 #include <vector>
 
+#include "core/utf8.hpp"
 #include "import/glb_bytes.hpp"
 #include "import/mesh/declared_units.hpp"
 #include "import/program.hpp"
@@ -44,7 +45,7 @@ bool has_triangles(const aiMesh& mesh) { return (mesh.mPrimitiveTypes & aiPrimit
 class Converter {
  public:
   Converter(const aiScene& scene, const std::filesystem::path& file, const std::string& format)
-      : scene_(scene), format_(format), stem_(utf8(file.stem().string())), primitives_(scene.mNumMeshes) {
+      : scene_(scene), format_(format), stem_(to_utf8(file.stem().string())), primitives_(scene.mNumMeshes) {
     declared_ = declared_units(scene, file, format);
   }
 
@@ -126,7 +127,7 @@ class Converter {
     float opacity = 1;
     given.Get(AI_MATKEY_OPACITY, opacity);
     if (!(opacity > 0)) opacity = 1;  // full transparency is a slip of the exporter
-    json material{{"name", utf8(name.C_Str())}, {"doubleSided", true}};
+    json material{{"name", to_utf8(name.C_Str())}, {"doubleSided", true}};
     // The colour of a textured surface is in the texture, which is not carried over.
     if (given.GetTextureCount(aiTextureType_DIFFUSE) == 0) {
       const auto share = [](float value) { return std::clamp(finite(value), 0.0F, 1.0F); };
@@ -150,7 +151,7 @@ class Converter {
     if (!is_new) return known->second;
     json mesh{{"primitives", json::array()}};
     for (const unsigned part : parts) mesh["primitives"].push_back(primitives_[part]);
-    if (const std::string name = utf8(scene_.mMeshes[parts.front()]->mName.C_Str()); !name.empty()) mesh["name"] = name;
+    if (const std::string name = to_utf8(scene_.mMeshes[parts.front()]->mName.C_Str()); !name.empty()) mesh["name"] = name;
     meshes_.push_back(mesh);
     return known->second = static_cast<int>(meshes_.size()) - 1;
   }
@@ -159,7 +160,7 @@ class Converter {
     const std::size_t index = nodes_.size();
     nodes_.push_back(json::object());
     json out = json::object();
-    std::string name = utf8(node.mName.C_Str());
+    std::string name = to_utf8(node.mName.C_Str());
     const int mesh = mesh_of(node);
     // Names made up by assimp are in angle brackets, or the file's.
     if (name.empty() || name.front() == '<' || name == "model." + format_) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/utf8.hpp"
 #include "scene/gltf/scene_files.hpp"
 
 namespace vantage::gltf {
@@ -243,6 +244,24 @@ Bytes File::open_glb(Bytes all) {
   return binary;
 }
 
+// Names of Latin-1 are no JSON. Says where, with the words around.
+void File::require_utf8(Bytes text) const {
+  const std::string_view all(reinterpret_cast<const char*>(text.data()), text.size());
+  for (std::size_t at = 0; at < all.size();) {
+    const std::size_t size = utf8_character(all, at);
+    if (size == 0) {
+      constexpr std::size_t kAround = 40;
+      const std::size_t begin = all.find_last_of("\"{},\n", at), end = all.find_first_of("\"{},\n", at);
+      const std::size_t from = std::max(at - std::min(at, kAround), begin == all.npos ? 0 : begin + 1);
+      const std::size_t to = std::min(at + kAround, std::min(end, all.size()));
+      throw malformed("its text is not UTF-8 in line " +
+                      std::to_string(1 + std::ranges::count(all.substr(0, at), '\n')) + " of its JSON, at " +
+                      quoted(to_utf8(all.substr(from, to - from))) + " (Latin-1, perhaps); export it as glTF has it, in UTF-8");
+    }
+    at += size;
+  }
+}
+
 void File::parse(Bytes text) {
   const Outline outline = outline_of(text);
   if (outline.deepest > kDeepestJson)
@@ -250,6 +269,7 @@ void File::parse(Bytes text) {
                     std::to_string(kDeepestJson) + " are read");
   document_bytes_ = outline.bytes(text.size());
   budget_.keep(document_bytes_, "the JSON");
+  require_utf8(text);
   try {
     json_ = json::parse(text.begin(), text.end());
   } catch (const json::exception& problem) {

@@ -56,6 +56,7 @@ class File {
   Bytes open_container();
   std::size_t skip_tile_header(Bytes all, Bytes& features) const;
   Bytes open_glb(Bytes all);
+  void require_utf8(Bytes text) const;
   void parse(Bytes text);
   void check_version() const;
   void check_extensions() const;

@@ -427,7 +427,12 @@ class Loader {
 
   // Nodes without a mesh that importers describe: a box in metres, Y up, whatever the file's axes are.
   void read_rooms() {
-    for (std::size_t n = 0; n < file_.model().nodes.size(); ++n) {
+    const auto& nodes = file_.model().nodes;
+    std::vector<int> above(nodes.size(), -1);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      for (const int child : nodes[n].children)
+        if (child >= 0 && static_cast<std::size_t>(child) < nodes.size()) above[static_cast<std::size_t>(child)] = static_cast<int>(n);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
       const nlohmann::json& marks = file_.find("nodes", static_cast<int>(n), {"extras", "vantage"});
       if (!marks.is_object() || !marks.contains("box")) continue;
       const auto corner = [&](std::size_t k) {
@@ -446,10 +451,45 @@ class Loader {
       Room room{.name = name.empty() || name == number ? number
                         : number.empty()               ? name
                                                        : number + " " + name,
+                .storey = storey_above(static_cast<int>(n), above),
                 .box = {}};
       room.box.extend(corner(0)), room.box.extend(corner(1));
+      if (marks.contains("footprint")) room.outline = read_outline(marks["footprint"], n);
       raw_.rooms.push_back(std::move(room));
     }
+  }
+
+  // Name of the storey that a node is below, each of which has the one above it in `above`; "" if there is none.
+  std::string storey_above(int node, const std::vector<int>& above) const {
+    for (std::size_t steps = 0; node >= 0 && steps <= above.size(); ++steps) {  // a cycle was refused
+      const nlohmann::json& marks = file_.find("nodes", node, {"extras", "vantage"});
+      if (marks.is_object() && marks.value("class", nlohmann::json()) == "IfcBuildingStorey") {
+        for (const char* key : {"name", "long_name"})
+          if (marks.contains(key) && marks[key].is_string()) return marks[key].get<std::string>();
+        return file_.model().nodes[static_cast<std::size_t>(node)].name;
+      }
+      node = above[static_cast<std::size_t>(node)];
+    }
+    return {};
+  }
+
+  // Loops of corners (x, z), Y up.
+  std::vector<std::vector<std::array<double, 2>>> read_outline(const nlohmann::json& loops, std::size_t node) const {
+    std::vector<std::vector<std::array<double, 2>>> outline;
+    const auto refuse = [&] {
+      return file_.malformed("node " + std::to_string(node) +
+                             ": extras.vantage.footprint is not a list of loops of corners, two numbers each");
+    };
+    if (!loops.is_array()) throw refuse();
+    for (const nlohmann::json& loop : loops) {
+      if (!loop.is_array()) throw refuse();
+      auto& corners = outline.emplace_back();
+      for (const nlohmann::json& corner : loop) {
+        if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() || !corner[1].is_number()) throw refuse();
+        corners.push_back({corner[0].get<double>(), -corner[1].get<double>()});
+      }
+    }
+    return outline;
   }
 
   // Adds the notes of an importer.

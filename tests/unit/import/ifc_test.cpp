@@ -6,7 +6,11 @@
 
 #include "ifc_house.hpp"
 #include "import_fixture.hpp"
+#include "vantage/export.hpp"
+#include "vantage/missed.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/site.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage::test {
 namespace {
@@ -35,6 +39,17 @@ std::vector<std::string> names_of(const Scene& scene) {
 bool has_note(const Scene& scene, const std::string& words) {
   return std::ranges::any_of(scene.notes(),
                              [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string summary_text_of(const std::vector<SummaryLine>& lines) {
+  std::string text;
+  for (const SummaryLine& line : lines) text += line.heading + ": " + line.text + "\n";
+  return text;
 }
 
 void expect_house(const Scene& scene, const Vec3& at) {
@@ -99,6 +114,54 @@ TEST_F(IfcTest, RoomsHaveNameBoxAndOutline) {
     EXPECT_NEAR(std::abs(area) / 2, 16, 1e-5);
   }
   EXPECT_EQ(rooms, 2u);
+}
+
+TEST_F(IfcTest, RoomsOfASceneHaveTheirStorey) {
+  const Scene scene = Scene::load(write("house.ifc", ifc_house()));
+  ASSERT_EQ(scene.rooms().size(), 2u);
+  const Room& kitchen = scene.rooms()[0];
+  EXPECT_EQ(kitchen.name, "1 Kitchen");
+  EXPECT_EQ(kitchen.storey, "Ground floor");
+  EXPECT_NEAR(floor_area(kitchen), 16, 1e-3);
+  EXPECT_EQ(room_at(scene.rooms(), {4.19, 2, 1}), 0u);
+  EXPECT_EQ(room_at(scene.rooms(), {4.41, 2, 1}), 1u);
+}
+
+// Rooms are captured one by one, and the one behind a closed door says so.
+TEST_F(IfcTest, CapturedByRoom) {
+  const auto judged = [&](SiteOptions options) {
+    options.engine = Engine::embree;
+    options.steps = {Angle::degrees(0.5), Angle::degrees(0.5)};
+    options.user_size_m = 0.2, options.spacing_m = 0.05;
+    Site site = Site::open(folder_ / "house.ifc", std::move(options));
+    const std::vector<PlacedStation> stations{site.place_head({2, 2, 1.6}).station};
+    const Evaluation found = site.evaluate(stations, {.field = true});
+    const MissedVoxels missed = missed_voxels(site, found.field);
+    write_rooms_csv(folder_ / "rooms.csv", site.scene().rooms(), missed.rooms, stations, {});
+    return std::pair(missed.rooms, summary_text_of(ground_lines(site.area())));
+  };
+  write("house.ifc", ifc_house());
+  const auto [open, nothing] = judged({.enter = {{1, 1, 0}}});
+  ASSERT_EQ(open.size(), 2u);
+  EXPECT_EQ(nothing, "");
+  EXPECT_GT(open[0].share.voxels, 500u);
+  EXPECT_GT(open[0].share.share(WhyMissed::captured), open[1].share.share(WhyMissed::captured) + 0.3);
+  EXPECT_NEAR(open[0].ground_m2, 10, 4) << "16 m² without what is too near to walls and cupboards";
+  EXPECT_EQ(why_no_station(open[1]), "no place in it was chosen");
+  std::string table = content(folder_ / "rooms.csv");
+  EXPECT_NE(table.find("\nGround floor,1 Kitchen,16.00,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",S1,,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",,no place in it was chosen,"), std::string::npos) << table;
+
+  const auto [shut, told] = judged({.scene = {.doors = {"closed"}}, .enter = {{1, 1, 0}}});
+  EXPECT_EQ(why_no_station(shut[1]), to_string(LeftOutReason::sealed));
+  EXPECT_EQ(shut[1].ground_m2, 0);
+  EXPECT_EQ(shut[1].share.share(WhyMissed::captured), 0);
+  EXPECT_NE(told.find("behind a closed door: not reached; plan it too with ignore 'IfcDoor inner 0Vantage"), std::string::npos)
+      << told;
+  // The advice opens it.
+  const std::string door = told.substr(told.find('\'') + 1, told.rfind('\'') - told.find('\'') - 1);
+  EXPECT_EQ(judged({.scene = {.ignore = {door}, .doors = {"closed"}}, .enter = {{1, 1, 0}}}).second, "");
 }
 
 TEST_F(IfcTest, DoorsAreOpenAndOpeningsAndSpacesAreNoBodies) {

@@ -2,7 +2,9 @@
 // Broken files give one clear error each, or a note if the rest is still useful; never a crash.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <random>
@@ -61,6 +63,11 @@ Failure failure(const GlbBuilder& builder) {
   return failure(folder / "scene.glb");
 }
 
+std::string read(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 // Changes one thing in a good file and expects an error that contains all of `words` and the file's name.
 void expect_malformed(const std::function<void(GlbBuilder&)>& change, std::initializer_list<const char*> words) {
   GlbBuilder builder = square();
@@ -100,6 +107,22 @@ TEST(LoadErrors, BuffersInEveryContainer) {
   const Failure truncated = failure(folder / "a.gltf");
   EXPECT_EQ(truncated.code, Errc::malformed_file);
   EXPECT_NE(truncated.text.find("truncated"), std::string::npos) << truncated.text;
+}
+
+TEST(LoadErrors, NamesInLatin1AreRefusedWithTheirLine) {
+  const TemporaryFolder folder;
+  square().write_gltf_data_uri(folder / "scene.gltf");
+  std::string text = read(folder / "scene.gltf");
+  const std::size_t at = text.find("\"root\"");
+  ASSERT_NE(at, std::string::npos);
+  const auto line = 2 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  text.replace(at, 6, "\n\"B\xFCro 1\"");
+  test::write_bytes(folder / "scene.gltf", text);
+  const Failure refused = failure(folder / "scene.gltf");
+  EXPECT_EQ(refused.code, Errc::malformed_file);
+  EXPECT_NE(refused.text.find("not UTF-8 in line " + std::to_string(line) + " of its JSON, at \"B\xC3\xBCro 1\""),
+            std::string::npos)
+      << refused.text;
 }
 
 TEST(LoadErrors, BuffersThatAreNoFiles) {

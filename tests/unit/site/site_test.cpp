@@ -42,6 +42,13 @@ TEST(Site, TakesTheDefaultsThatTheSceneCarries) {
   EXPECT_EQ(why_of(site, "spacing"), "");  // the scene says it
 }
 
+TEST(Site, NameOfAFileInLatin1IsUtf8) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "B\xFCro.glb";
+  std::filesystem::copy_file(kFourWalls, file);
+  EXPECT_EQ(Site::open(file, on_embree()).name(), "B\xC3\xBCro");
+}
+
 TEST(Site, GoesByWhatIsGivenBeforeTheScene) {
   SiteOptions options = on_embree();
   options.steps = {Angle::degrees(0.4), Angle::degrees(0.5)};

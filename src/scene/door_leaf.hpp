@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a door's leaf looks like, and what it is called.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/glm.hpp"
+#include "scene/scene_data.hpp"
+
+namespace vantage {
+
+// A thin upright box, turned about the vertical, with the size of a door's leaf. Metres, z up.
+struct DoorLeaf {
+  glm::dvec3 middle{};
+  glm::dvec3 along{}, through{};  // unit; level
+  double width = 0, thickness = 0, height = 0;
+};
+
+// The box around triangles, if it has that size.
+std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
+                                    const std::function<glm::dvec3(std::uint32_t vertex)>& place);
+
+// Whether it is as large as a single leaf, and may be a door whatever it is called.
+bool is_plain_leaf(const DoorLeaf& leaf);
+
+// Whether a name is that of a door, and no part of furniture.
+bool names_a_door(const std::string& name);
+
+}  // namespace vantage
