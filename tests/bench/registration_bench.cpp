@@ -40,7 +40,6 @@ struct Options {
   std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000, samples = 0;
   std::uint64_t sample = std::numeric_limits<std::uint64_t>::max(), seed = 1;
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
-  bool exact_normals = false;
   std::vector<std::string> plans;  // tables of stations: networks that are given
 };
 
@@ -277,7 +276,7 @@ void run(const Options& o) {
   const std::vector<Vec3>& heads = pool.heads;
   const std::size_t networks = pool.given.empty() ? o.networks : pool.given.size();
   std::vector<ThinnedScan> scans;
-  for (const Vec3& head : heads) scans.push_back(thinned_scan(simulator, head, o.exact_normals));
+  for (const Vec3& head : heads) scans.push_back(thinned_scan(simulator, head));
   std::vector<Neighbours> neighbours(scans.begin(), scans.end());
   std::vector<std::vector<std::uint32_t>> matches(scans.size() * scans.size());
   tbb::parallel_for(std::size_t{0}, matches.size(), [&](std::size_t k) {
@@ -396,7 +395,6 @@ int main(int argc, char** argv) {
   app.add_option("--seed", o.seed, "Of places, networks and trials");
   app.add_option("--plan", o.plans,
                  "A table of stations, as stations.csv of a plan: adjust this network, and none drawn");
-  app.add_flag("--exact-normals", o.exact_normals, "Match by the model's normals in place of fitted ones");
   app.add_option("--csv", o.csv, "Write a line for each network");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -91,9 +91,9 @@ double sigma_of(const NoiseTable& table, double range, double reflectivity) {
 
 }  // namespace
 
-ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_normals) {
+ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head) {
   struct Cell {
-    Vector3d sum = Vector3d::Zero(), normals = Vector3d::Zero();
+    Vector3d sum = Vector3d::Zero();
     double variance = 0;
     int points = 0;
   };
@@ -101,7 +101,7 @@ ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_norm
   scan.head = {head.x, head.y, head.z};
   std::map<std::uint64_t, Cell> cells;
   const Vector3d origin(simulator.origin().x, simulator.origin().y, simulator.origin().z);
-  simulator.scan({.position = head}, {.outputs = scan_range | scan_position | scan_reflectivity | scan_voxel | scan_normal},
+  simulator.scan({.position = head}, {.outputs = scan_range | scan_position | scan_reflectivity | scan_voxel},
                  [&](const ScanChunk& chunk) {
                    for (std::size_t k = 0; k < chunk.ray_count; ++k) {
                      if (!std::isfinite(chunk.range_m[k])) continue;
@@ -111,8 +111,6 @@ ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_norm
                      const Vector3d point = Vector3d(p[0], p[1], p[2]) + origin;
                      Cell& cell = cells[cell_of(point - scan.head, ThinnedScan::cell_m)];
                      cell.sum += point;
-                     const auto& n = chunk.normal[k];
-                     cell.normals += Vector3d(n[0], n[1], n[2]);
                      cell.variance += sigma * sigma;
                      ++cell.points;
                    }
@@ -120,11 +118,10 @@ ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_norm
   std::sort(scan.voxels.begin(), scan.voxels.end());
   scan.voxels.erase(std::unique(scan.voxels.begin(), scan.voxels.end()), scan.voxels.end());
 
-  std::vector<Vector3d> means, true_normals;
+  std::vector<Vector3d> means;
   std::vector<double> variances;
   for (const auto& [key, cell] : cells) {
     means.push_back(cell.sum / cell.points);
-    true_normals.push_back(cell.normals.normalized());
     variances.push_back(cell.variance / cell.points / cell.points);
   }
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> near;
@@ -148,7 +145,6 @@ ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_norm
     if (n < 6) continue;
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(square / n - sum * sum.transpose() / (double(n) * n));
     Vector3d normal = solver.eigenvectors().col(0);
-    if (exact_normals) normal = true_normals[k];
     if (normal.dot(scan.head - means[k]) < 0) normal = -normal;
     const double cosine = normal.dot((scan.head - means[k]).normalized());
     scan.points.push_back(means[k].cast<float>());

@@ -31,9 +31,8 @@ struct ThinnedScan {
   std::vector<std::uint32_t> voxels;  // that the scan has points in, ascending
 };
 
-// Scans with every ray; normals are fitted to the points, as in a registration. `exact_normals`: they are those of the
-// model, which no registration knows.
-ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head, bool exact_normals = false);
+// Scans with every ray; normals are fitted to the points, as in a registration.
+ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head);
 
 // Finds a scan's planar point next to a place.
 class Neighbours {
