@@ -178,16 +178,16 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
     sheet.y += 6;
   };
   head("Targets",
-       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks. "
-       "Put all up before the first scan, and leave them until the last.");
+       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
+       "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
   write_table(sheets, a4(),
-              {{"Target", 50, Align::start},
-               {"x", 66},
-               {"y", 66},
-               {"z", 48},
-               {"Corners", 88},
-               {"Kind", 78, Align::start},
-               {"Measured by", 130, Align::start}},
+              {{"Target", 40, Align::start},
+               {"x", 62},
+               {"y", 62},
+               {"z", 44},
+               {"Corners", 84},
+               {"Kind", 62, Align::start},
+               {"Measured by, at", 141, Align::start}},
               of_targets.size(), of_targets.size(), "", [&](std::size_t k) -> std::vector<std::string> {
                 const Target& target = network.targets[k];
                 return {target.name,

@@ -126,8 +126,10 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
     one.kind = target.proposed        ? "proposed"
                : target.control_m > 0 ? "known to " + number(1000 * target.control_m) + " mm"
                                       : "there before";
-    for (const std::size_t station : target.stations)
-      one.stations += (one.stations.empty() ? "" : ", ") + names[station];
+    for (const std::size_t station : target.stations) {
+      const Vec3 away = target.centre - network.stations[station].position;
+      one.stations += (one.stations.empty() ? "" : ", ") + names[station] + " " + fixed(std::hypot(away.x, away.y), 2);
+    }
   }
   return facts;
 }

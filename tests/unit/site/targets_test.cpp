@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kLength_m = 60, kRadius_m = 3;
 
-Site tunnel() {
+Site tunnel(double step_deg = 0.1, double user_size_m = 0.3, double spacing_m = 0.05) {
   std::vector<Vec3> corners;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   constexpr std::uint32_t sides = 16, rings = 30;
@@ -43,8 +43,8 @@ Site tunnel() {
   }
   SiteOptions options;
   options.engine = Engine::embree;
-  options.user_size_m = 0.3, options.spacing_m = 0.05;
-  options.steps = std::array{Angle::degrees(0.1), Angle::degrees(0.1)};
+  options.user_size_m = user_size_m, options.spacing_m = spacing_m;
+  options.steps = std::array{Angle::degrees(step_deg), Angle::degrees(step_deg)};
   return Site(Scene::from_triangles(corners, triangles), options);
 }
 
@@ -212,16 +212,18 @@ TEST(Targets, StandOnNoGlass) {
   }
 }
 
-// The question of a surveyor, in the tunnel.
+// The question of a surveyor, in the tunnel, with targets that a coarse scan measures as far as a fine one its own.
+constexpr double kCoarse_deg = 0.4;
 SurveyQuestion short_question() {
   SurveyQuestion question;
   question.stations = {4, 4};
+  question.target.diameter_m = 8 * TargetOptions().diameter_m;
   return question;
 }
-const PlanConfig kShort{.population = 6, .iterations = 2, .sample_voxels = 2000};
+const PlanConfig kShort{.population = 6, .iterations = 2, .sample_voxels = 1000};
 
 TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
-  Site site = tunnel();
+  Site site = tunnel(kCoarse_deg, 0.5, 0.2);
   const PlanResult plain = [&] {
     SurveyQuestion question = short_question();
     question.targets = 0;
@@ -241,7 +243,8 @@ TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
   EXPECT_LE(entry.value("registration"), 1000 * allowed_rms_m({}));
   EXPECT_NEAR(entry.value("registration"), 1000 * entry.registration->rms_m, 1e-12);
   const Evaluation same = site.evaluate(
-      entry.stations, {.registration = RegistrationOptions(), .targets = entry.targets});
+      entry.stations,
+      {.registration = RegistrationOptions(), .targets = entry.targets, .target = short_question().target});
   EXPECT_NEAR(same.value("registration"), entry.value("registration"), 1e-9);
 
   SurveyQuestion three = short_question();
@@ -251,7 +254,7 @@ TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
 }
 
 TEST(Targets, OfARequirementMeetIt) {
-  Site site = tunnel();
+  Site site = tunnel(kCoarse_deg, 0.5, 0.2);
   SurveyQuestion question = short_question();
   question.requirements = {"registration<=2"};
   const PlanResult found = plan(site, question, kShort);
@@ -261,7 +264,7 @@ TEST(Targets, OfARequirementMeetIt) {
 }
 
 TEST(Targets, ThatAreThereCountInAPlan) {
-  Site site = tunnel();
+  Site site = tunnel(kCoarse_deg, 0.5, 0.2);
   SurveyQuestion question = short_question();
   question.targets = 0;
   const PlanResult bare = plan(site, question, kShort);
