@@ -103,7 +103,7 @@ function visitingOrder(network) {
   return order;
 }
 
-function stationTable(holder, network, pick) {
+function stationTable(holder, network, pick, order = visitingOrder(network)) {
   const place = new Map((network.visit ? network.visit.order : []).map((k, stop) => [k, stop]));
   const row = (k) => {
     const s = network.stations[k];
@@ -115,7 +115,7 @@ function stationTable(holder, network, pick) {
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
   const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
-  holder.replaceChildren(...foldedTable(titles, visitingOrder(network).map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
+  holder.replaceChildren(...foldedTable(titles, order.map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
 }
 
 // The round in a sentence.
