@@ -123,7 +123,7 @@
     if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
     if (network.seconds_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
-    stationTable(at('stations'), network, pick);
+    stationTable(at('stations'), network, pick, [...network.stations.keys()]);  // rows that stay in their places
     linkTable(at('links'), at('links-words'), network);
     card();
     legend();

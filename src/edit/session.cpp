@@ -154,7 +154,7 @@ void EditSession::change(const json& request) {
     if (end) keep_(stations_);  // the drag so far, in case it ends off the ground
     EditStation& station = with_id(request);
     if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
-    const std::string& name = names()[static_cast<std::size_t>(&station - stations_.data())];
+    const std::string name = names()[static_cast<std::size_t>(&station - stations_.data())];
     auto ground = put(request.value("to", json()), name, request.contains("end") && !end);
     if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
     dragging = request.contains("begin") && !flag_of(request, "begin");
@@ -422,6 +422,12 @@ std::vector<std::size_t> parts_without(const StationGraph& graph, std::size_t n,
 // Returns whether any was moved. Links are those of the sample, from places spread evenly over the ground.
 bool EditSession::mend(const Progress& progress) {
   const auto parts_now = [&] { return connectivity(evaluation_.scan_overlap_matrix, options_.link).parts; };
+  // Keeps the setup, and returns where it stood.
+  const auto move_to = [&](std::size_t station, const PlacedStation& place) {
+    const PlacedStation before = std::exchange(stations_[station].placed, place);
+    stations_[station].placed.setup = before.setup;
+    return before;
+  };
   bool moved = false;
   // A station that is left out is a part of its own.
   while (stations_.size() > 1 && parts_now() > 1 && !progress.stopped()) {
@@ -451,24 +457,27 @@ bool EditSession::mend(const Progress& progress) {
       }
     }
     if (progress.stopped()) break;
-    // The fewest parts first, then the shortest move.
+    // The fewest parts first, then the shortest move; one move of each station.
     std::ranges::sort(moves, [](const Move& a, const Move& b) {
       return std::tuple(a.parts, a.away_m, a.station, a.place) < std::tuple(b.parts, b.away_m, b.station, b.place);
     });
+    std::set<std::size_t> told;
+    std::erase_if(moves, [&](const Move& move) { return !told.insert(move.station).second; });
     const std::scoped_lock lock(mutex_);
     const std::size_t parts = parts_now();
-    constexpr std::size_t kTried = 20;  // the noise of a place may undo a link that just holds
-    bool better = false;
-    for (std::size_t k = 0; k < std::min(kTried, moves.size()) && !better; ++k) {
-      EditStation& station = stations_[moves[k].station];
-      const PlacedStation before = station.placed;
-      const StationSetup setup = before.setup;
-      station.placed = places_[moves[k].place];
-      station.placed.setup = setup;
-      measure(true);
-      better = parts_now() < parts;
-      if (!better) station.placed = before;
+    constexpr std::size_t kTried = 20;
+    const Move* best = nullptr;
+    double most = -1;
+    for (std::size_t k = 0; k < moves.size() && k < kTried; ++k) {
+      if (best && moves[k].parts > best->parts) break;
+      const PlacedStation before = move_to(moves[k].station, places_[moves[k].place]);
+      measure(true);  // the noise of a place may undo a link that just holds
+      if (parts_now() < parts && evaluation_.value("coverage") > most)
+        best = &moves[k], most = evaluation_.value("coverage");
+      move_to(moves[k].station, before);
     }
+    const bool better = best != nullptr;
+    if (best) move_to(best->station, places_[best->place]);
     measure();
     if (!better) break;
     moved = true;

@@ -103,7 +103,7 @@ function visitingOrder(network) {
   return order;
 }
 
-function stationTable(holder, network, pick) {
+function stationTable(holder, network, pick, order = visitingOrder(network)) {
   const place = new Map((network.visit ? network.visit.order : []).map((k, stop) => [k, stop]));
   const targets = network.targets.length > 0;
   const seen = (k) => network.targets.filter((t) => t.stations.includes(k)).map((t) => t.name).join(', ') || null;
@@ -118,7 +118,7 @@ function stationTable(holder, network, pick) {
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
   const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
-  holder.replaceChildren(...foldedTable(titles, visitingOrder(network).map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
+  holder.replaceChildren(...foldedTable(titles, order.map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
 }
 
 function targetTable(holder, network) {

@@ -138,12 +138,12 @@ TEST_F(IfcTest, CapturedByRoom) {
     const Evaluation found = site.evaluate(stations, {.field = true});
     const MissedVoxels missed = missed_voxels(site, found.field);
     write_rooms_csv(folder_ / "rooms.csv", site.scene().rooms(), missed.rooms, stations, {});
-    return std::pair(missed.rooms, summary_text_of(ground_lines(site.area())));
+    return std::pair(missed.rooms, summary_text_of(ground_lines(site.scene(), site.area(), stations)));
   };
   write("house.ifc", ifc_house());
   const auto [open, nothing] = judged({.enter = {{1, 1, 0}}});
   ASSERT_EQ(open.size(), 2u);
-  EXPECT_EQ(nothing, "");
+  EXPECT_EQ(nothing.find("closed"), std::string::npos) << nothing;
   EXPECT_GT(open[0].share.voxels, 500u);
   EXPECT_GT(open[0].share.share(WhyMissed::captured), open[1].share.share(WhyMissed::captured) + 0.3);
   EXPECT_NEAR(open[0].ground_m2, 10, 4) << "16 m² without what is too near to walls and cupboards";
@@ -161,7 +161,8 @@ TEST_F(IfcTest, CapturedByRoom) {
       << told;
   // The advice opens it.
   const std::string door = told.substr(told.find('\'') + 1, told.rfind('\'') - told.find('\'') - 1);
-  EXPECT_EQ(judged({.scene = {.ignore = {door}, .doors = {"closed"}}, .enter = {{1, 1, 0}}}).second, "");
+  const std::string opened = judged({.scene = {.ignore = {door}, .doors = {"closed"}}, .enter = {{1, 1, 0}}}).second;
+  EXPECT_EQ(opened.find("closed"), std::string::npos) << opened;
 }
 
 TEST_F(IfcTest, DoorsAreOpenAndOpeningsAndSpacesAreNoBodies) {
