@@ -17,8 +17,8 @@ namespace {
 // one chosen from many, and those of a large site are many.
 constexpr std::size_t kLateCandidates = 96;
 constexpr double kLate_s = 2;
-// Further candidates around each chosen station.
-constexpr std::size_t kAround = 8;
+// Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
+constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
 void stronger(FewestChoice& choice, const std::stop_token& stop) {
   if (choice.asked.most_coverage) return;  // all links are for coverage
@@ -124,14 +124,13 @@ void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop) 
 }
 
 void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double radius_m, const Progress& progress) {
-  std::vector<PlacedStation> around;
-  const auto add_around = [&](const CoverSolution& network) {
-    const auto more = positions_around(oracle, choice.placed_of(network), kAround, radius_m);
-    around.insert(around.end(), more.begin(), more.end());
-  };
-  add_around(choice.network);
-  if (choice.one_fewer) add_around(*choice.one_fewer);
-  choice.table.add(around, progress);
+  std::vector<std::size_t> all = choice.network.chosen;
+  if (choice.one_fewer)
+    for (const std::size_t k : choice.one_fewer->chosen)
+      if (std::ranges::find(all, k) == all.end()) all.push_back(k);
+  const std::vector<PlacedStation> stations = choice.placed_of({.chosen = std::move(all)});
+  const std::size_t each = std::clamp(kAroundAll / std::max<std::size_t>(stations.size(), 1), kLeastAround, kAround);
+  choice.table.add(positions_around(oracle, stations, each, radius_m), progress);
   if (choice.asked.most_coverage) choose_from(choice, std::move(choice.network), progress.stop);
   if (choice.one_fewer) {
     CoverProblem fewer = cover_problem(choice);

@@ -12,8 +12,9 @@
 namespace vantage {
 namespace {
 
-// Points below the chosen number, and beyond it: up to half as many stations more.
-constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4;
+// Points below the chosen number, and beyond it: up to half as many stations more. Half as many points if there are
+// many stations.
+constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4, kManyStations = 100;
 constexpr double kBeyondShare = 0.5;
 
 // Without the station that is missed least, of those without which the rest is connected as before.
@@ -41,14 +42,16 @@ std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most)
   const auto add = [&](std::size_t number) {
     if (number >= 1 && number <= most && (numbers.empty() || number > numbers.back())) numbers.push_back(number);
   };
-  for (std::size_t k = 0; k < kPointsBelow; ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(kPointsBelow);
+  const std::size_t parts = chosen > kManyStations ? 2 : 1, below = kPointsBelow / parts,
+                    points = kPointsBeyond / parts;
+  for (std::size_t k = 0; k < below; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(below);
     add(1 + static_cast<std::size_t>(share * static_cast<double>(chosen - 1)));
   }
   add(chosen);
   const double beyond = std::max(kBeyondShare * static_cast<double>(chosen), static_cast<double>(kPointsBeyond));
-  for (std::size_t k = 1; k <= kPointsBeyond; ++k)
-    add(chosen + static_cast<std::size_t>(beyond * static_cast<double>(k) / static_cast<double>(kPointsBeyond)));
+  for (std::size_t k = 1; k <= points; ++k)
+    add(chosen + static_cast<std::size_t>(beyond * static_cast<double>(k) / static_cast<double>(points)));
   return numbers;
 }
 
