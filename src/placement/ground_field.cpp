@@ -292,6 +292,14 @@ void GroundField::for_columns_beside(std::uint32_t column, std::int64_t far, Vis
   }
 }
 
+// Whether another surface of the same part lies above within a person's height: a floor's slab below its finish, or
+// what a mattress is made of. Seen from above it is one place.
+bool GroundField::is_layer(std::uint32_t sample) const {
+  const std::uint32_t above = sample + 1;
+  return above < z_.size() && column_[above] == column_[sample] && part_[above] == part_[sample] &&
+         z_[above] - z_[sample] < static_cast<float>(height_);
+}
+
 void GroundField::find_parts() {
   part_.assign(z_.size(), nowhere);
   std::vector<std::uint32_t> open;
@@ -305,9 +313,6 @@ void GroundField::find_parts() {
     while (!open.empty()) {
       const std::uint32_t s = open.back();
       open.pop_back();
-      ++part.samples;
-      part.mean_z += z_[s];
-      part.in_the_sky += z_[s] + climb_ >= top_[column_[s]];
       part.at_door = part.at_door || (taken_[s] & at_door);
       for_neighbours(s, [&](std::uint32_t n) {
         if ((taken_[n] & (beside | overhead)) || part_[n] != nowhere) return;
@@ -315,11 +320,18 @@ void GroundField::find_parts() {
         open.push_back(n);
       });
     }
-    part.mean_z /= static_cast<double>(part.samples);
   }
+  for (std::uint32_t s = 0; s < z_.size(); ++s) {
+    if (part_[s] == nowhere || is_layer(s)) continue;
+    Part& part = parts_[part_[s]];
+    ++part.samples;
+    part.mean_z += z_[s];
+    part.in_the_sky += z_[s] + climb_ >= top_[column_[s]];
+  }
+  for (Part& part : parts_) part.mean_z /= static_cast<double>(part.samples);  // the topmost of a column counts
   // Counts samples above a room of another part, such as a roof above its house.
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (part_[s] == nowhere) continue;
+    if (part_[s] == nowhere || is_layer(s)) continue;
     for (std::uint32_t below = first_[column_[s]]; below < s; ++below)
       if (part_[below] != nowhere && part_[below] != part_[s] && z_[below] <= z_[s] - height_ * 0.8 &&
           parts_[part_[below]].area(cell_) >= room()) {
@@ -426,7 +438,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
 glm::dvec3 GroundField::middle_of(std::uint32_t part) const {
   glm::dvec2 mean(0);
   for (std::uint32_t s = parts_[part].first; s < z_.size(); ++s)
-    if (part_[s] == part) mean += middle(column_[s]);
+    if (part_[s] == part && !is_layer(s)) mean += middle(column_[s]);
   mean /= static_cast<double>(parts_[part].samples);
   std::uint32_t best = parts_[part].first;
   for (std::uint32_t s = best; s < z_.size(); ++s)

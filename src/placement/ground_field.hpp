@@ -90,6 +90,7 @@ class GroundField {
   void find_samples(const SceneData& scene, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
   void find_parts();
+  bool is_layer(std::uint32_t sample) const;
   // Level lines of sight, at knee and head height, that lead out of the model from the edge of the part.
   struct WaysOut {
     bool any = false;
