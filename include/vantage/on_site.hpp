@@ -41,8 +41,8 @@ struct Visit {
 };
 
 /// Paths over a site, and the time of a round; made by `Site::on_site()`. A graph of at most some 20 000 places lies
-/// over the search area, 0.25 m apart or more. Links connect neighbours that are free at knee and hip height. Safe to read
-/// from any thread; copies share storage.
+/// over the search area, 0.25 m apart or more. Links connect neighbours that are free at knee and hip height. Safe to
+/// read from any thread; copies share storage.
 class OnSite {
  public:
   /// Metres from one ground point to another along the search area; empty if it does not connect them.

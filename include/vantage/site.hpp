@@ -130,8 +130,8 @@ class Site {
   /// Places a station by its head (survey frame), at `uv` if that is given, and checks it as a search does.
   PlacedHead place_head(const Vec3& head, std::optional<Uv> uv = {});
   /// The place nearest to a head (survey frame, metres) that may hold a station: on the search area, at the first
-  /// scanner's height above the ground, free of clashes, `StationStatus::ok`. Distances are between heads, in space; the
-  /// result is the nearest to within a fiftieth of the security volume's radius (1 cm by default). Empty if no such
+  /// scanner's height above the ground, free of clashes, `StationStatus::ok`. Distances are between heads, in space;
+  /// the result is the nearest to within a fiftieth of the security volume's radius (1 cm by default). Empty if no such
   /// place lies within `reach_m`. Throws Error invalid_argument (no ground, a reach below 0, a value not finite).
   std::optional<PlacedStation> nearest_place(const Vec3& head, double reach_m = nearest_place_reach_m);
   /// Paths over the ground and times of rounds; rounds begin and end at the site's entrance if `options` name none.

@@ -275,7 +275,10 @@
   // First visible surface below the pointer, or the ground of the search area.
   function surfaceAt(event) {
     const [low, high] = view.slice;
+    const shown = ground.visible;
+    ground.visible = true;  // rays pass what is not
     const hit = ray(event).intersectObjects([view.surface, ground]).find(({ point }) => point.z >= low && point.z <= high);
+    ground.visible = shown;
     return hit && inSurvey(hit.point);
   }
   const coordinates = (point) => point.map((v) => v.toFixed(2)).join(', ');
@@ -338,17 +341,25 @@
     if (!mode || !pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
     act(surfaceAt(event));
   });
-  // Coordinates below the pointer; a large site takes a while to ask.
-  let asked = 0;
-  view.canvas.addEventListener('pointermove', (event) => {
+  // Coordinates below the pointer, less often where a large site takes a while to ask; always those of the last place.
+  let asked = 0, later = null;
+  function follow(event) {
+    clearTimeout(later);
     const now = performance.now();
-    if (event.buttons || now < asked) return;
-    const place = surfaceAt(event), took = performance.now() - now;
-    asked = now + Math.max(50, 4 * took);
+    if (now < asked) {
+      later = setTimeout(() => follow(event), asked - now);
+      return;
+    }
+    const place = surfaceAt(event);
+    asked = performance.now() + Math.min(500, Math.max(50, 4 * (performance.now() - now)));
     at('at').hidden = !place;
     if (place) at('at').textContent = `x ${place[0].toFixed(2)}  y ${place[1].toFixed(2)}  z ${place[2].toFixed(2)}`;
+  }
+  view.canvas.addEventListener('pointermove', (event) => { if (!event.buttons) follow(event); });
+  view.canvas.addEventListener('pointerleave', () => {
+    clearTimeout(later);
+    at('at').hidden = true;
   });
-  view.canvas.addEventListener('pointerleave', () => { at('at').hidden = true; });
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && mode) {
       setMode(null);

@@ -190,22 +190,23 @@ assert.equal(JSON.parse(read('edited/edit.json')).stations[2].name, 'By the gate
 await changed(() => page.keyboard.press('Control+z'));
 assert.deepEqual(await names(), numbered);
 
-// Coordinates below the pointer, and a distance between two points: that of two stations' grounds, 6 m apart.
+// Coordinates below the pointer, and a distance between two points on the ground.
 await page.locator('#above').click();
 await page.waitForTimeout(300);
 await page.locator('#measure').click();
-const view = await page.locator('#canvas canvas').boundingBox();
-await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2);
-await page.waitForFunction(() => /^x -?\d+\.\d\d  y -?\d+\.\d\d  z -?\d+\.\d\d$/.test(document.getElementById('at').textContent));
+const labels = await Promise.all([0, 1].map((k) => page.locator('.label').nth(k).boundingBox()));
+const [mx, my] = ['x', 'y'].map((axis) => (labels[0][axis] + labels[1][axis]) / 2 + 45);  // beside the third station
 const point = async (dx) => {
-  await page.waitForTimeout(120);
-  await page.mouse.move(view.x + view.width / 2 + dx, view.y + view.height / 2);
-  await page.waitForTimeout(400);
-  const place = (await page.locator('#at').innerText()).match(/-?\d+\.\d+/g).map(Number);
-  await page.mouse.click(view.x + view.width / 2 + dx, view.y + view.height / 2);
+  await page.mouse.move(mx + dx, my);
+  await page.waitForFunction(() => !document.getElementById('at').hidden && /^x -?\d+\.\d\d  y -?\d+\.\d\d  z -?\d+\.\d\d$/.test(document.getElementById('at').textContent));
+  await page.waitForTimeout(1000);
+  const place = (await page.locator('#at').textContent()).match(/-?\d+\.\d+/g).map(Number);
+  await page.mouse.click(mx + dx, my);
+  await page.waitForFunction(() => document.getElementById('status').textContent.match(/\d/));
   return place;
 };
-const [here, there] = [await point(-60), await point(60)];
+const [here, there] = [await point(0), await point(24)];
+await page.waitForFunction(() => document.getElementById('status').textContent.includes('on the plan'));
 const told = (await page.locator('#status').innerText()).match(/[\d.]+/g).map(Number);
 assert.ok(Math.abs(told[0] - Math.hypot(...here.map((v, k) => v - there[k]))) < 0.03, `${told[0]} m from ${here} to ${there}`);
 await page.keyboard.press('Escape');
