@@ -56,10 +56,13 @@ Chosen by_definition(const CoverProblem& problem, Chosen chosen, double link) {
 // Candidates along a line, each with the elements and the links near it: most have nothing in common, and a network
 // falls apart without most of its members.
 struct Line {
-  CoverageMatrix matrix{std::vector<std::uint32_t>(120, 1), 7};
+  CoverageMatrix matrix;
   StationGraph graph{60};
   explicit Line(std::uint64_t seed) {
     RandomStream random(seed);
+    std::vector<std::uint32_t> weights(120);  // so different that hardly two networks have the same coverage
+    for (std::uint32_t& weight : weights) weight = 1 + static_cast<std::uint32_t>(random.uniform() * 1e6);
+    matrix = CoverageMatrix(weights, 12);
     std::vector<double> at(60);
     for (double& x : at) x = random.uniform() * 120;
     for (const double x : at) {
@@ -87,7 +90,7 @@ TEST(TabuSearch, FindsWhatTryingAllSwapsFinds) {
                                  .graph = &line.graph,
                                  .existing = {2, 31},
                                  .most = 12,
-                                 .coverage = 0.9,
+                                 .coverage = 0.5,
                                  .link = std::min(link, 0.3)};
       Chosen start = problem.existing;
       for (std::size_t k = 3; start.size() < 12; k += 5)

@@ -113,6 +113,8 @@ TEST(RefineAround, AddsAllowedPositionsNearTheChosen) {
     EXPECT_TRUE(std::ranges::any_of(from, [&](const PlacedStation& one) {
       return test::apart_m(one.position, stations[k].position) <= 0.8 + 1e-9;
     }));
+    for (std::size_t other = before; other < k; ++other)
+      EXPECT_GT(test::apart_m(stations[other].position, stations[k].position), 0) << "a position is tried once";
   }
   EXPECT_EQ(choice.network.violation, 0);
   EXPECT_LE(choice.placed(), placed);
