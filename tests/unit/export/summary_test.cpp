@@ -30,6 +30,7 @@ TEST(Summary, TellsTheErrorOfWhatIsAttainable) {
   };
   EXPECT_EQ(captured(0), "50.0 % of the site, 90.0 % of what is attainable");
   EXPECT_EQ(captured(0.007), "50.0 % of the site, 90.0 % of what is attainable, which is known to 0.7 %");
+  EXPECT_TRUE(captured(0.0001).ends_with("which is known to less than 0.1 %"));
   EXPECT_EQ(captured(1),
             "50.0 % of the site, 90.0 % of what is attainable from the few places that were looked at");
 }
