@@ -84,8 +84,8 @@ struct Evaluation {
   std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
-  AccuracyClass accuracy_class = AccuracyClass::loa30;           ///< Judges the registration error.
-  std::optional<Visit> visit = std::nullopt;                     ///< The round on site without existing stations.
+  AccuracyClass accuracy_class = AccuracyClass::loa30;  ///< Judges the registration error.
+  std::optional<Visit> visit = std::nullopt;            ///< The round on site without existing stations.
   /// Sum of the violations of requirements, as shares of their objectives' scales; 0: all are met.
   double violation = 0;
 

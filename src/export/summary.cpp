@@ -134,7 +134,8 @@ std::vector<std::string> registration_advice(const Evaluation& evaluation, doubl
   const bool proposed = std::ranges::any_of(evaluation.targets, &Target::proposed);
   if (!evaluation.without_targets_m || (!proposed && !evaluation.targets.empty()))
     return {what + "let targets be proposed, or add stations that share more walls"};
-  return {what + (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
+  return {what +
+          (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
           "put stations closer together, or take finer steps or larger targets"};
 }
 
@@ -244,7 +245,8 @@ std::string trade_off_text(const PlanResult& result) {
     from = to;
   }
   const bool targets = !result.front.empty() && !result.front[answer(result)].targets.empty();
-  std::string text = "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
+  std::string text =
+      "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!shown[k]) continue;
     const TradeOffPoint& point = points[k];

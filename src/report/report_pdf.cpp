@@ -177,9 +177,10 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
     sheet.words(Sheet::kMargin, words, {.size = 9, .colour = kFaintInk});
     sheet.y += 6;
   };
-  head("Targets",
-       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
-       "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
+  head(
+      "Targets",
+      "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
+      "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
   write_table(sheets, a4(),
               {{"Target", 40, Align::start},
                {"x", 62},
