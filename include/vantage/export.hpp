@@ -145,8 +145,8 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// with stations under a roof, or with several floors, is cut 1.2 m above the floor, and cut parts are filled. Several
 /// floors stand side by side, and each again on its own page, PLAN-level-1.png and so on, from the lowest. `names`: of
 /// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
-/// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `targets`: their marks.
-/// Returns the files that it wrote.
+/// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `targets`: their
+/// marks. Returns the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
                                                   std::span<const PlacedStation> stations, const StationLinks& links,
                                                   const std::string& title, std::span<const std::string> names = {},

@@ -201,7 +201,8 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
                                names.size() == 1 ? "" : "s", found.value("coverage"), found.value("overlap")),
                    names, errors, found.targets);
   }
-  for (const std::string& file : options.station_files) write_stations(file, found.stations, names, links, site, found.targets);
+  for (const std::string& file : options.station_files)
+    write_stations(file, found.stations, names, links, site, found.targets);
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
                   options.report_head.with({.missed = judged}), program, program.abort);

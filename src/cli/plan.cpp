@@ -54,10 +54,11 @@ struct PlanOptions {
         ->group("Problem");
     add_text(command, "--keep-from", "FILE", "Stations that are there already: the scans of an E57 file", keep_from)
         ->group("Problem");
-    add_text(command, "--targets-from", "FILE",
-             "Targets and control points that are there: a table of name, x, y, z, and of those that are known sigma in "
-             "metres",
-             targets_from)
+    add_text(
+        command, "--targets-from", "FILE",
+        "Targets and control points that are there: a table of name, x, y, z, and of those that are known sigma in "
+        "metres",
+        targets_from)
         ->group("Targets");
     add_settings(command, plan_settings(), config);
     add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",

@@ -60,8 +60,8 @@ struct Layer {
   int colour;  // AutoCAD colour index: 1 red, 3 green, 2 yellow, 5 blue, 6 magenta, 7 black or white, 8 grey
 };
 constexpr Layer kStations{"STATIONS", 5}, kExisting{"STATIONS_EXISTING", 3}, kLeftOut{"STATIONS_LEFT_OUT", 1},
-    kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8},
-    kTargets{"TARGETS", 6}, kControl{"CONTROL_POINTS", 2}, kTargetNames{"TARGET_NAMES", 7};
+    kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8}, kTargets{"TARGETS", 6},
+    kControl{"CONTROL_POINTS", 2}, kTargetNames{"TARGET_NAMES", 7};
 constexpr Layer kLayers[] = {kStations, kExisting, kLeftOut, kNames, kLinks, kArea, kTargets, kControl, kTargetNames};
 
 void put_tables(Drawing& drawing) {

@@ -30,7 +30,10 @@ std::string duration(double seconds) {
 // ", which is known to 0.7 %"
 std::string known_to(const std::optional<double>& growth) {
   if (!growth || *growth <= 0) return {};
-  return *growth < 1 ? ", which is known to " + percent(*growth) : " from the few places that were looked at";
+  constexpr double kLeastTold = 0.001;
+  if (*growth >= 1) return " from the few places that were looked at";
+  return ", which is known to " + (*growth < kLeastTold ? "less than " : std::string()) +
+         percent(std::max(*growth, kLeastTold));
 }
 
 std::string captured_text(const Evaluation& evaluation) {

@@ -211,9 +211,8 @@ std::optional<std::vector<std::size_t>> choose(TargetChooser& chooser, std::span
     for (std::size_t k = 0; k < places.size(); ++k)
       if (open[k]) gains.emplace_back(chooser.gain(k), k);
     std::ranges::stable_sort(gains, std::ranges::greater{}, &std::pair<double, std::size_t>::first);
-    const double least = chosen.size() < options.least
-                             ? 0
-                             : kLeastGain / static_cast<double>(stations) * chooser.mean_square();
+    const double least =
+        chosen.size() < options.least ? 0 : kLeastGain / static_cast<double>(stations) * chooser.mean_square();
     const auto best = std::ranges::find_if(gains, [&](const auto& one) {
       // Further targets do not mend a line.
       if (one.first > least && on_a_line_with_any(places[one.second], there)) open[one.second] = false;
@@ -276,8 +275,7 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   const RegistrationAdjustment adjustment(inputs.held_by, inputs.share, inputs.covered, registration, sighted);
   if (!adjustment.covers_something() || places.empty()) return proposal;
   TargetChooser chooser(adjustment, all_places);
-  const auto chosen =
-      choose(chooser, places, proposal.targets, adjustment.stations().size(), options, progress);
+  const auto chosen = choose(chooser, places, proposal.targets, adjustment.stations().size(), options, progress);
   if (!chosen) return std::nullopt;
   std::set<std::string> names;
   for (const Target& target : proposal.targets) names.insert(target.name);

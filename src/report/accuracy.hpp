@@ -13,13 +13,13 @@ namespace vantage {
 
 // Errors at 95 %, metres.
 struct PlaceAccuracy {
-  std::string name;             // of a room or mesh
-  double mean_m = 0;            // root mean square over its seen surface
-  double worst_m = 0;           // at its worst place
-  double beyond = 0;            // share of its seen surface that misses the class
+  std::string name;    // of a room or mesh
+  double mean_m = 0;   // root mean square over its seen surface
+  double worst_m = 0;  // at its worst place
+  double beyond = 0;   // share of its seen surface that misses the class
 };
 struct Accuracy {
-  bool by_room = false;                   // rooms, and meshes outside of them; else meshes
+  bool by_room = false;                    // rooms, and meshes outside of them; else meshes
   std::vector<PlaceAccuracy> places = {};  // the worst first
 };
 

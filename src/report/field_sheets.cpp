@@ -17,7 +17,7 @@ namespace vantage {
 namespace {
 
 constexpr double kPanelWidth = 196, kMark = 9, kTargetMark = 4.5;  // radii of the marks of stations and targets
-constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;  // ratios at which walls and marks still tell apart
+constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;       // ratios at which walls and marks still tell apart
 constexpr std::size_t kPixels = 2;  // a point that a map is painted with; twice as many, halved, on A4
 constexpr double kFaded = 0.5;      // of a map's colours, so that pencil shows
 constexpr Colour kRoute{0.84, 0.37, 0.05}, kTape{0.10, 0.42, 0.36}, kRoomInk{0.42, 0.42, 0.46};

@@ -177,17 +177,18 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
     sheet.words(Sheet::kMargin, words, {.size = 9, .colour = kFaintInk});
     sheet.y += 6;
   };
-  head("Targets",
-       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
-       "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
+  head(
+      "Targets",
+      "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
+      "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
   write_table(sheets, a4(),
               {{"Target", 40, Align::start},
-               {"x", 62},
-               {"y", 62},
-               {"z", 44},
-               {"Corners", 84},
-               {"Kind", 62, Align::start},
-               {"Measured by, at", 141, Align::start}},
+               {"x", 58},
+               {"y", 58},
+               {"z", 40},
+               {"Corners", 98},
+               {"Kind", 78, Align::start},
+               {"Measured by, at", 123, Align::start}},
               of_targets.size(), of_targets.size(), "", [&](std::size_t k) -> std::vector<std::string> {
                 const Target& target = network.targets[k];
                 return {target.name,

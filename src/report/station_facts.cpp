@@ -124,7 +124,7 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
     const Target& target = network.targets[k];
     TargetFacts& one = facts.emplace_back(TargetFacts{.corners = corners[k]});
     one.kind = target.proposed        ? "proposed"
-               : target.control_m > 0 ? "known to " + number(1000 * target.control_m) + " mm"
+               : target.control_m > 0 ? "± " + number(1000 * target.control_m) + " mm"
                                       : "there before";
     for (const std::size_t station : target.stations) {
       const Vec3 away = target.centre - network.stations[station].position;

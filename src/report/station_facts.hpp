@@ -24,7 +24,7 @@ struct StationFacts {
 
 struct TargetFacts {
   std::vector<WallCorner> corners = {};  // to find its spot by
-  std::string kind = {};                 // "proposed", "there", "known to 2 mm"
+  std::string kind = {};                 // "proposed", "there before"; of a control point "± 2 mm"
   std::string stations = {};             // that measure it, and how far they are in plan: "S1 6.61, S4 7.02"
 };
 // Of all targets of the answer, in their order.

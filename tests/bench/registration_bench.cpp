@@ -249,11 +249,11 @@ void run(const Options& o) {
   const auto known = test::site_names();
   const bool own = std::ranges::find(known, o.site) == known.end();
   const Scanner scanner{.azimuth_step = Angle::degrees(o.step_deg),
-                  .zenith_step = Angle::degrees(o.step_deg),
-                  .height_m = 1.7,
-                  .min_range_m = 0.5,
-                  .max_range_m = 60,
-                  .noise = rtc360_noise()};
+                        .zenith_step = Angle::degrees(o.step_deg),
+                        .height_m = 1.7,
+                        .min_range_m = 0.5,
+                        .max_range_m = 60,
+                        .noise = rtc360_noise()};
   std::optional<Site> opened;
   std::optional<Scene> made;
   if (own) {
@@ -271,8 +271,8 @@ void run(const Options& o) {
   std::mt19937_64 random(o.seed);
   Pool pool = read_plans(o.plans);
   if (pool.given.empty())
-    pool.heads = own ? draw_heads(*opened, o.pool, random)
-                     : draw_heads(test::make_site(o.site), scene, scanner, o.pool, random);
+    pool.heads =
+        own ? draw_heads(*opened, o.pool, random) : draw_heads(test::make_site(o.site), scene, scanner, o.pool, random);
   const std::vector<Vec3>& heads = pool.heads;
   const std::size_t networks = pool.given.empty() ? o.networks : pool.given.size();
   std::vector<ThinnedScan> scans;

@@ -237,7 +237,8 @@ TEST(Targets, ArePartOfAPlanWhereSurfacesDoNotHoldItsScans) {
   const PlanResult found = plan(site, short_question(), kShort);
   const PlanEntry& entry = found.front[answer(found)];
   ASSERT_EQ(entry.stations.size(), bare.stations.size());
-  for (std::size_t k = 0; k < entry.stations.size(); ++k) EXPECT_EQ(entry.stations[k].position, bare.stations[k].position);
+  for (std::size_t k = 0; k < entry.stations.size(); ++k)
+    EXPECT_EQ(entry.stations[k].position, bare.stations[k].position);
   ASSERT_FALSE(entry.targets.empty());
   EXPECT_NEAR(1000 * *entry.without_targets_m, bare.value("registration"), 1e-9);
   EXPECT_LE(entry.value("registration"), 1000 * allowed_rms_m({}));
