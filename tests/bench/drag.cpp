@@ -51,7 +51,8 @@ void run_drag(const DragOptions& options) {
     std::vector<EditStation> stations;
     for (const Station& station : network) stations.push_back({.placed = site.place_head(station.position).station});
     EditSession session(
-        site, stations, {.voxels = options.sample}, [](const auto&) {}, [](const auto&, const auto&) {});
+        site, stations, {.voxels = options.sample, .attainable_voxels = 0}, [](const auto&) {},
+        [](const auto&, const auto&) { return std::string(); });
     const Vec3 middle = stations.front().placed.ground;
     std::vector<double> wall, cpu;
     std::size_t off_ground = 0;
