@@ -17,6 +17,8 @@ constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
 constexpr double kRefiningSigma = 0.03;
 // Timed samples: sampled networks, and stations by every ray.
 constexpr std::size_t kTimedNetworks = 2, kTimedStations = 4;
+// With more stations, the timed samples themselves take long.
+constexpr std::size_t kTimedUpTo = 100;
 // Measured on the sites of docs/examples.md: how much longer later rounds take, and how many choices are verified.
 constexpr double kLaterRounds = 1.1, kVerified = 4.5;
 
@@ -58,6 +60,7 @@ std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyP
                                        const PlanConfig& config, NetworkEvaluator& evaluator, double round_s,
                                        const PlanWatch& watch) {
   const std::vector<PlacedStation> chosen = choice.stations_of(choice.network);
+  if (chosen.size() > kTimedUpTo) return std::nullopt;
   const Progress silent{.report = {}, .stop = watch.stop};
   // The first call sets up structures that later ones reuse, so it may take longer.
   const auto sampled = [&](std::size_t copies) {

@@ -28,7 +28,7 @@ bool worth_searching(const SurveyProblem& problem, const PlanConfig& config);
 
 // `round_s`: what a round of refinement took. Seconds that all the rest will take, from the first round of refinement
 // on: further rounds, the search by `config`, and every ray. Times the evaluator on the chosen network. Empty where it
-// was stopped.
+// was stopped, or there are so many stations that this would take long.
 std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyProblem& problem,
                                        const PlanConfig& config, NetworkEvaluator& evaluator, double round_s,
                                        const PlanWatch& watch);

@@ -53,6 +53,8 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
 
 // Share of the time limit for looking, choosing and searching. The rest is for tracing every ray of the results.
 constexpr double kSearchTimeShare = 0.8;
+// Shares of it for finding candidates, and until these are counted on the second sample: links take time, too.
+constexpr double kCandidatesTimeShare = 0.25, kCountedTimeShare = 0.5;
 // More are tried where it pays: around the stations that are chosen.
 constexpr std::size_t kMostCandidates = 4096;
 // Of a larger site one for so much ground, so that none of it is farther than some metres from a candidate.
@@ -115,12 +117,16 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
       std::make_shared<const Candidates>(find_candidates(site,
                                                          {.most = most_candidates(site),
                                                           .sample_voxels = sample_of_choice(problem, config, site),
-                                                          .scanner = finest(simulator, problem.scanners)},
+                                                          .scanner = finest(simulator, problem.scanners),
+                                                          .max_seconds = kCandidatesTimeShare * config.max_seconds},
                                                          {.report = report, .stop = watch.stop}));
   const bool limit_wanted = needs_attainable(problem);
-  if (limit_wanted)
+  if (limit_wanted) {
+    const double left = kCountedTimeShare * config.max_seconds - seconds_since(begun);
+    const Deadline counted_by(config.max_seconds > 0 ? std::max(left, 0.1) : 0, watch.stop);
     count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
-                     {.report = {}, .stop = watch.stop});
+                     {.report = {}, .stop = counted_by.stop()});
+  }
   const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
   if (watch.report && candidates->ended() != "cancelled")
     watch.report(

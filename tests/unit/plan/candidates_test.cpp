@@ -150,18 +150,19 @@ TEST(OverlapGraph, HasTheScanOverlapOfEachPair) {
 
 TEST(SpreadPositions, ThatSeeNoCandidateNearThemAreFound) {
   PlacementOracle oracle;
-  // A closet behind x = 10, and another one behind x = 20 that is far from all candidates.
+  // A closet behind x = 10, and another one behind x = 20 without a candidate.
   oracle.sees = [](const Vec3& a, const Vec3& b) { return (a.x < 10) == (b.x < 10) && (a.x < 20) == (b.x < 20); };
   const std::vector<PlacedStation> stations{at({1, 0, 0}), at({9, 0, 0}), at({14, 0, 0})};
   const std::vector<PlacedStation> others{at({8, 0, 0}),  at({9, 2, 0}),  at({11, 0, 0}), at({10.5, 0.5, 0}),
                                           at({14, 1, 0}), at({21, 0, 0}), at({9, -40, 0})};
   const std::vector<PlacedStation> unseen = unseen_positions(oracle, stations, others, 3);
-  ASSERT_EQ(unseen.size(), 2u) << "one of each closet's places is enough; one far away counts, too";
-  EXPECT_EQ(unseen[0].position.x, 21);
-  EXPECT_EQ(unseen[1].position.y, -40);
+  ASSERT_EQ(unseen.size(), 3u);
+  EXPECT_EQ(unseen[0].position.x, 10.5) << "the only candidate in its closet is 3.5 m away";
+  EXPECT_EQ(unseen[1].position.x, 21);
+  EXPECT_EQ(unseen[2].position.y, -40);
   const std::vector<PlacedStation> nearer = unseen_positions(oracle, stations, others, 2.5);
   ASSERT_EQ(nearer.size(), 3u);
-  EXPECT_EQ(nearer[0].position.x, 11) << "its neighbour sees it";
+  EXPECT_EQ(nearer[0].position.x, 11) << "it is enough for its neighbour";
 }
 
 // Square metres decide, not (u, v): the small field has most of the chart.

