@@ -84,8 +84,8 @@ struct Evaluation {
   std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
-  AccuracyClass accuracy_class = AccuracyClass::loa30;           ///< Judges the registration error.
-  std::optional<Visit> visit = std::nullopt;                     ///< The round on site without existing stations.
+  AccuracyClass accuracy_class = AccuracyClass::loa30;  ///< Judges the registration error.
+  std::optional<Visit> visit = std::nullopt;            ///< The round on site without existing stations.
   /// For stations that do not stand well, in their order: the nearest places that may hold them, if these were looked
   /// for (`EvaluationSite::area`). Existing stations and those without ground have none.
   std::vector<StationMove> moves = {};

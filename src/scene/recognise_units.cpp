@@ -267,8 +267,11 @@ std::string plural(Unit unit) {
 // "millimetres, Z up (60.6 x 30.6 x 10.5 m, 1480 m² of floor, rooms 2.7 m high, stairs)"
 std::string meaning(const Hypothesis& h) {
   constexpr double kSome = 0.5;
-  return plural(h.unit) + ", " + (h.up == UpAxis::x ? "X" : h.up == UpAxis::y ? "Y" : "Z") + " up (" + rounded(h.size.x) + " x " +
-         rounded(h.size.y) + " x " + rounded(h.size.z) + " m" +
+  return plural(h.unit) + ", " +
+         (h.up == UpAxis::x   ? "X"
+          : h.up == UpAxis::y ? "Y"
+                              : "Z") +
+         " up (" + rounded(h.size.x) + " x " + rounded(h.size.y) + " x " + rounded(h.size.z) + " m" +
          (h.floor_m2 > 0 ? ", " + rounded(h.floor_m2) + " m² of floor" : "") +
          (h.headroom_m > 0 ? ", rooms " + rounded(h.headroom_m) + " m high" : "") + (h.doors > kSome ? ", doors" : "") +
          (h.flights > kSome ? ", stairs" : "") + ")";

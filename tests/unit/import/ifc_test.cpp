@@ -157,7 +157,8 @@ TEST_F(IfcTest, CapturedByRoom) {
   EXPECT_EQ(why_no_station(shut[1]), to_string(LeftOutReason::sealed));
   EXPECT_EQ(shut[1].ground_m2, 0);
   EXPECT_EQ(shut[1].share.share(WhyMissed::captured), 0);
-  EXPECT_NE(told.find("behind a closed door: not reached; plan it too with ignore 'IfcDoor inner 0Vantage"), std::string::npos)
+  EXPECT_NE(told.find("behind a closed door: not reached; plan it too with ignore 'IfcDoor inner 0Vantage"),
+            std::string::npos)
       << told;
   // The advice opens it.
   const std::string door = told.substr(told.find('\'') + 1, told.rfind('\'') - told.find('\'') - 1);
