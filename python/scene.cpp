@@ -93,7 +93,10 @@ void add_room(py::module_& m) {
       .def_property_readonly(
           "floor_m2", [](const Room& room) { return floor_area(room); }, "Area of its floor, m².")
       .def_property_readonly(
-          "box", [](const Room& room) { return adopt(std::vector<Vec3>{room.box.min, room.box.max}); },
+          "box",
+          [](const Room& room) {
+            return adopt(std::vector<Vec3>{room.box.min, room.box.max});
+          },
           "Lowest and highest corner: (2, 3), metres.")
       .def_property_readonly(
           "outline",

@@ -81,7 +81,7 @@ struct MissedVoxels {
   /// whole site's captured share is its coverage, from all voxels; the sample splits the rest.
   std::vector<MissedShare> shares = {};
   std::vector<RoomShare> rooms = {};  ///< Of the sample, one for each of the scene's rooms.
-  std::size_t candidates = 0;  ///< Number of positions from which lines were drawn.
+  std::size_t candidates = 0;         ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.
 /// `sparse` uses the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith)

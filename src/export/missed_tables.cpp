@@ -36,7 +36,8 @@ void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> ro
             fixed(shares[k].ground_m2, 2) + "," + csv_cell(here) + "," +
             csv_cell(here.empty() ? why_no_station(shares[k]) : "") + "," + number(share.voxels);
     // A room without a surveyed surface has no shares.
-    for (const MissedStyle& style : kMissedStyles) text += "," + (share.voxels > 0 ? fixed(share.share(style.why), 4) : "");
+    for (const MissedStyle& style : kMissedStyles)
+      text += "," + (share.voxels > 0 ? fixed(share.share(style.why), 4) : "");
     text += "\n";
   }
   write_atomically(file, text);

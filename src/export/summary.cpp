@@ -149,7 +149,8 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
 namespace {
 // A pattern for a name, in single quotes for a shell.
 std::string quoted_pattern(std::string name) {
-  std::ranges::replace_if(name, [](unsigned char c) { return c == '\'' || c < 0x20; }, '?');
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c == '\'' || c < 0x20; }, '?');
   return "'" + name + "'";
 }
 

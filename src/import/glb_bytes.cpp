@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-
 namespace vantage::importer {
 namespace {
 

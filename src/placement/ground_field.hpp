@@ -48,8 +48,8 @@ class GroundField {
 
   // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
   // where people enter. These are the lowest large parts that are in the open or lead there, by a door or an opening,
-  // as several dwellings do; without one, the rooms that have a way out, however small; else the largest of the lowest. Throws Error invalid_argument if there is no room
-  // for a person near one of `enter`.
+  // as several dwellings do; without one, the rooms that have a way out, however small; else the largest of the lowest.
+  // Throws Error invalid_argument if there is no room for a person near one of `enter`.
   void reach(const MeshTree& tree, std::span<const glm::dvec3> enter);
 
   // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was

@@ -220,7 +220,8 @@ std::vector<RoomShare> missed_by_room(Site& site, const MissedVoxels& judged) {
   if (rooms.empty()) return {};
   std::vector<RoomShare> shares = shares_by_room(rooms, site.area());
   std::vector<ShareSum> sums;
-  for (std::size_t k = 0; k < rooms.size(); ++k) shares[k].share.node = rooms[k].name, sums.emplace_back(shares[k].share);
+  for (std::size_t k = 0; k < rooms.size(); ++k)
+    shares[k].share.node = rooms[k].name, sums.emplace_back(shares[k].share);
   const std::vector<VoxelPatch> patches = simulator.voxel_patches(judged.ranks);
   for (std::size_t i = 0; i < judged.ranks.size(); ++i)
     if (const auto room = room_at(rooms, patches[i].point))

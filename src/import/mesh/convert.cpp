@@ -151,7 +151,8 @@ class Converter {
     if (!is_new) return known->second;
     json mesh{{"primitives", json::array()}};
     for (const unsigned part : parts) mesh["primitives"].push_back(primitives_[part]);
-    if (const std::string name = to_utf8(scene_.mMeshes[parts.front()]->mName.C_Str()); !name.empty()) mesh["name"] = name;
+    if (const std::string name = to_utf8(scene_.mMeshes[parts.front()]->mName.C_Str()); !name.empty())
+      mesh["name"] = name;
     meshes_.push_back(mesh);
     return known->second = static_cast<int>(meshes_.size()) - 1;
   }

@@ -256,7 +256,8 @@ void File::require_utf8(Bytes text) const {
       const std::size_t to = std::min(at + kAround, std::min(end, all.size()));
       throw malformed("its text is not UTF-8 in line " +
                       std::to_string(1 + std::ranges::count(all.substr(0, at), '\n')) + " of its JSON, at " +
-                      quoted(to_utf8(all.substr(from, to - from))) + " (Latin-1, perhaps); export it as glTF has it, in UTF-8");
+                      quoted(to_utf8(all.substr(from, to - from))) +
+                      " (Latin-1, perhaps); export it as glTF has it, in UTF-8");
     }
     at += size;
   }

@@ -431,7 +431,8 @@ class Loader {
     std::vector<int> above(nodes.size(), -1);
     for (std::size_t n = 0; n < nodes.size(); ++n)
       for (const int child : nodes[n].children)
-        if (child >= 0 && static_cast<std::size_t>(child) < nodes.size()) above[static_cast<std::size_t>(child)] = static_cast<int>(n);
+        if (child >= 0 && static_cast<std::size_t>(child) < nodes.size())
+          above[static_cast<std::size_t>(child)] = static_cast<int>(n);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const nlohmann::json& marks = file_.find("nodes", static_cast<int>(n), {"extras", "vantage"});
       if (!marks.is_object() || !marks.contains("box")) continue;
@@ -485,7 +486,8 @@ class Loader {
       if (!loop.is_array()) throw refuse();
       auto& corners = outline.emplace_back();
       for (const nlohmann::json& corner : loop) {
-        if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() || !corner[1].is_number()) throw refuse();
+        if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() || !corner[1].is_number())
+          throw refuse();
         corners.push_back({corner[0].get<double>(), -corner[1].get<double>()});
       }
     }

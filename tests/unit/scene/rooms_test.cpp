@@ -44,16 +44,18 @@ TEST(Rooms, AWallBelongsToTheRoomThatItsFaceIsNearerTo) {
 test::GlbBuilder with_a_room() {
   test::GlbBuilder builder;
   builder.triangle("wall");
-  const int storey =
-      builder.node({{"name", "IfcBuildingStorey EG"}, {"extras", {{"vantage", {{"class", "IfcBuildingStorey"}, {"name", "EG"}}}}}});
+  const int storey = builder.node(
+      {{"name", "IfcBuildingStorey EG"}, {"extras", {{"vantage", {{"class", "IfcBuildingStorey"}, {"name", "EG"}}}}}});
   const int part = builder.child(storey, {{"name", "part"}});
   const nlohmann::json box = {{1, 0, -4}, {3, 2.5, -1}};  // Y up
   builder.child(part, {{"name", "IfcSpace 7"},
-                       {"extras", {{"vantage", {{"class", "IfcSpace"},
-                                                {"name", "7"},
-                                                {"long_name", "Kitchen"},
-                                                {"box", box},
-                                                {"footprint", {{{1, -1}, {3, -1}, {3, -4}, {1, -4}}}}}}}}});
+                       {"extras",
+                        {{"vantage",
+                          {{"class", "IfcSpace"},
+                           {"name", "7"},
+                           {"long_name", "Kitchen"},
+                           {"box", box},
+                           {"footprint", {{{1, -1}, {3, -1}, {3, -4}, {1, -4}}}}}}}}});
   return builder;
 }
 
