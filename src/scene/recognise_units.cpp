@@ -377,7 +377,8 @@ bool is_doubtful(const Hypothesis& h, const std::optional<UpAxis>& up) {
 }
 }  // namespace
 
-Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
+Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up,
+                     bool keeps_rule) {
   Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
   std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
   if (all.empty()) return out;
@@ -392,7 +393,7 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
                                     : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
-    return best.score - other.score < (rule ? kRuleLead : kLead) ||
+    return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
            (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
