@@ -64,7 +64,7 @@ struct MissedShare {
 struct RoomShare {
   MissedShare share = {};  ///< Of the voxels in the room or at its boundary; its node is the room's name.
   double ground_m2 = 0;    ///< Area of the search area in it.
-  std::optional<LeftOutReason> left_out = {};  ///< Reason of most of the floor in it that one cannot stand on, if any.
+  std::optional<LeftOutReason> left_out = {};  ///< Why one cannot stand on most of its floor, if any; `sealed` first.
 };
 /// Why a room has no station, in words.
 std::string why_no_station(const RoomShare& room);

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace vantage {
 namespace {
 
-constexpr double kKnee_m = 0.5;   // above a floor one is surely in its room
-constexpr double kPiece_m = 0.4;  // sides of the parts of a triangle that are in one room or another
+constexpr double kKnee_m = 0.5;     // above a floor one is surely in its room
+constexpr double kStanding_m2 = 1;  // floor that a tripod stands on
+constexpr double kPiece_m = 0.4;    // sides of the parts of a triangle that are in one room or another
 
 double edge_length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -47,8 +49,12 @@ std::vector<RoomShare> shares_by_room(std::span<const Room> rooms, const SearchA
     for (const auto& t : out.triangles)
       for_parts(rooms, out.positions[t[0]], out.positions[t[1]], out.positions[t[2]],
                 [&](std::size_t room, double m2) { here[room] += m2; });
-    for (std::size_t k = 0; k < rooms.size(); ++k)
+    for (std::size_t k = 0; k < rooms.size(); ++k) {
+      // Sealed floor comes before any other: an entrance makes ground of it.
+      if (out.reason == LeftOutReason::sealed && here[k] >= kStanding_m2)
+        here[k] = std::numeric_limits<double>::infinity();
       if (here[k] > most[k]) most[k] = here[k], shares[k].left_out = out.reason;
+    }
   }
   return shares;
 }

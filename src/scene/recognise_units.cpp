@@ -368,12 +368,23 @@ bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
   return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.up != UpAxis::x &&
          other.upright >= kMostUpright;
 }
+bool has_ways(const Hypothesis& h) { return h.doors >= 1 || h.flights >= 1; }
+
+// A tower that lies on its side has floors, too, and few models have X up: without a door or a stair along it, X gives
+// way to another axis that has one, and is never taken unasked.
+bool is_doubtful(const Hypothesis& h, const std::optional<UpAxis>& up) {
+  return !up && h.up == UpAxis::x && !has_ways(h);
+}
 }  // namespace
 
-Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
+Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up,
+                     bool keeps_rule) {
   Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
-  const std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
+  std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
   if (all.empty()) return out;
+  const auto usual = std::ranges::find_if(all, [](const Hypothesis& h) { return h.up != UpAxis::x; });
+  if (usual != all.end() && has_ways(*usual))
+    std::erase_if(all, [&](const Hypothesis& h) { return is_doubtful(h, up); });
   const Hypothesis& best = all[0];
   const bool rule = best.unit == out.unit && best.up == out.up;
   out.unit = best.unit, out.up = best.up, out.inside_out = best.inside_out;
@@ -381,7 +392,8 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
                                : up ? "the setting unit"
                                     : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
-    return best.score - other.score < (rule ? kRuleLead : kLead) ||
+    if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
+    return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
            (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {

@@ -48,7 +48,9 @@ struct Recognised {
   std::vector<std::string> choices = {};  // then, what the best ones would mean
 };
 
-Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up);
+// `keeps_rule`: the file's format says metres and Y up, as glTF does; then that needs less of a lead.
+Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up,
+                     bool keeps_rule = true);
 
 // Makes every face show its other side.
 void turn_faces(RawScene& raw);

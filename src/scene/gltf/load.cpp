@@ -150,7 +150,9 @@ class Loader {
       throw file_.malformed(std::string("asset.extras.vantage: ") + error.what());
     }
     Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
-    if (!prepared()) axes = recognise(raw_, unit, up);
+    // A mesh of OBJ, STL or PLY was in no unit and had no axis up.
+    const bool glTF = file_.document().at("asset").value("generator", nlohmann::json()) != "vantage-import-mesh";
+    if (!prepared()) axes = recognise(raw_, unit, up, glTF);
     if (!axes.question.empty()) throw file_.malformed(axes.question, axes.choices);
     if (!axes.note.empty()) raw_.notes.push_back(axes.note);
     reinterpret_axes(raw_, axes.unit, axes.up);
