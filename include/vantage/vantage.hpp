@@ -26,6 +26,7 @@
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
 #include "vantage/summary.hpp"
+#include "vantage/taken_scans.hpp"
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"

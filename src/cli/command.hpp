@@ -47,6 +47,7 @@ void add_evaluate(CLI::App& app, Program& program);
 void add_plan(CLI::App& app, Program& program);
 void add_edit(CLI::App& app, Program& program);
 void add_bound(CLI::App& app, Program& program);
+void add_next(CLI::App& app, Program& program);
 
 // All commands, with every option.
 void add_commands(CLI::App& app, Program& program);

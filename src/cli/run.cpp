@@ -45,6 +45,7 @@ void add_commands(CLI::App& app, Program& program) {
   add_panorama(app, program);
   add_evaluate(app, program);
   add_plan(app, program);
+  add_next(app, program);
   add_edit(app, program);
   add_bound(app, program);
 }

@@ -11,6 +11,7 @@
 #include "export/plan_map.hpp"
 #include "export/relief.hpp"
 #include "export/search_tint.hpp"
+#include "scene/changed_scene.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
@@ -86,8 +87,9 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   const auto any = [&](auto wanted) { return std::ranges::any_of(view.stations, wanted); };
   swatch(kSurveyedTint, "surveyed");
   const auto some = [&](auto wanted) { return std::ranges::any_of(view.scene.meshes(), wanted); };
-  if (some([](const MeshInfo& m) { return m.role == Role::blocking && !m.glass; }))
+  if (some([](const MeshInfo& m) { return m.role == Role::blocking && !m.glass && m.name != kNotInModel; }))
     swatch(kBlockingTint, "not surveyed");
+  if (some([](const MeshInfo& m) { return m.name == kNotInModel; })) swatch(kFoundTint, "found, not in the model");
   if (content.cut) swatch(kCutTint, "cut through");
   if (content.cut && some(&MeshInfo::glass)) swatch(kGlassTint, "glass");
   canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);

@@ -16,6 +16,7 @@
 #include "export/search_tint.hpp"
 #include "export/section.hpp"
 #include "export/shown_links.hpp"
+#include "scene/changed_scene.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -280,6 +281,28 @@ Box plan_window(const PlanView& view) {
   return box;
 }
 
+// Tints what was found on site and is not in the model.
+static void tint_found(std::vector<std::uint32_t>& pixels, const SceneData& data, const MapWindow& window,
+                       const PlanLevel& level) {
+  constexpr double kFoundOpacity = 0.8;
+  for (std::size_t m = 0; m < data.meshes.size(); ++m) {
+    if (data.meshes[m].name != kNotInModel) continue;
+    std::vector<char> found(pixels.size());
+    for (std::uint32_t k = 0; k < data.ranges[m].triangle_count; ++k) {
+      std::array<MapPoint, 3> corners;
+      double z = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3 p = data.origin + widen(data.positions[data.triangles[data.ranges[m].first_triangle + k][c]]);
+        corners[c] = window.at(p), z = std::max(c == 0 ? p.z : z, p.z);
+      }
+      if (level.only() || level.holds(z))
+        for_each_pixel(window, corners, [&](std::size_t pixel, const auto&) { found[pixel] = 1; });
+    }
+    for (std::size_t k = 0; k < pixels.size(); ++k)
+      if (found[k]) pixels[k] = laid_over(pixels[k], kFoundTint, kFoundOpacity);
+  }
+}
+
 SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
                  double line, double paper, std::span<const std::uint32_t> surfaces) {
   const SceneData& data = scene.data();
@@ -294,10 +317,12 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
   if (paper > 0)
     for (std::uint32_t& pixel : map.pixels)
       if (pixel != 0) pixel = laid_over(pixel, {1, 1, 1}, paper);
-  if (!level.cut) return map;
-  const Section section =
-      surfaces.empty() ? section_at(data, window, *level.cut) : section_at(data, surfaces, window, *level.cut);
-  paint_section(map.pixels, section, window, line);
+  if (level.cut) {
+    const Section section =
+        surfaces.empty() ? section_at(data, window, *level.cut) : section_at(data, surfaces, window, *level.cut);
+    paint_section(map.pixels, section, window, line);
+  }
+  tint_found(map.pixels, data, window, level);
   return map;
 }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import/scans.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <string_view>
 
 #include "import/import.hpp"
 #include "vantage/error.hpp"
@@ -13,6 +18,8 @@ namespace {
 
 // Its name is another than that of the surfaces, so that the cache keeps both.
 constexpr Format kScans{"scans of E57", ".e57-scans ", "vantage-import-cloud"};
+constexpr Format kPoints{"points of E57", ".e57-points ", "vantage-import-cloud"},
+    kTextPoints{"points of PTX", ".xyz-points ", "vantage-import-cloud"};
 // Scanners level themselves to seconds of arc; poses of a registration are turned by more. No scanner is set up at less
 // than this on purpose.
 constexpr double kLevel_rad = 0.05;
@@ -34,26 +41,66 @@ StationSetup setup_of(const std::array<double, 4>& rotation) {
   return setup;
 }
 
+namespace {
+
+// Calls `read(document, binary)` for the parts of a GLB; what does not fit becomes an Error.
+template <class Read>
+void read_parts(const std::filesystem::path& file, const std::vector<std::uint8_t>& glb, Read&& read) {
+  constexpr std::size_t kHead = 20, kChunkHead = 8;  // the GLB's with its first chunk's; another chunk's
+  std::uint32_t length = 0;                          // of the JSON; as_glb() has checked the header
+  std::memcpy(&length, glb.data() + kHead - kChunkHead, sizeof length);
+  try {
+    if (length > glb.size() - kHead) throw std::out_of_range("JSON");
+    const auto json = std::span(glb).subspan(kHead, length);
+    const auto binary = std::span(glb).subspan(std::min(glb.size(), kHead + length + kChunkHead));
+    read(nlohmann::json::parse(json.begin(), json.end()).at("asset").at("extras").at("scans"), binary);
+  } catch (const std::exception&) {
+    throw Error(Errc::malformed_file, file.string() + ": its scans cannot be read");
+  }
+}
+
+TakenScan scan_of(const nlohmann::json& scan) {
+  const auto place = scan.at("position").get<std::array<double, 3>>();
+  return {.name = scan.at("name"),
+          .sensor = scan.at("sensor"),
+          .head = {place[0], place[1], place[2]},
+          .setup = setup_of(scan.at("rotation").get<std::array<double, 4>>())};
+}
+
+}  // namespace
+
 std::vector<TakenScan> taken_scans(const std::filesystem::path& file) {
   if (std::string_view(recognise(file).format->name) != "E57")
     throw Error(Errc::malformed_file, file.string() + ": poses of scans are read from E57; this is none");
-  const std::vector<std::uint8_t> glb = as_glb(file, kScans);
-  std::uint32_t length = 0;  // of the JSON; as_glb() has checked the header
-  std::memcpy(&length, glb.data() + 12, sizeof length);
   std::vector<TakenScan> scans;
-  try {
-    if (length > glb.size() - 20) throw Error(Errc::malformed_file, file.string() + ": its scans cannot be read");
-    const auto document = nlohmann::json::parse(glb.begin() + 20, glb.begin() + 20 + length);
-    for (const auto& scan : document.at("asset").at("extras").at("scans")) {
-      const auto place = scan.at("position").get<std::array<double, 3>>();
-      scans.push_back({.name = scan.at("name"),
-                       .sensor = scan.at("sensor"),
-                       .head = {place[0], place[1], place[2]},
-                       .setup = setup_of(scan.at("rotation").get<std::array<double, 4>>())});
-    }
-  } catch (const nlohmann::json::exception&) {
-    throw Error(Errc::malformed_file, file.string() + ": its scans cannot be read");
-  }
+  read_parts(file, as_glb(file, kScans), [&](const nlohmann::json& all, std::span<const std::uint8_t>) {
+    for (const auto& scan : all) scans.push_back(scan_of(scan));
+  });
+  return scans;
+}
+
+std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m) {
+  const std::string_view name = recognise(file).format->name;
+  if (name != "E57" && name != "XYZ")
+    throw Error(Errc::malformed_file,
+                file.string() + ": scans with their poses are read from E57 and PTX; this is " + std::string(name));
+  char cell[32];
+  std::snprintf(cell, sizeof cell, "cell=%.17g", cell_m);
+  std::vector<ThinScan> scans;
+  read_parts(file, as_glb(file, name == "E57" ? kPoints : kTextPoints, {}, {cell}),
+             [&](const nlohmann::json& all, std::span<const std::uint8_t> binary) {
+               for (const auto& entry : all) {
+                 ThinScan scan{scan_of(entry), entry.at("points"), {}};
+                 const std::size_t first = entry.at("first"), count = entry.at("count");
+                 const std::size_t whole = binary.size() / sizeof(ThinPoint);
+                 if (first > whole || count > whole - first) throw std::out_of_range("points");
+                 scan.thinned.resize(count);
+                 if (count > 0)
+                   std::memcpy(scan.thinned.data(), binary.data() + first * sizeof(ThinPoint),
+                               count * sizeof(ThinPoint));
+                 scans.push_back(std::move(scan));
+               }
+             });
   return scans;
 }
 

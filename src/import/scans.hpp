@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,6 +22,22 @@ struct TakenScan {
 // The scans of an E57 file that have a pose, read by the importer of point clouds. Throws Error as as_glb() does, and
 // malformed_file if the file is no E57.
 std::vector<TakenScan> taken_scans(const std::filesystem::path& file);
+
+// A point that stands for all points of a scan in a small cell.
+struct ThinPoint {
+  std::array<float, 3> offset;  // their mean, from the head, along the axes of the file
+  std::uint32_t points;         // how many they are, at most 16 384
+};
+
+struct ThinScan {
+  TakenScan scan;
+  std::uint64_t points = 0;  // before they were thinned
+  std::vector<ThinPoint> thinned;
+};
+
+// The scans of a file with a pose, E57 or PTX, thinned to one point for each cell of `cell_m`. Throws Error as as_glb()
+// does, and malformed_file for another file.
+std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m);
 
 // Heading and tilt of a scanner, from the rotation of its frame into the survey's, a quaternion w, x, y, z.
 StationSetup setup_of(const std::array<double, 4>& rotation);

@@ -22,8 +22,9 @@ struct Buffers {
 struct Query {
   Buffers buffers;
   glm::dvec3 point;
-  double best;         // nearest so far
-  double good_enough;  // a hit this near ends the search
+  double best;                 // nearest so far
+  double good_enough;          // a hit this near ends the search
+  std::uint32_t triangle = 0;  // that of `best`
 };
 
 // A radius for Embree's boxes that covers the rounding of point and radius to float.
@@ -49,6 +50,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
                            to_glm(query.buffers.positions[t[2]]));
   if (!(distance < query.best)) return false;
   query.best = distance;
+  query.triangle = arguments->primID;
   arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query.point, query.best);
   return true;
 }
@@ -193,13 +195,13 @@ struct MeshTree::Impl {
   Nearest first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
   bool occluded(RTCRay ray) const;
 
-  double nearest(const glm::dvec3& point, double limit, double good_enough) const {
-    Query query{buffers, point, limit, good_enough};
+  Query nearest(const glm::dvec3& point, double limit, double good_enough) const {
+    Query query{.buffers = buffers, .point = point, .best = limit, .good_enough = good_enough};
     RTCPointQuery ball = ball_of(point, limit);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(tree.get(), &ball, &context, visit, &query);
-    return query.best;
+    return query;
   }
 };
 
@@ -227,10 +229,22 @@ MeshTree::~MeshTree() = default;
 MeshTree::MeshTree(MeshTree&&) noexcept = default;
 MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
 
-double MeshTree::distance(const glm::dvec3& point, double limit) const { return impl_->nearest(point, limit, 0); }
+double MeshTree::distance(const glm::dvec3& point, double limit) const { return impl_->nearest(point, limit, 0).best; }
+
+std::optional<MeshTree::Hit> MeshTree::nearest(const glm::dvec3& point, double limit) const {
+  const Query found = impl_->nearest(point, limit, 0);
+  if (!(found.best < limit)) return std::nullopt;
+  return Hit{found.best, found.triangle};
+}
+
+std::optional<MeshTree::Hit> MeshTree::first(const glm::dvec3& point, const glm::dvec3& way) const {
+  const Nearest nearest = impl_->first_hit(point, way);
+  if (!nearest.triangle) return std::nullopt;
+  return Hit{nearest.distance, *nearest.triangle};
+}
 
 bool MeshTree::within(const glm::dvec3& point, double radius) const {
-  return impl_->nearest(point, radius, radius) < radius;
+  return impl_->nearest(point, radius, radius).best < radius;
 }
 
 bool MeshTree::within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const {

@@ -25,6 +25,15 @@ class MeshTree {
 
   // Distance from `point` to the nearest triangle, at most `limit`, in double on the float vertices.
   double distance(const glm::dvec3& point, double limit) const;
+  // A triangle by its number, in the order in which they were given, and its distance.
+  struct Hit {
+    double distance;
+    std::uint32_t triangle;
+  };
+  // The triangle nearest to `point`, if one is nearer than `limit`.
+  std::optional<Hit> nearest(const glm::dvec3& point, double limit) const;
+  // The first triangle that a ray from `point` meets; `way`: unit.
+  std::optional<Hit> first(const glm::dvec3& point, const glm::dvec3& way) const;
   // Whether a triangle is nearer to `point` than `radius`. Cheaper than the distance: the first such triangle decides.
   bool within(const glm::dvec3& point, double radius) const;
   // Whether a triangle is nearer to the segment from a to b than `radius`.

@@ -5,6 +5,7 @@
 
 #include "bare_embree.hpp"
 #include "choose.hpp"
+#include "day.hpp"
 #include "devices.hpp"
 #ifdef VANTAGE_HAS_EDITOR
 #include "drag.hpp"
@@ -49,6 +50,8 @@ int main(int argc, char** argv) {
   gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
   vantage::bench::ChooseOptions choose;
   choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
+  vantage::bench::DayOptions day;
+  day.add(*app.add_subcommand("day", "A simulated day: the plan that is made anew after each scan, and the kept one"));
 #ifdef VANTAGE_HAS_EDITOR
   vantage::bench::DragOptions drag;
   drag.add(*app.add_subcommand("drag", "The editor: from a station that moves to new numbers and colours"));
@@ -68,6 +71,7 @@ int main(int argc, char** argv) {
 #endif
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
+    if (app.got_subcommand("day")) vantage::bench::run_day(day);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());

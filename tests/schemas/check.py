@@ -55,7 +55,7 @@ def rows(path):
 
 
 def check_files(folder):
-    front, stations = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations"))
+    front, stations, after = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations", "next"))
     config = validator(os.path.join(MANUAL, "schemas/config.schema.json"))
     run(folder, "generate", "four-walls", "-o", "walls.glb")
     for name, how in PLANS.items():
@@ -72,6 +72,12 @@ def check_files(folder):
         # What a schema lets through must not be just anything.
         for broken in ({**written, "more": 1}, {**written, "front": []}, {k: v for k, v in written.items() if k != "seed"}):
             assert not front.is_valid(broken)
+    run(folder, "scan", "walls.glb", *QUICK[:-1], "--station", "8,0,1.5", "-o", "day.e57")
+    run(folder, "next", "walls.glb", *QUICK[:-1], "--scans", "day.e57", "--stations", "survey/front.json", "--link", "0", expected=(0, 3))
+    with open(os.path.join(folder, "next/next.json"), encoding="utf-8") as file:
+        written = json.load(file)
+    require(after, written, "next.json")
+    assert not after.is_valid({**written, "taken": []}) and not after.is_valid({**written, "more": 1})
     assert not config.is_valid({"user-sise": 0.1})
     assert not stations.is_valid({**table[0], "status": "perhaps"})
 

@@ -31,22 +31,6 @@ constexpr double kUpright = 0.3;  // largest z of a wall's
 // Rays of all scans that are followed to find free space; more say nothing new.
 constexpr std::uint64_t kMostRays = 20'000'000;
 
-std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format) {
-  if (format == "e57") return open_e57(file);
-  if (format == "las") return open_las(file);
-  if (format == "ply") return open_ply(file);
-  if (format == "pcd") return open_pcd(file);
-  return open_text(file);
-}
-
-// Bytes that cells may take: most of what this process may.
-double memory_for_cells() {
-  constexpr double kShare = 0.6, kWithoutLimit = 2e9;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kShare * kWithoutLimit;
-  return kShare * static_cast<double>(limit.rlim_cur);
-}
-
 std::string counted(std::uint64_t n, const char* what) {
   const std::string digits = std::to_string(n);
   std::string text;
@@ -284,8 +268,30 @@ class Converter {
 
 }  // namespace
 
+std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format) {
+  if (format == "e57") return open_e57(file);
+  if (format == "las") return open_las(file);
+  if (format == "ply") return open_ply(file);
+  if (format == "pcd") return open_pcd(file);
+  return open_text(file);
+}
+
+double memory_for_cells() {
+  constexpr double kShare = 0.6, kWithoutLimit = 2e9;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kShare * kWithoutLimit;
+  return kShare * static_cast<double>(limit.rlim_cur);
+}
+
 std::string convert_cloud(const std::filesystem::path& file, const std::string& format) {
   return Converter(file, format).run();
+}
+
+json scan_json(const CloudScan& scan) {
+  return {{"name", scan.name},
+          {"position", {scan.position.x(), scan.position.y(), scan.position.z()}},
+          {"rotation", {scan.rotation.w(), scan.rotation.x(), scan.rotation.y(), scan.rotation.z()}},
+          {"sensor", scan.sensor}};
 }
 
 std::string list_scans(const std::filesystem::path& file) {
@@ -293,10 +299,7 @@ std::string list_scans(const std::filesystem::path& file) {
   const auto source = open_e57(file);
   for (const CloudScan& scan : source->scans()) {
     if (!scan.posed) continue;
-    scans.push_back({{"name", scan.name},
-                     {"position", {scan.position.x(), scan.position.y(), scan.position.z()}},
-                     {"rotation", {scan.rotation.w(), scan.rotation.x(), scan.rotation.y(), scan.rotation.z()}},
-                     {"sensor", scan.sensor}});
+    scans.push_back(scan_json(scan));
   }
   if (scans.empty()) throw Refused("it does not say from where its scans were taken; export it with their poses");
   return glb_bytes(

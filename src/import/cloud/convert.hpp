@@ -2,9 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "import/cloud/points.hpp"
+
 namespace vantage::importer {
+
+// The reader of a format: e57, las, ply, xyz or pcd. Throws Refused.
+std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format);
+
+// Bytes that cells may take: most of what this process may.
+double memory_for_cells();
 
 // A point cloud as surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. Throws Refused.
 std::string convert_cloud(const std::filesystem::path& file, const std::string& format);
@@ -12,5 +22,15 @@ std::string convert_cloud(const std::filesystem::path& file, const std::string& 
 // The scans of an E57 file, a GLB without meshes whose `asset.extras.scans` lists name, position (metres, Z up),
 // rotation (quaternion w, x, y, z) and sensor of those with a pose. Throws Refused.
 std::string list_scans(const std::filesystem::path& file);
+// One of them.
+nlohmann::json scan_json(const CloudScan& scan);
+
+// The points of each scan with a pose, one for each cell of `cell_m`: a GLB whose scans, as above, also tell their
+// `points` and which records of the binary chunk are theirs, `first` and `count`. A record is the mean point in metres
+// from the head, along the axes of the file, as three floats, and the number of points as uint32 (at most 16 384).
+// Cells are twice as large, or four times, if memory is short. Throws Refused.
+std::string thin_scans(const std::filesystem::path& file, const std::string& format, double cell_m);
+// Of the setting cell=METRES. Throws Refused.
+double thin_cell(const std::string& setting);
 
 }  // namespace vantage::importer

@@ -12,6 +12,7 @@
 #include "vantage/error.hpp"
 #include "vantage/question.hpp"
 #include "vantage/site.hpp"
+#include "vantage/taken_scans.hpp"
 
 namespace vantage {
 namespace {
@@ -41,6 +42,8 @@ TEST(SettingTables, DescribeEachSettingOnce) {
   expect_described(site_settings(), names);
   expect_described(question_settings(), names);
   expect_described(plan_settings(), names);
+  std::set<std::string> others;
+  expect_described(next_settings(), others);
 }
 
 TEST(SettingTables, NameASettingThatCannotBeRead) {

@@ -4,6 +4,7 @@
 
 #include "cloud_files.hpp"
 #include "import/cloud/convert.hpp"
+#include "import/scans.hpp"
 #include "unit/import/import_fixture.hpp"
 #include "vantage/export.hpp"
 
@@ -60,6 +61,7 @@ TEST_P(DamagedCloud, GivesASceneOrOneError) {
     }
     const auto file = write(std::to_string(k) + "." + format, damaged);
     try {
+      if (k % 2 == 0 && (format == "e57" || format == "ptx")) importers::thin_scans(file, 0.02);
       load_within(file, 5);
     } catch (const Error& error) {
       ++refused;

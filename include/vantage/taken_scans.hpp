@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+/// On site, after some scans: what they captured by their real points, what they met that is not in the model, and
+/// where to stand next.
+///
+/// The steps, each a call: read the scans, fit them to the model, find how the site differs from its model, make the
+/// site as it was found, and ask for the next stations there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/candidates.hpp"
+#include "vantage/measure.hpp"
+#include "vantage/on_site.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/progress.hpp"
+#include "vantage/settings.hpp"
+#include "vantage/site.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+/// A point that stands for all points of a scan in a small cell.
+struct TakenPoint {
+  std::array<float, 3> offset;  ///< Their mean, from the scanner's head, along the survey's axes, metres.
+  std::uint32_t points;         ///< How many they are, at most 16 384.
+};
+
+/// How a scan was fitted to the model.
+struct ScanFit {
+  bool fitted = false;    ///< False: the scan keeps the pose of its file.
+  std::string why = {};   ///< Then the reason, as the end of a sentence that begins with the scan's name.
+  double shift_m = 0;     ///< How far its head was moved.
+  Angle turn = {};        ///< And by how much it was turned.
+  double residual_m = 0;  ///< Root mean square distance of its points near the model from the model's planes.
+  double near_share = 0;  ///< Share of its points that lie near the model.
+};
+
+/// A scan that was taken.
+struct TakenScan {
+  std::string name = {}, sensor = {};
+  Vec3 head = {};            ///< Survey frame, metres.
+  StationSetup setup = {};   ///< Heading and tilt.
+  std::uint64_t points = 0;  ///< Before they were thinned.
+  std::vector<TakenPoint> thinned = {};
+  ScanFit fit = {};
+};
+
+/// Points of a site's scans lie this near to the model's surfaces, or are of something else.
+inline constexpr double default_tolerance_m = 0.1;
+
+/// Reads the scans of an E57 or PTX file, or of all such files of a folder by their names, thinned to one point for
+/// each cell of `cell_m`. Throws Error: io, malformed_file (no such file, no scan with a pose), out_of_memory.
+std::vector<TakenScan> read_taken_scans(const std::filesystem::path& path, double cell_m = 0.02);
+
+/// Moves each scan to where it fits the site's model best, as poses on site are rough: by point-to-plane iterations
+/// (Chen, Medioni: Object modelling by registration of multiple range images, 1992), with weights that make little of
+/// what is not in the model. Poses may be half a metre and 3° wrong. False if stopped.
+bool fit_to_model(Site& site, std::span<TakenScan> scans, double tolerance_m = default_tolerance_m,
+                  const Progress& progress = {});
+
+/// Something on site that is not in the model.
+struct FoundThing {
+  Box box = {};              ///< Around its points, survey frame, metres.
+  std::uint64_t points = 0;  ///< On it.
+  std::size_t scans = 0;     ///< That saw it.
+};
+
+/// A part of the model that scans saw through, such as a door that stood open.
+struct SeenThrough {
+  std::string mesh;      ///< `MeshInfo::name`.
+  Box box = {};          ///< Around what was seen through, survey frame, metres.
+  double area_m2 = 0;    ///< Of what was seen through.
+  bool removed = false;  ///< It is all of the mesh, nearly: the site as it was found does without it.
+};
+
+/// How a site differs from its model, by the scans.
+struct SiteChanges {
+  std::vector<FoundThing> things = {};  ///< Largest first.
+  std::vector<SeenThrough> seen_through = {};
+  double cell_m = 0;                                    ///< Cells of things.
+  Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
+  std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Of all things, ascending.
+  std::vector<std::uint32_t> removed = {};              ///< Meshes of `Scene::meshes()`, ascending.
+  bool any() const { return !cells.empty() || !removed.empty(); }
+};
+
+/// Things are clusters of points farther than `tolerance_m` from every surface, larger than 0.3 m. A person who walked
+/// through a scan is a thing, too. Empty if stopped.
+SiteChanges changes_of(Site& site, std::span<const TakenScan> scans, double tolerance_m = default_tolerance_m,
+                       const Progress& progress = {});
+
+/// The site as it was found: things block rays and nobody stands in them; what is removed does neither. With the
+/// settings and weights of `site`.
+Site changed_site(Site& site, const SiteChanges& changes);
+
+struct NextConfig {
+  double capture = 0.9;        ///< Wanted share of what is attainable, above 0 and at most 1.
+  double link = default_link;  ///< Least scan overlap of links that connect all stations, taken ones included; 0: none.
+  double tolerance_m = default_tolerance_m;
+  /// A taken scan this near to a planned station is that station.
+  double taken_within_m = 1;
+  std::uint64_t sample_voxels = 20'000;
+  std::size_t most = 32;  ///< Most further stations.
+};
+
+Settings settings(const NextConfig& config);
+
+/// One row for each setting that a user gives.
+const SettingTable<NextConfig>& next_settings();
+
+/// A station to take, in the order in which to take them.
+struct NextStation {
+  PlacedStation station;
+  std::optional<std::size_t> planned = {};  ///< Index among the planned stations, if it is one.
+  double gain = 0;                          ///< What it adds to the captured share, after those before it.
+  double captured = 0;                      ///< The share with it.
+  /// Its strongest link to a station before it: index among the taken scans, then the next stations; empty if alone.
+  std::optional<std::size_t> linked_to = {};
+  double overlap = 0;  ///< Scan overlap of that link.
+};
+
+/// What became of a planned station.
+struct PlannedStation {
+  std::optional<std::size_t> taken_as = {};  ///< Scan that was taken there.
+  StationStatus status = StationStatus::ok;  ///< On the site as it was found.
+  double gain = 0;                           ///< What it would add now, as a share of what is attainable.
+  bool chosen = false;                       ///< Whether it is among the next stations.
+};
+
+/// What is captured, what is missing, and where to stand next. Shares are of what is attainable on the site as found.
+struct NextAnswer {
+  Estimate captured;                    ///< By the real points.
+  Estimate attainable;                  ///< Share of the site's surface that stations can capture.
+  std::vector<double> captured_by;      ///< By each taken scan alone.
+  std::vector<double> hidden_by;        ///< Missing share that a thing hides from all taken scans, one for each thing.
+  double not_seen = 0;                  ///< Missing share that no thing hides.
+  std::vector<NextStation> next;        ///< Empty: there is enough.
+  std::vector<PlannedStation> planned;  ///< One for each planned station.
+  double captured_then = 0;             ///< With all of `next`.
+  bool linked = true;                   ///< Whether taken scans and next stations are connected by links.
+  bool enough = true;                   ///< Whether `captured_then` reaches the wanted share, and all are linked.
+  Visit visit = {};                     ///< The round over the next stations.
+  std::size_t candidates = 0;           ///< Places that were tried.
+};
+
+/// `found`: the site as it was found. Counts the scans' points near its surveyed surfaces in its voxels, and chooses
+/// the fewest further stations among candidates and planned ones. The next station is always the one that adds most of
+/// those linked to what is there. Empty if stopped. Throws Error invalid_argument (a setting out of range, no scan, no
+/// ground).
+std::optional<NextAnswer> next_stations(Site& found, std::span<const TakenScan> scans, const SiteChanges& changes,
+                                        std::span<const PlacedStation> planned, const NextConfig& config = {},
+                                        const Progress& progress = {});
+
+}  // namespace vantage

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "cli/run_report.hpp"
+#include "cli/site.hpp"
+#include "cli/stations.hpp"
+#include "core/text.hpp"
+
+namespace vantage::cli {
+namespace {
+
+// Scans with a smaller share of points near the model are told.
+constexpr double kSurelyNear = 0.6;
+// Further things are told together, and so are small ones that hide little.
+constexpr std::size_t kToldThings = 8;
+constexpr double kLittle = 0.0005, kLargeThing_m = 1;
+// A planned station that would add less is no longer worth it.
+constexpr double kWorthless = 0.01;
+
+struct NextOptions {
+  SiteArguments site;
+  StationOptions planned;
+  NextConfig config;
+  std::optional<std::string> scans, output;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    site.add(command);
+    add_text(command, "--scans", "FILE|DIR",
+             "Scans that were taken: an E57 or PTX file, or a folder of such files; their poses may be rough", scans)
+        ->group("Next stations");
+    planned.add(command);
+    add_settings(command, next_settings(), config);
+    add_text(command, "-o,--output", "DIR", "Folder for the results; next otherwise", output)->group("Results");
+    command.add_flag("--json", json, "Print one JSON object, the same as next.json");
+  }
+};
+
+std::string metres(const Vec3& p) { return fmt::format("{:.2f},{:.2f},{:.2f}", p.x, p.y, p.z); }
+
+std::string in_words(const Box& box) {
+  const Vec3 size = box.size(), at = box.centre();
+  return fmt::format("{:.1f} × {:.1f} × {:.1f} m at {:.2f},{:.2f}", size.x, size.y, size.z, at.x, at.y);
+}
+
+nlohmann::json to_json(const Vec3& p) { return {p.x, p.y, p.z}; }
+nlohmann::json to_json(const Box& box) { return {{"low", to_json(box.min)}, {"high", to_json(box.max)}}; }
+
+// Everything that a command knows when it answers.
+struct Day {
+  std::vector<TakenScan> scans;
+  std::vector<SiteStation> planned;
+  std::vector<std::string> planned_names;
+  SiteChanges changes;
+  NextAnswer answer;
+
+  // Taken scans by the planned station that they are of, else by the name in their file; then the next stations.
+  std::vector<std::string> names() const {
+    std::vector<std::string> given;
+    std::vector<PlacedStation> all;
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      const auto plan = std::ranges::find(answer.planned, std::optional(s), &PlannedStation::taken_as);
+      given.push_back(plan == answer.planned.end()
+                          ? scans[s].name
+                          : planned_names[static_cast<std::size_t>(plan - answer.planned.begin())]);
+      all.emplace_back().existing = true;
+    }
+    std::size_t fresh = 0;
+    for (const NextStation& next : answer.next) {
+      given.push_back(next.planned ? planned_names[*next.planned] : "N" + std::to_string(++fresh));
+      all.push_back(next.station);
+    }
+    return station_names(all, given);
+  }
+};
+
+std::string scans_text(const Day& day, const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t s = 0; s < day.scans.size(); ++s) {
+    const TakenScan& scan = day.scans[s];
+    text += fmt::format("taken      {} at {}: {} points, alone {} of what is attainable", names[s], metres(scan.head),
+                        grouped(scan.points), percent(day.answer.captured_by[s]));
+    text += scan.fit.fitted ? fmt::format("; moved by {:.0f} mm and {:.2f}° onto the model, {:.0f} mm from it\n",
+                                          1e3 * scan.fit.shift_m, scan.fit.turn.in_degrees(), 1e3 * scan.fit.residual_m)
+                            : "; it " + scan.fit.why + "\n";
+    if (scan.fit.fitted && scan.fit.near_share < kSurelyNear)
+      text += fmt::format("{:11}only {} of its points are near the model: is its pose right?\n", "",
+                          percent(scan.fit.near_share));
+  }
+  return text;
+}
+
+std::string missing_text(const Day& day) {
+  const NextAnswer& answer = day.answer;
+  std::string text = fmt::format("captured   {} ± {} of what is attainable\n", percent(answer.captured.value),
+                                 percent(answer.captured.standard_error));
+  std::size_t told = 0, others = 0;
+  double rest = 0;
+  for (std::size_t k = 0; k < day.changes.things.size(); ++k) {
+    const Box& box = day.changes.things[k].box;
+    const Vec3 size = box.size();
+    if (told >= kToldThings || (answer.hidden_by[k] < kLittle && std::max({size.x, size.y, size.z}) < kLargeThing_m)) {
+      rest += answer.hidden_by[k], ++others;
+      continue;
+    }
+    text += fmt::format("{:11}a thing of {} is not in the model and hides {}\n", told++ == 0 ? "found" : "",
+                        in_words(box), percent(answer.hidden_by[k]));
+  }
+  if (others > 0)
+    text += fmt::format("{:11}{} {}thing{} not in the model, {} hidden\n", told == 0 ? "found" : "", others,
+                        told == 0 ? "small " : "smaller ", others == 1 ? " is" : "s are", percent(rest));
+  bool first = true;
+  for (const SeenThrough& opening : day.changes.seen_through) {
+    text += fmt::format("{:11}\"{}\" is in the model, and scans saw through {} of it; {}\n", first ? "open" : "",
+                        opening.mesh, in_words(opening.box),
+                        opening.removed ? "it counts as open" : "it still counts as closed");
+    first = false;
+  }
+  return text + fmt::format("missing    {} that no scan has seen well enough yet\n", percent(answer.not_seen));
+}
+
+std::string planned_text(const Day& day) {
+  std::string text;
+  for (std::size_t k = 0; k < day.planned.size(); ++k) {
+    const PlannedStation& one = day.answer.planned[k];
+    const std::string head = fmt::format("{:11}{} ", k == 0 ? "plan" : "", day.planned_names[k]);
+    if (one.taken_as)
+      text += head + "is taken\n";
+    else if (one.status != StationStatus::ok)
+      text += head + explain(one.status) + ", as the site was found: leave it out\n";
+    else if (one.chosen)
+      text += head + fmt::format("is worth it: it adds {} now\n", percent(one.gain));
+    else if (one.gain < kWorthless)
+      text += head + fmt::format("is no longer worth it: it would add {}\n", percent(one.gain));
+    else
+      text += head + fmt::format("is not needed with the next stations: alone it would add {}\n", percent(one.gain));
+  }
+  return text;
+}
+
+std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config,
+                      const SearchArea& area) {
+  const NextAnswer& answer = day.answer;
+  std::string text;
+  for (std::size_t k = 0; k < answer.next.size(); ++k) {
+    const NextStation& next = answer.next[k];
+    text += fmt::format("{:11}{}. {} at {} adds {}, then {}", k == 0 ? "next" : "", k + 1, names[day.scans.size() + k],
+                        metres(next.station.position), percent(next.gain), percent(next.captured));
+    if (config.link > 0)
+      text += next.linked_to && next.overlap >= config.link
+                  ? fmt::format("; linked to {} by {:.2f}", names[*next.linked_to], next.overlap)
+                  : fmt::format("; not linked, its best overlap is {:.2f}: use targets", next.overlap);
+    text += "\n";
+  }
+  if (answer.next.empty() && answer.enough)
+    text += fmt::format("next       nothing: {} is captured, and all scans are linked\n", percent(config.capture));
+  if (!answer.enough)
+    text += fmt::format("to do      {}\n",
+                        answer.linked ? fmt::format("no {} further stations reach {}: the best have {}", config.most,
+                                                    percent(config.capture), percent(answer.captured_then))
+                                      : fmt::format("no choice links all scans by an overlap of {:g}: use targets, or "
+                                                    "ask for less with --link",
+                                                    config.link));
+  for (const SummaryLine& line : ground_lines(area)) text += fmt::format("{:11}{}\n", line.heading, line.text);
+  if (!answer.next.empty())
+    text += fmt::format("on site    about {:.0f} min for {} station{}\n", answer.visit.minutes, answer.next.size(),
+                        answer.next.size() == 1 ? "" : "s");
+  return text;
+}
+
+nlohmann::json next_json(const Day& day, const std::vector<std::string>& names, const Site& site,
+                         const NextConfig& config) {
+  const NextAnswer& answer = day.answer;
+  nlohmann::json taken = nlohmann::json::array(), things = nlohmann::json::array(), open = nlohmann::json::array(),
+                 planned = nlohmann::json::array(), next = nlohmann::json::array();
+  for (std::size_t s = 0; s < day.scans.size(); ++s) {
+    const TakenScan& scan = day.scans[s];
+    taken.push_back({{"name", names[s]},
+                     {"scan", scan.name},
+                     {"sensor", scan.sensor},
+                     {"position", to_json(scan.head)},
+                     {"points", scan.points},
+                     {"captured_alone", answer.captured_by[s]},
+                     {"fitted", scan.fit.fitted},
+                     {"shift", scan.fit.shift_m},
+                     {"turn", scan.fit.turn.in_degrees()},
+                     {"residual", scan.fit.residual_m},
+                     {"near_model", scan.fit.near_share}});
+    if (!scan.fit.fitted) taken.back()["why_not_fitted"] = scan.fit.why;
+  }
+  for (std::size_t k = 0; k < day.changes.things.size(); ++k) {
+    const FoundThing& thing = day.changes.things[k];
+    things.push_back({{"box", to_json(thing.box)},
+                      {"points", thing.points},
+                      {"scans", thing.scans},
+                      {"hides", answer.hidden_by[k]}});
+  }
+  for (const SeenThrough& one : day.changes.seen_through)
+    open.push_back(
+        {{"node", one.mesh}, {"box", to_json(one.box)}, {"area", one.area_m2}, {"counts_as_open", one.removed}});
+  for (std::size_t k = 0; k < day.planned.size(); ++k) {
+    const PlannedStation& one = answer.planned[k];
+    planned.push_back({{"name", day.planned_names[k]},
+                       {"status", to_string(one.status)},
+                       {"taken", one.taken_as ? nlohmann::json(names[*one.taken_as]) : nullptr},
+                       {"adds", one.gain},
+                       {"next", one.chosen}});
+  }
+  for (std::size_t k = 0; k < answer.next.size(); ++k) {
+    const NextStation& one = answer.next[k];
+    next.push_back({{"name", names[day.scans.size() + k]},
+                    {"position", to_json(one.station.position)},
+                    {"ground", to_json(one.station.ground)},
+                    {"planned", one.planned.has_value()},
+                    {"adds", one.gain},
+                    {"captured_then", one.captured},
+                    {"linked_to", one.linked_to ? nlohmann::json(names[*one.linked_to]) : nullptr},
+                    {"overlap", one.overlap}});
+  }
+  return {{"captured", answer.captured.value},
+          {"captured_se", answer.captured.standard_error},
+          {"attainable", answer.attainable.value},
+          {"attainable_se", answer.attainable.standard_error},
+          {"not_seen", answer.not_seen},
+          {"captured_then", answer.captured_then},
+          {"enough", answer.enough},
+          {"linked", answer.linked},
+          {"minutes_on_site", answer.next.empty() ? 0 : answer.visit.minutes},
+          {"candidates", answer.candidates},
+          {"taken", taken},
+          {"not_in_model", things},
+          {"seen_through", open},
+          {"planned", planned},
+          {"next", next},
+          {"seed", site.simulator_config().seed},
+          {"options", options_of([&] {
+             Settings all = site.settings();
+             const Settings own = settings(config);
+             all.insert(all.end(), own.begin(), own.end());
+             return all;
+           }())},
+          {"version", version()}};
+}
+
+void write_files(const std::filesystem::path& folder, const Day& day, const std::vector<std::string>& names,
+                 Site& found, const nlohmann::json& json) {
+  make_folder(folder);
+  write_text(folder / "next.json", json.dump(2) + "\n");
+  std::vector<PlacedStation> next, all;
+  for (const TakenScan& scan : day.scans) {
+    all.push_back(found.place_head(scan.head).station);
+    all.back().existing = true;
+  }
+  for (const NextStation& one : day.answer.next) next.push_back(one.station), all.push_back(one.station);
+  const std::vector<std::string> next_names(names.begin() + static_cast<std::ptrdiff_t>(day.scans.size()), names.end());
+  write_stations_csv(folder / "stations.csv", next, found.scanners());
+  if (!next.empty()) write_stations(folder / "stations.dxf", next, next_names, {}, found);
+  draw_plan_view(folder / "plan.png", found, all, {},
+                 fmt::format("Captured {}; next: {}", percent(day.answer.captured.value),
+                             next.empty() ? "nothing" : next_names.front()),
+                 names);
+}
+
+int next(CLI::App& command, NextOptions& options, Program& program) {
+  Site site = open_site(command, options.site);
+  if (!options.scans) throw Error(Errc::invalid_argument, "next: which scans were taken? Give --scans FILE_OR_DIR");
+  Day day;
+  if (command.count("--station") == 0) options.planned.typed.clear();  // those of a scene are no plan
+  const bool plan = options.planned.file || !options.planned.typed.empty();
+  if (plan) day.planned = place(site, options.planned.read(max_stations)), day.planned_names = names_of(day.planned);
+  site.area();  // an error now, not behind the scans
+
+  ProgressLine line(program.console, "reading the scans");
+  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
+  day.scans = read_taken_scans(*options.scans);
+  spdlog::info("{}: {} scan{}", *options.scans, day.scans.size(), day.scans.size() == 1 ? "" : "s");
+  line.set_label("fitting the scans to the model");
+  if (!fit_to_model(site, day.scans, options.config.tolerance_m, progress)) throw Stopped{};
+  line.set_label("looking for what is not in the model");
+  day.changes = changes_of(site, day.scans, options.config.tolerance_m, progress);
+  if (program.stop.stop_requested()) throw Stopped{};
+
+  Site found = changed_site(site, day.changes);
+  Simulator& simulator = build_simulator(found, program);
+  tell_engine(simulator);
+  tell_grid(simulator);
+  line.set_label("choosing the next stations");
+  std::optional<NextAnswer> answer =
+      next_stations(found, day.scans, day.changes, placed_of(day.planned), options.config, progress);
+  if (!answer) throw Stopped{};
+  day.answer = std::move(*answer);
+
+  const std::vector<std::string> names = day.names();
+  const std::filesystem::path folder = options.output.value_or("next");
+  const nlohmann::json json = next_json(day, names, found, options.config);
+  write_files(folder, day, names, found, json);
+  if (options.json)
+    program.console.print(json);
+  else
+    program.console.print(scans_text(day, names) + missing_text(day) + planned_text(day) +
+                          next_text(day, names, options.config, found.area()) + "results in " + folder.string() + "\n");
+  return day.answer.enough ? exit_ok : exit_unmet;
+}
+
+}  // namespace
+
+void add_next(CLI::App& app, Program& program) {
+  add_command<NextOptions>(app, program, "next", "Where to stand next, by the scans that were taken", next);
+}
+
+}  // namespace vantage::cli

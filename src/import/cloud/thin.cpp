@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The points of each scan, thinned: one for each small cell around its scanner, with the number of points that it
+// stands for.
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "import/cloud/cell_grid.hpp"
+#include "import/cloud/convert.hpp"
+#include "import/cloud/points.hpp"
+#include "import/glb_bytes.hpp"
+#include "import/program.hpp"
+
+namespace vantage::importer {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kFinest_m = 1e-4, kCoarsest_m = 10;
+constexpr std::size_t kRecord = 4 * sizeof(std::uint32_t);  // x, y, z, count
+
+// All scans with cells of one size. Empty if they would take more than `memory` bytes.
+class ThinScans {
+ public:
+  ThinScans(PointSource& source, double cell_m, double memory) : source_(source), cell_m_(cell_m), memory_(memory) {}
+
+  std::optional<std::string> run() {
+    source_.read([&](const PointBlock& block) {
+      if (too_many_) return;
+      if (block.scan != scan_ || !grid_) {
+        flush();
+        scan_ = block.scan;
+        grid_.emplace(source_.scans()[scan_].position, cell_m_);
+      }
+      total_ += block.positions.size();
+      if (!source_.scans()[scan_].posed) return;
+      for (const Eigen::Vector3d& p : block.positions) grid_->add(p, 0, Eigen::Vector3d::Zero());
+      // What is written is copied once.
+      too_many_ =
+          grid_->size() * (CellGrid::bytes_each + 2 * kRecord) + 2.0 * static_cast<double>(records_.size()) > memory_;
+    });
+    if (too_many_) return {};
+    flush();
+    if (scans_.empty()) throw Refused("it does not say from where its scans were taken; export it with their poses");
+    json buffers{{"asset",
+                  {{"version", "2.0"},
+                   {"generator", "vantage-import-cloud"},
+                   {"extras", {{"scans", scans_}, {"cell", cell_m_}}}}}};
+    return glb_bytes(std::move(buffers), records_);
+  }
+
+ private:
+  void flush() {
+    if (!grid_) return;
+    const CloudScan& scan = source_.scans()[scan_];
+    if (scan.posed) {
+      json entry = scan_json(scan);
+      entry["points"] = total_, entry["first"] = records_.size() / kRecord, entry["count"] = grid_->size();
+      scans_.push_back(std::move(entry));
+      for (std::uint32_t k = 0; k < grid_->size(); ++k) add((*grid_)[k]);
+    }
+    grid_.reset();
+    total_ = 0;
+  }
+
+  // Its mean point, from the scanner's head.
+  void add(const Cell& cell) {
+    const Eigen::Vector3d mean = CellGrid::middle_of(CellGrid::index_of(cell)) + cell.moments().mean();
+    std::array<char, kRecord> record;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto value = static_cast<float>(mean[axis] * cell_m_);
+      std::memcpy(record.data() + 4 * axis, &value, sizeof value);
+    }
+    std::memcpy(record.data() + 12, &cell.count, sizeof cell.count);
+    records_.append(record.data(), record.size());
+  }
+
+  PointSource& source_;
+  double cell_m_, memory_;
+  std::optional<CellGrid> grid_;
+  std::uint32_t scan_ = 0;
+  std::uint64_t total_ = 0;  // points of the scan
+  bool too_many_ = false;
+  json scans_ = json::array();
+  std::string records_;
+};
+
+}  // namespace
+
+double thin_cell(const std::string& setting) {
+  constexpr std::string_view kName = "cell=";
+  double cell_m = 0;
+  const char* end = setting.data() + setting.size();
+  if (!setting.starts_with(kName) || std::from_chars(setting.data() + kName.size(), end, cell_m).ptr != end ||
+      !(cell_m >= kFinest_m && cell_m <= kCoarsest_m))
+    throw Refused("the setting " + setting + " is not cell=METRES, from 0.0001 to 10");
+  return cell_m;
+}
+
+std::string thin_scans(const std::filesystem::path& file, const std::string& format, double cell_m) {
+  const std::unique_ptr<PointSource> source = open_source(file, format);
+  for (;; cell_m *= 2)
+    if (auto glb = ThinScans(*source, cell_m, memory_for_cells()).run()) return std::move(*glb);
+}
+
+}  // namespace vantage::importer

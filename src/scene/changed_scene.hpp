@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as it was found: with what stands on site and is not in the model, and without what is in the model alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vantage/scene.hpp"
+
+namespace vantage {
+
+// Name of the mesh that changed_scene() adds.
+inline constexpr const char* kNotInModel = "not in the model";
+
+// Cubic cells, by their index on each axis.
+using SolidCell = std::array<std::int32_t, 3>;
+struct SolidCells {
+  Vec3 corner;  // lower corner of cell (0, 0, 0), survey frame
+  double cell_m = 0.1;
+  std::vector<SolidCell> cells = {};  // ascending, without duplicates
+};
+
+// Returns the scene without the triangles of the meshes `removed`, and with a blocking mesh, the outside of these
+// cells. It keeps its local origin, weights and search area. Throws Error malformed_file if nothing is left to survey.
+Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed);
+
+}  // namespace vantage

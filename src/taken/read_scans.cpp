@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "import/scans.hpp"
+#include "vantage/error.hpp"
+#include "vantage/taken_scans.hpp"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files of scans in a folder, by their names; else the file itself.
+std::vector<fs::path> scan_files(const fs::path& path) {
+  std::error_code failure;
+  if (!fs::exists(path, failure)) throw Error(Errc::io, path.string() + ": there is no such file or folder of scans");
+  if (!fs::is_directory(path, failure)) return {path};
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, failure)) {
+    std::string ending = entry.path().extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".e57" || ending == ".ptx") files.push_back(entry.path());
+  }
+  if (failure) throw Error(Errc::io, path.string() + ": the folder cannot be read: " + failure.message());
+  if (files.empty())
+    throw Error(Errc::malformed_file, path.string() + ": the folder has no scan, no file that ends with .e57 or .ptx");
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+std::vector<TakenScan> read_taken_scans(const fs::path& path, double cell_m) {
+  std::vector<TakenScan> scans;
+  for (const fs::path& file : scan_files(path))
+    for (importers::ThinScan& read : importers::thin_scans(file, cell_m)) {
+      TakenScan scan{.name = std::move(read.scan.name),
+                     .sensor = std::move(read.scan.sensor),
+                     .head = read.scan.head,
+                     .setup = read.scan.setup,
+                     .points = read.points};
+      scan.thinned.reserve(read.thinned.size());
+      for (const importers::ThinPoint& point : read.thinned) scan.thinned.push_back({point.offset, point.points});
+      scans.push_back(std::move(scan));
+    }
+  return scans;
+}
+
+}  // namespace vantage

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A day on a site that differs from its model: the plan that is made anew after each scan, beside the one that is kept.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vantage::bench {
+
+struct DayOptions {
+  std::string scene, folder, scanner = "rtc360@6mm";
+  std::vector<std::string> things;  // x,y,z,x,y,z: boxes that stand there and are not in the model
+  double capture = 0.9, link = 0.3, shift_m = 0.05, turn_deg = 0.5;
+  std::uint64_t most = 20, seed = 1;
+  std::vector<double> steps_deg;
+  void add(CLI::App& command);
+};
+
+void run_day(const DayOptions& options);
+
+}  // namespace vantage::bench
