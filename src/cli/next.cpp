@@ -77,6 +77,16 @@ struct Day {
     }
     return station_names(all, given);
   }
+  // Taken scans as existing stations, then the next ones.
+  std::vector<PlacedStation> stations(Site& found) const {
+    std::vector<PlacedStation> all;
+    for (const TakenScan& scan : scans) {
+      all.push_back(found.place_head(scan.head).station);
+      all.back().existing = true;
+    }
+    for (const NextStation& one : answer.next) all.push_back(one.station);
+    return all;
+  }
 };
 
 std::string scans_text(const Day& day, const std::vector<std::string>& names) {
@@ -143,8 +153,7 @@ std::string planned_text(const Day& day) {
   return text;
 }
 
-std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config,
-                      const SearchArea& area) {
+std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config, Site& found) {
   const NextAnswer& answer = day.answer;
   std::string text;
   for (std::size_t k = 0; k < answer.next.size(); ++k) {
@@ -166,7 +175,8 @@ std::string next_text(const Day& day, const std::vector<std::string>& names, con
                                       : fmt::format("no choice links all scans by an overlap of {:g}: use targets, or "
                                                     "ask for less with --link",
                                                     config.link));
-  for (const SummaryLine& line : ground_lines(area)) text += fmt::format("{:11}{}\n", line.heading, line.text);
+  for (const SummaryLine& line : ground_lines(found.scene(), found.area(), day.stations(found)))
+    text += fmt::format("{:11}{}\n", line.heading, line.text);
   if (!answer.next.empty())
     text += fmt::format("on site    about {:.0f} min for {} station{}\n", answer.visit.minutes, answer.next.size(),
                         answer.next.size() == 1 ? "" : "s");
@@ -251,12 +261,8 @@ void write_files(const std::filesystem::path& folder, const Day& day, const std:
                  Site& found, const nlohmann::json& json) {
   make_folder(folder);
   write_text(folder / "next.json", json.dump(2) + "\n");
-  std::vector<PlacedStation> next, all;
-  for (const TakenScan& scan : day.scans) {
-    all.push_back(found.place_head(scan.head).station);
-    all.back().existing = true;
-  }
-  for (const NextStation& one : day.answer.next) next.push_back(one.station), all.push_back(one.station);
+  const std::vector<PlacedStation> all = day.stations(found);
+  const auto next = std::span(all).subspan(day.scans.size());
   const std::vector<std::string> next_names(names.begin() + static_cast<std::ptrdiff_t>(day.scans.size()), names.end());
   write_stations_csv(folder / "stations.csv", next, found.scanners());
   if (!next.empty()) write_stations(folder / "stations.dxf", next, next_names, {}, found);
@@ -303,7 +309,7 @@ int next(CLI::App& command, NextOptions& options, Program& program) {
     program.console.print(json);
   else
     program.console.print(scans_text(day, names) + missing_text(day) + planned_text(day) +
-                          next_text(day, names, options.config, found.area()) + "results in " + folder.string() + "\n");
+                          next_text(day, names, options.config, found) + "results in " + folder.string() + "\n");
   return day.answer.enough ? exit_ok : exit_unmet;
 }
 
