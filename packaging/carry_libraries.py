@@ -13,9 +13,10 @@ import sys
 import sysconfig
 import tempfile
 
-# PEP 600's list, of which only what occurs here; and Vulkan's loader, which comes with the driver and is looked for at run time.
-OF_THE_SYSTEM = ("ld-linux", "libc.so", "libdl.so", "libexpat.so", "libgcc_s.so", "libm.so", "libpthread.so", "libresolv.so", "librt.so",
-                 "libstdc++.so", "libvulkan.so", "libX11.so", "libXext.so", "libXrender.so", "libz.so", "linux-vdso")
+# Of PEP 600's list what every machine with Python has: libraries of X, which are on it too, are missing on servers. And Vulkan's loader, which
+# comes with the driver and is looked for at run time.
+OF_THE_SYSTEM = ("ld-linux", "libc.so", "libdl.so", "libgcc_s.so", "libm.so", "libpthread.so", "libresolv.so", "librt.so", "libstdc++.so",
+                 "libvulkan.so", "libz.so", "linux-vdso")
 
 
 def output_of(*command):

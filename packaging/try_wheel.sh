@@ -25,7 +25,7 @@ import vantage
 site = vantage.Site.open("/tmp/industrial_20k.glb", engine="embree", step=1, user_size=0.2, spacing=0.1, crs="EPSG:25832")
 plan = site.plan(problem="coverage-overlap-fix", stations=4, population=8, iterations=3)
 plan.write("/tmp/plan")
-site.scan([10, 6, 2])
+site.simulator.scan((10, 6, 2))
 floor = vantage.Scene.load("/tmp/floor.obj", unit="m", up="z")
 print("vantage", vantage.__version__, site, floor)'
 for file in front.json stations.csv stations.dxf plan.png; do
