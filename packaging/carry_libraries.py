@@ -3,7 +3,7 @@
 """packaging/carry_libraries.py WHEEL FOLDER
 
 Writes a copy of a wheel to FOLDER that carries the shared libraries it needs, as auditwheel does, which Debian 12 lacks. Those that every
-Linux has, by the manylinux policy (PEP 600), stay out. The copy is tagged with this machine's C library, the oldest on which it runs.
+Linux has stay out. The copy is tagged with this machine's C library, the oldest on which it runs.
 """
 import os
 import platform
