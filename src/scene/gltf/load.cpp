@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 #include <new>
+#include <string_view>
 
 #include "core/text.hpp"
 #include "import/import.hpp"
@@ -51,6 +52,13 @@ struct Job {
   const MaterialInfo* material = nullptr;
   bool glass = false;
 };
+
+// Whether a member of an object is this text. Comparing JSON with text would allocate where nothing may be thrown.
+bool is_text(const nlohmann::json& object, const char* key, std::string_view text) {
+  const auto member = object.find(key);
+  const auto* const found = member == object.end() ? nullptr : member->get_ptr<const std::string*>();
+  return found && *found == text;
+}
 
 // Whether the transform turns right-handed axes into left-handed ones.
 bool mirrors(const glm::dmat3& m) { return dot(m[0], cross(m[1], m[2])) < 0; }
@@ -151,7 +159,7 @@ class Loader {
     }
     Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
     // A mesh of OBJ, STL or PLY was in no unit and had no axis up.
-    const bool glTF = file_.document().at("asset").value("generator", nlohmann::json()) != "vantage-import-mesh";
+    const bool glTF = !is_text(file_.document().at("asset"), "generator", "vantage-import-mesh");
     if (!prepared()) axes = recognise(raw_, unit, up, glTF);
     if (!axes.question.empty()) throw file_.malformed(axes.question, axes.choices);
     if (!axes.note.empty()) raw_.notes.push_back(axes.note);
@@ -466,7 +474,7 @@ class Loader {
   std::string storey_above(int node, const std::vector<int>& above) const {
     for (std::size_t steps = 0; node >= 0 && steps <= above.size(); ++steps) {  // a cycle was refused
       const nlohmann::json& marks = file_.find("nodes", node, {"extras", "vantage"});
-      if (marks.is_object() && marks.value("class", nlohmann::json()) == "IfcBuildingStorey") {
+      if (marks.is_object() && is_text(marks, "class", "IfcBuildingStorey")) {
         for (const char* key : {"name", "long_name"})
           if (marks.contains(key) && marks[key].is_string()) return marks[key].get<std::string>();
         return file_.model().nodes[static_cast<std::size_t>(node)].name;
