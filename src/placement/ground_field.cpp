@@ -416,7 +416,14 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
     });
   };
   move_to_open(closed, 1);
-  if (open.empty()) move_to_open(small, most_open);
+  if (open.empty()) {
+    move_to_open(small, most_open);
+    // A closet of a closed level is no entrance: what is left closed must not dwarf what is entered.
+    constexpr double least_entered = 0.1;
+    double entered = 0;
+    for (const Candidate& c : open) entered += c.area;
+    if (entered < least_entered * largest) open.clear();
+  }
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
