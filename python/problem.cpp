@@ -166,27 +166,29 @@ std::vector<Requirement> requirements_from(const py::iterable& given, const Surv
   return made;
 }
 
-// Lists become tuples: appending to a copy would be lost silently.
+// A list becomes a tuple: appending to a copy would be lost silently.
+template <class Value>
+auto tuple_of(std::vector<Value> SurveyProblem::*member) {
+  return [member](const SurveyProblem& p) { return py::tuple(py::cast(p.*member)); };
+}
+template <class Value>
+auto from_list(std::vector<Value> SurveyProblem::*member) {
+  return
+      [member](SurveyProblem& p, const py::iterable& given) { p.*member = py::list(given).cast<std::vector<Value>>(); };
+}
+
 Options<SurveyProblem> problem_options() {
   return Options<SurveyProblem>("SurveyProblem")
       .add("name", &SurveyProblem::name, "For tables and pictures.")
       .add("stations_min", &SurveyProblem::stations_min, "Fewest stations to place.")
       .add("stations_max", &SurveyProblem::stations_max, "Most; if it differs from the fewest, the number is searched.")
+      .add<py::iterable>("existing", tuple_of(&SurveyProblem::existing), from_list(&SurveyProblem::existing),
+                         "Heads (x, y, z) of existing stations, survey frame, metres.")
+      .add<py::iterable>("existing_setups", tuple_of(&SurveyProblem::existing_setups),
+                         from_list(&SurveyProblem::existing_setups),
+                         "Their StationSetups, one each; none: upright, with the first scanner.")
       .add<py::iterable>(
-          "existing", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing)); },
-          [](SurveyProblem& p, const py::iterable& given) { p.existing = py::list(given).cast<std::vector<Vec3>>(); },
-          "Heads (x, y, z) of existing stations, survey frame, metres.")
-      .add<py::iterable>(
-          "existing_setups", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing_setups)); },
-          [](SurveyProblem& p, const py::iterable& given) {
-            p.existing_setups = py::list(given).cast<std::vector<StationSetup>>();
-          },
-          "Their StationSetups, one each; none: upright, with the first scanner.")
-      .add<py::iterable>(
-          "scanners", [](const SurveyProblem& p) { return py::tuple(py::cast(p.scanners)); },
-          [](SurveyProblem& p, const py::iterable& given) {
-            p.scanners = py::list(given).cast<std::vector<std::uint32_t>>();
-          },
+          "scanners", tuple_of(&SurveyProblem::scanners), from_list(&SurveyProblem::scanners),
           "Indices into `Simulator.scanners` that each station chooses from, in their order; none: the first.")
       .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
       .add("link_overlap", &SurveyProblem::link_overlap, "Least overlap of a link.")
@@ -194,21 +196,17 @@ Options<SurveyProblem> problem_options() {
       .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: times of a round.")
       .add("targets", &SurveyProblem::targets,
            "Targets to propose; 0: none, None: as few as the registration takes, if `fewest`.")
-      .add<py::iterable>(
-          "existing_targets", [](const SurveyProblem& p) { return py::tuple(py::cast(p.existing_targets)); },
-          [](SurveyProblem& p, const py::iterable& given) {
-            p.existing_targets = py::list(given).cast<std::vector<Target>>();
-          },
-          "Targets and control points that are there.")
+      .add<py::iterable>("existing_targets", tuple_of(&SurveyProblem::existing_targets),
+                         from_list(&SurveyProblem::existing_targets), "Targets and control points that are there.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
       .add("attainable", &SurveyProblem::attainable,
            "Attainable coverage, the denominator of `capture`; a plan finds it.")
       .add<py::iterable>(
-          "objectives", [](const SurveyProblem& p) { return py::tuple(py::cast(p.objectives)); },
+          "objectives", tuple_of(&SurveyProblem::objectives),
           [](SurveyProblem& p, const py::iterable& given) { p.objectives = objectives_from(given, p); },
           "Objectives of the search, or names of built-in ones.")
       .add<py::iterable>(
-          "requirements", [](const SurveyProblem& p) { return py::tuple(py::cast(p.requirements)); },
+          "requirements", tuple_of(&SurveyProblem::requirements),
           [](SurveyProblem& p, const py::iterable& given) { p.requirements = requirements_from(given, p); },
           "Requirements, or texts like 'coverage >= 0.9'.");
 }

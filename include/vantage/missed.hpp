@@ -60,7 +60,7 @@ struct MissedShare {
   double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }
 };
 
-/// What a network captures of a room, and where one can stand in it.
+/// A room, with what a network captures of it and where one can stand in it.
 struct RoomShare {
   MissedShare share = {};  ///< Of the voxels in the room or at its boundary; its node is the room's name.
   double ground_m2 = 0;    ///< Area of the search area in it.

@@ -125,7 +125,7 @@ struct NextStation {
   double overlap = 0;  ///< Scan overlap of that link.
 };
 
-/// What became of a planned station.
+/// A planned station, as it is judged after the scans.
 struct PlannedStation {
   std::optional<std::size_t> taken_as = {};  ///< Scan that was taken there.
   StationStatus status = StationStatus::ok;  ///< On the site as it was found.
@@ -133,7 +133,8 @@ struct PlannedStation {
   bool chosen = false;                       ///< Whether it is among the next stations.
 };
 
-/// What is captured, what is missing, and where to stand next. Shares are of what is attainable on the site as found.
+/// The answer tells what is captured, what is missing, and where to stand next. Shares are of what is attainable on the
+/// site as found.
 struct NextAnswer {
   Estimate captured;                    ///< By the real points.
   Estimate attainable;                  ///< Share of the site's surface that stations can capture.

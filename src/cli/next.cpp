@@ -153,7 +153,8 @@ std::string planned_text(const Day& day) {
   return text;
 }
 
-std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config, Site& found) {
+std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config, Site& found,
+                      std::span<const PlacedStation> stations) {
   const NextAnswer& answer = day.answer;
   std::string text;
   for (std::size_t k = 0; k < answer.next.size(); ++k) {
@@ -175,7 +176,7 @@ std::string next_text(const Day& day, const std::vector<std::string>& names, con
                                       : fmt::format("no choice links all scans by an overlap of {:g}: use targets, or "
                                                     "ask for less with --link",
                                                     config.link));
-  for (const SummaryLine& line : ground_lines(found.scene(), found.area(), day.stations(found)))
+  for (const SummaryLine& line : ground_lines(found.scene(), found.area(), stations))
     text += fmt::format("{:11}{}\n", line.heading, line.text);
   if (!answer.next.empty())
     text += fmt::format("on site    about {:.0f} min for {} station{}\n", answer.visit.minutes, answer.next.size(),
@@ -258,10 +259,9 @@ nlohmann::json next_json(const Day& day, const std::vector<std::string>& names, 
 }
 
 void write_files(const std::filesystem::path& folder, const Day& day, const std::vector<std::string>& names,
-                 Site& found, const nlohmann::json& json) {
+                 Site& found, const std::vector<PlacedStation>& all, const nlohmann::json& json) {
   make_folder(folder);
   write_text(folder / "next.json", json.dump(2) + "\n");
-  const std::vector<PlacedStation> all = day.stations(found);
   const auto next = std::span(all).subspan(day.scans.size());
   const std::vector<std::string> next_names(names.begin() + static_cast<std::ptrdiff_t>(day.scans.size()), names.end());
   write_stations_csv(folder / "stations.csv", next, found.scanners());
@@ -304,12 +304,14 @@ int next(CLI::App& command, NextOptions& options, Program& program) {
   const std::vector<std::string> names = day.names();
   const std::filesystem::path folder = options.output.value_or("next");
   const nlohmann::json json = next_json(day, names, found, options.config);
-  write_files(folder, day, names, found, json);
+  const std::vector<PlacedStation> stations = day.stations(found);
+  write_files(folder, day, names, found, stations, json);
   if (options.json)
     program.console.print(json);
   else
     program.console.print(scans_text(day, names) + missing_text(day) + planned_text(day) +
-                          next_text(day, names, options.config, found) + "results in " + folder.string() + "\n");
+                          next_text(day, names, options.config, found, stations) + "results in " + folder.string() +
+                          "\n");
   return day.answer.enough ? exit_ok : exit_unmet;
 }
 

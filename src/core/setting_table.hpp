@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,13 @@
 #include "vantage/types.hpp"
 
 namespace vantage {
+
+// The help of a setting with its default.
+inline std::string otherwise(const std::string& help, double usual) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.6g", usual);
+  return help + "; " + buffer.data() + " otherwise";
+}
 
 template <class Options>
 class SettingRows {
@@ -45,6 +53,14 @@ class SettingRows {
     return optional(
         std::move(name), std::move(unit), std::move(help), member,
         [interval](const std::string& text, const std::string& what) { return parse_number(text, what, interval); });
+  }
+  // A number that is never empty; the help tells its default.
+  SettingRows& number(std::string name, std::string unit, const std::string& help, double Options::*member,
+                      Interval interval) {
+    return custom(std::move(name), std::move(unit), otherwise(help, Options().*member),
+                  [member, interval](Options& options, const std::string& text, const std::string& what) {
+                    options.*member = parse_number(text, what, interval);
+                  });
   }
   SettingRows& degrees(std::string name, std::string help, Member<Angle> member, Interval interval) {
     return optional(std::move(name), "DEG", std::move(help), member,

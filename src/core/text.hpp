@@ -28,6 +28,13 @@ inline std::string grouped(std::uint64_t value) {
   return text;
 }
 
+// ASCII letters alone.
+inline std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 // "85.3 %" of a share of 0.853.
 inline std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
 

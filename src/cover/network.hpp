@@ -59,7 +59,7 @@ class Joinable {
   void add(std::size_t candidate) { count(candidate, 1); }
   void remove(std::size_t candidate) { count(candidate, -1); }  // REQUIRES: a member
 
-  // Whether a candidate is no member, and no member excludes it.
+  // Tells whether a candidate is no member, and no member excludes it.
   bool may_stand(std::size_t candidate) const { return against_[candidate] == 0; }
   // The same once a member has left, of which it is said whether it excludes the candidate.
   bool may_stand_without(std::size_t candidate, bool leaving_excludes) const {

@@ -72,10 +72,10 @@ class TabuSearch::Ranking {
 struct TabuSearch::Round {
   double coverage;
   NetworkLinks links;
-  Components components;
-  std::vector<std::size_t> components_without;  // their number, by place
-  std::vector<Ranking> rankings;                // by the number of components that a candidate is linked to
-  std::vector<std::size_t> tabu;                // candidates that may not return
+  Components components = {};
+  std::vector<std::size_t> components_without = {};  // their number, by place
+  std::vector<Ranking> rankings = {};                // by the number of components that a candidate is linked to
+  std::vector<std::size_t> tabu = {};                // candidates that may not return
 };
 
 // Candidates that one place looks at by themselves, with their gains there.

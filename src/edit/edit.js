@@ -324,7 +324,7 @@
     return tell(`${Math.hypot(flat, dz).toFixed(3)} m: ${flat.toFixed(3)} m on the plan, ${Math.abs(dz).toFixed(3)} m ${dz < 0 ? 'down' : 'up'}, from ${coordinates(ends[0])} to ${coordinates(ends[1])}.`);
   }
 
-  // What a click at a point in the view does; the point is empty where nothing is.
+  // A click acts on the point below it in the view, which is empty where nothing is.
   function act(place) {
     if (mode === 'measure') {
       if (place) measureTo(place);

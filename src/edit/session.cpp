@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/graph.hpp"
 #include "core/text.hpp"
 #include "placement/nearest_place.hpp"
 #include "report/packed.hpp"
@@ -292,7 +293,7 @@ void EditSession::measure(bool quick) {
   colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
 }
 
-// Of the network and the stations as they stand, as `evaluate_stations` has it for the same attainable counts.
+// The share that the stations capture as they stand, as `evaluate_stations` has it for the same attainable counts.
 std::optional<Estimate> EditSession::captured() const {
   if (!attainable_) return std::nullopt;
   // The voxels of a smaller sample are among those of the larger one.
@@ -321,7 +322,7 @@ std::optional<Estimate> EditSession::registered(const Network& network) const {
   return Estimate{1000 * rms.value, 1000 * rms.standard_error};
 }
 
-// What can be captured from anywhere. False if stopped.
+// Finds what can be captured from anywhere. False if stopped.
 bool EditSession::look(const Progress& progress) {
   const std::uint64_t voxels =
       std::min<std::uint64_t>(options_.attainable_voxels, surveyed_.sample().size());  // constant after construction
@@ -397,27 +398,6 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<st
   message_ = std::move(told);
 }
 
-// The part of each of `n` stations, counted from 0, if station m is taken away; 0 for m itself.
-std::vector<std::size_t> parts_without(const StationGraph& graph, std::size_t n, std::size_t m, double link) {
-  constexpr auto kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> part(n, kNone);
-  part[m] = 0;
-  std::size_t parts = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (part[k] != kNone) continue;
-    std::vector<std::size_t> open{k};
-    part[k] = parts;
-    while (!open.empty()) {
-      const std::size_t at = open.back();
-      open.pop_back();
-      for (std::size_t j = 0; j < n; ++j)
-        if (part[j] == kNone && graph.linked(at, j, link)) part[j] = parts, open.push_back(j);
-    }
-    ++parts;
-  }
-  return part;
-}
-
 // Moves one station at a time so that the network falls into fewer parts, until no move of one does. Does not remember.
 // Returns whether any was moved. Links are those of the sample, from places spread evenly over the ground.
 bool EditSession::mend(const Progress& progress) {
@@ -444,13 +424,14 @@ bool EditSession::mend(const Progress& progress) {
     std::vector<Move> moves;
     for (std::size_t m = 0; m < n && !progress.stopped(); ++m) {
       if (stations_[m].locked) continue;
-      const std::vector<std::size_t> part = parts_without(graph, n, m, options_.link);
-      const std::size_t others = 1 + *std::ranges::max_element(part);
+      // Without its links; it is one of the components.
+      const Components part = components(
+          n, [&](std::size_t i, std::size_t j) { return i != m && j != m && graph.linked(i, j, options_.link); });
       for (std::size_t p = 0; p < places_.size(); ++p) {
         std::set<std::size_t> joined;
         for (std::size_t k = 0; k < n; ++k)
-          if (k != m && graph.linked(n + p, k, options_.link)) joined.insert(part[k]);
-        const std::size_t parts = others - joined.size() + 1;
+          if (k != m && graph.linked(n + p, k, options_.link)) joined.insert(part.of[k]);
+        const std::size_t parts = part.count - joined.size();
         if (parts >= parts_now()) continue;
         const Vec3 by = places_[p].position - stations_[m].placed.position;
         moves.push_back({m, p, parts, std::sqrt(dot(by, by))});

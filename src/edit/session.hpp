@@ -34,7 +34,7 @@ struct EditOptions {
   std::uint64_t link_voxels = 4'000;  // of all surfaces, for scan overlaps until every ray is requested
   std::size_t cells = 20'000;         // of the coloured surface, at most
   double improve_seconds = 10;        // of one short search
-  // Of the sample on which attainable coverage is looked at when the session begins; 0: it is not.
+  // Size of the sample on which the session looks at attainable coverage when it begins; 0: it does not.
   std::uint64_t attainable_voxels = CandidateConfig().sample_voxels;
   std::uint64_t registration_voxels = 20'000;  // of the sample by which the registration error is estimated
   RegistrationOptions registration = {};

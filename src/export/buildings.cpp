@@ -40,16 +40,11 @@ BuildingMap buildings_of(const Scene& scene, const SearchMesh& mesh) {
   const double origin_z = scene.data().origin.z;
   enum : char { none, open, covered };
   std::vector<char> ground(map.building.size(), none);
-  for (const auto& t : mesh.triangles) {
-    std::array<MapPoint, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) c[k] = map.window.at(mesh.positions[t[k]]);
-    for_each_pixel(map.window, c, [&](std::size_t pixel_index, const std::array<double, 3>& weights) {
-      double z = 0;
-      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+  for (const auto& t : mesh.triangles)
+    for_each_pixel(map.window, mesh, t, 0, [&](std::size_t pixel_index, double z) {
       const bool roofed = static_cast<double>(top.z[pixel_index]) + origin_z > z + kRoof_m;
       ground[pixel_index] = std::max(ground[pixel_index], static_cast<char>(roofed ? covered : open));
     });
-  }
   // Covered ground and what is near to it, without open ground.
   std::vector<bool> near(ground.size(), false);
   for (std::ptrdiff_t y = 0; y < rows; ++y)

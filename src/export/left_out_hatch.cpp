@@ -18,13 +18,9 @@ bool hatch_left_out(std::vector<std::uint32_t>& pixels, const HeightBuffer& heig
   std::vector<std::uint8_t> shows(pixels.size(), 0);
   const auto mark = [&](const auto& mesh, std::uint8_t as) {
     for (const auto& t : mesh.triangles) {
-      std::array<MapPoint, 3> c;
-      for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
       const double middle = (mesh.positions[t[0]].z + mesh.positions[t[1]].z + mesh.positions[t[2]].z) / 3;
       if (level && !level->holds(middle)) continue;
-      for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-        double z = -origin_z;
-        for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+      for_each_pixel(window, mesh, t, -origin_z, [&](std::size_t pixel, double z) {
         if (std::abs(double{heights.z[pixel]} - z) <= kHidden_m) shows[pixel] = as;
       });
     }

@@ -49,15 +49,8 @@ GroundHeights heights_of(const SearchMesh& mesh) {
                                   .rows = static_cast<std::size_t>(box.size().y / cell) + 1},
                        .cells = {}};
   ground.cells.resize(ground.window.columns * ground.window.rows);
-  for (const auto& t : mesh.triangles) {
-    std::array<MapPoint, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) c[k] = ground.window.at(mesh.positions[t[k]]);
-    for_each_pixel(ground.window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-      double z = 0;
-      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
-      ground.cells[pixel].push_back(z);
-    });
-  }
+  for (const auto& t : mesh.triangles)
+    for_each_pixel(ground.window, mesh, t, 0, [&](std::size_t pixel, double z) { ground.cells[pixel].push_back(z); });
   for (auto& heights : ground.cells) std::sort(heights.begin(), heights.end());
   return ground;
 }

@@ -59,15 +59,10 @@ void paint_section(std::vector<std::uint32_t>& pixels, const Section& section, c
 std::vector<float> cuts_above(const SearchMesh& mesh, const MapWindow& window, double above, double origin_z) {
   constexpr float kNone = std::numeric_limits<float>::lowest(), kFar = std::numeric_limits<float>::max();
   std::vector<float> cuts(window.columns * window.rows, kNone), away(cuts.size(), kFar);
-  for (const auto& t : mesh.triangles) {
-    std::array<MapPoint, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
-    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-      double z = above - origin_z;
-      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+  for (const auto& t : mesh.triangles)
+    for_each_pixel(window, mesh, t, above - origin_z, [&](std::size_t pixel, double z) {
       cuts[pixel] = std::max(cuts[pixel], static_cast<float>(z)), away[pixel] = 0;
     });
-  }
   // Distances by steps along rows, columns and diagonals, forth and back.
   const auto columns = static_cast<std::ptrdiff_t>(window.columns), rows = static_cast<std::ptrdiff_t>(window.rows);
   const auto sweep = [&](std::ptrdiff_t step) {

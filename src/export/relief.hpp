@@ -78,4 +78,18 @@ std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacit
 // Halves both sides by averaging two by two pixels. REQUIRES: even numbers of columns and rows.
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns);
 
+// Calls put(pixel, z) for each pixel of the window whose centre lies in triangle `t` of a mesh; z is `from` plus the
+// triangle's height there.
+template <class Mesh, class Put>
+void for_each_pixel(const MapWindow& window, const Mesh& mesh, const std::array<std::uint32_t, 3>& t, double from,
+                    Put&& put) {
+  std::array<MapPoint, 3> c;
+  for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
+  for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+    double z = from;
+    for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+    put(pixel, z);
+  });
+}
+
 }  // namespace vantage

@@ -17,16 +17,11 @@ enum Cover : std::uint8_t { none, hidden, shown };
 std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z, const SearchMesh& mesh) {
   const MapWindow& window = heights.window;
   std::vector<std::uint8_t> cover(window.columns * window.rows, none);
-  for (const auto& t : mesh.triangles) {
-    std::array<MapPoint, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
-    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-      double z = -origin_z;
-      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+  for (const auto& t : mesh.triangles)
+    for_each_pixel(window, mesh, t, -origin_z, [&](std::size_t pixel, double z) {
       const bool shows = !(double{heights.z[pixel]} > z + kHidden_m);
       cover[pixel] = std::max<std::uint8_t>(cover[pixel], shows ? shown : hidden);
     });
-  }
   return cover;
 }
 

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "placement/mesh_tree.hpp"
+#include "placement/place_head.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
 #include "vantage/placement.hpp"
@@ -11,8 +12,8 @@ namespace vantage {
 
 namespace {
 
-// Clearance of head and mast, as shares of the security volume's radius.
-constexpr double head_share = 0.2, mast_share = 0.1;
+// Clearance of the mast, as a share of the security volume's radius.
+constexpr double mast_share = 0.1;
 
 }  // namespace
 

@@ -13,12 +13,6 @@ std::string list_of(std::span<const std::string> names) {
   return text;
 }
 
-std::string otherwise(const std::string& help, double usual) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.6g", usual);
-  return help + "; " + buffer.data() + " otherwise";
-}
-
 constexpr Interval share{.low = 0, .high = 1};
 
 std::vector<std::string> names_in(const std::string& text) {
@@ -27,29 +21,18 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-template <class Options>
-auto number_of(double Options::*member, Interval interval) {
-  return [member, interval](Options& options, const std::string& text, const std::string& what) {
-    options.*member = parse_number(text, what, interval);
-  };
-}
-
 }  // namespace
 
 const SettingTable<OnSiteOptions>& on_site_settings() {
   static const SettingTable<OnSiteOptions> table =
       SettingRows<OnSiteOptions>()
           .group("Problem")
-          .custom("set-up", "MIN",
-                  otherwise("Minutes at each station besides the scan itself", OnSiteOptions().set_up_min),
-                  number_of(&OnSiteOptions::set_up_min, not_negative))
-          .custom("photos", "MIN",
-                  otherwise("Minutes at each station for pictures, where the scanner takes some",
-                            OnSiteOptions().photos_min),
-                  number_of(&OnSiteOptions::photos_min, not_negative))
-          .custom("walking", "M/S",
-                  otherwise("Walking speed with the scanner, in metres per second", OnSiteOptions().walking_m_per_s),
-                  number_of(&OnSiteOptions::walking_m_per_s, positive))
+          .number("set-up", "MIN", "Minutes at each station besides the scan itself", &OnSiteOptions::set_up_min,
+                  not_negative)
+          .number("photos", "MIN", "Minutes at each station for pictures, where the scanner takes some",
+                  &OnSiteOptions::photos_min, not_negative)
+          .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
+                  &OnSiteOptions::walking_m_per_s, positive)
           .take();
   return table;
 }
@@ -57,22 +40,14 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
 const SettingTable<TargetOptions>& target_settings() {
   using Options = TargetOptions;
   static const SettingTable<Options> table = [] {
-    const Options usual;
-    const auto number = [](double Options::*member, Interval interval) {
-      return [member, interval](Options& options, const std::string& text, const std::string& what) {
-        options.*member = parse_number(text, what, interval);
-      };
-    };
     return SettingRows<Options>()
         .group("Targets")
-        .custom("target-diameter", "M", otherwise("Diameter of a target, a sphere or checkerboard", usual.diameter_m),
-                number(&Options::diameter_m, {.low = 0.01, .high = 2}))
-        .custom("target-height", "M",
-                otherwise("Height of a proposed target's centre above the ground", usual.height_m),
-                number(&Options::height_m, {.low = 0.05, .high = 10}))
-        .custom("target-sigma", "M",
-                otherwise("Standard deviation of a target's centre in a scan, besides range noise", usual.sigma_m),
-                number(&Options::sigma_m, {.low = 1e-5, .high = 0.1}))
+        .number("target-diameter", "M", "Diameter of a target, a sphere or checkerboard", &Options::diameter_m,
+                {.low = 0.01, .high = 2})
+        .number("target-height", "M", "Height of a proposed target's centre above the ground", &Options::height_m,
+                {.low = 0.05, .high = 10})
+        .number("target-sigma", "M", "Standard deviation of a target's centre in a scan, besides range noise",
+                &Options::sigma_m, {.low = 1e-5, .high = 0.1})
         .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
                 "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
                 [](Options& options, const std::string& text, const std::string& what) {
@@ -229,8 +204,8 @@ const SettingTable<PlanConfig>& plan_settings() {
                  10'000)
           .count("stagnation", "K", "Stop when nothing has improved for K iterations", &Config::stagnation_iterations,
                  1, 100'000'000)
-          .custom("sigma", "S", "First step, as a share of the search area; 0.2 otherwise",
-                  number_of(&Config::sigma0, {.low = 0, .high = 10, .low_included = false}))
+          .number("sigma", "S", "First step, as a share of the search area", &Config::sigma0,
+                  {.low = 0, .high = 10, .low_included = false})
           .custom("scheme", "SCHEME", "Scheme of MO-CMA-ES: steady-state or generational",
                   [](Config& c, const std::string& text, const std::string& what) {
                     if (text != "steady-state" && text != "generational")

@@ -2,7 +2,6 @@
 // Reads data/scanners.json, which the build embeds, and files of that form (see docs/scanners.md). Strict: a figure
 // without a known source, or an unknown name, is an error, so that a typing mistake cannot pass as a scanner.
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -18,6 +17,7 @@
 
 #include "core/closest_name.hpp"
 #include "core/read_file.hpp"
+#include "core/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scanner.hpp"
 
@@ -156,12 +156,6 @@ std::string names_of(const Object& object) {
   std::string names;
   for (const auto& [name, ignored] : object.items()) names += (names.empty() ? "" : ", ") + name;
   return names;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 // The scanner `key` at `setting`; empty: its default setting.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/text.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
@@ -62,8 +63,7 @@ bool is_plain_leaf(const DoorLeaf& leaf) {
 }
 
 bool names_a_door(const std::string& name) {
-  std::string low = name;
-  std::ranges::transform(low, low.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string low = lower_case(name);
   const auto has = [&](std::initializer_list<std::string_view> words) {
     return std::ranges::any_of(words, [&](std::string_view word) { return low.find(word) != std::string::npos; });
   };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/beyond.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage {
@@ -26,9 +27,6 @@ double to_segment(double x, double y, const std::array<double, 2>& a, const std:
   return std::hypot(x - a[0] - share * dx, y - a[1] - share * dy);
 }
 
-// Distance outside an interval.
-double beyond(double value, double low, double high) { return std::max({low - value, value - high, 0.0}); }
-
 }  // namespace
 
 double floor_area(const Room& room) {
@@ -52,7 +50,7 @@ double floor_area(const Room& room) {
 double distance_to(const Room& room, const Vec3& point, double most_m) {
   const Box& box = room.box;
   const double up = beyond(point.z, box.min.z, box.max.z);
-  const double apart = std::hypot(beyond(point.x, box.min.x, box.max.x), beyond(point.y, box.min.y, box.max.y), up);
+  const double apart = beyond(point, box);
   if (!(apart <= most_m)) return most_m;
   if (room.outline.empty() || holds(room.outline, point.x, point.y)) return apart;
   double level = most_m;

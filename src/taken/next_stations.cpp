@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/beyond.hpp"
 #include "scene/changed_scene.hpp"
 #include "taken/model_surface.hpp"
 #include "taken/real_counts.hpp"
@@ -180,10 +181,7 @@ void explain_missing(Site& found, const Table& table, std::span<const std::uint3
       const Vec3 at = to_vec3(head + met->distance * way);
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < changes.things.size(); ++k) {
-        const Box& box = changes.things[k].box;
-        const auto outside = [](double x, double low, double high) { return std::max({low - x, 0.0, x - high}); };
-        const double distance = std::hypot(outside(at.x, box.min.x, box.max.x), outside(at.y, box.min.y, box.max.y),
-                                           outside(at.z, box.min.z, box.max.z));
+        const double distance = beyond(at, changes.things[k].box);
         if (distance < nearest) nearest = distance, hidden_by[e] = k;
       }
       return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "core/text.hpp"
 #include "import/scans.hpp"
 #include "vantage/error.hpp"
 #include "vantage/taken_scans.hpp"
@@ -19,8 +19,7 @@ std::vector<fs::path> scan_files(const fs::path& path) {
   if (!fs::is_directory(path, failure)) return {path};
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, failure)) {
-    std::string ending = entry.path().extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lower_case(entry.path().extension().string());
     if (ending == ".e57" || ending == ".ptx") files.push_back(entry.path());
   }
   if (failure) throw Error(Errc::io, path.string() + ": the folder cannot be read: " + failure.message());

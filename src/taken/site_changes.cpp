@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -97,8 +98,7 @@ double longest(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
 
 // What one point says.
 struct PointSays {
-  enum class Kind : std::uint8_t { near, off, far } kind = Kind::far;
-  std::uint32_t mesh = 0;  // the nearest, if near
+  std::optional<std::uint32_t> near = {};  // the nearest mesh, if it is near
   bool through = false;
   std::uint32_t through_mesh = 0;
   glm::dvec3 met{};  // where the ray went through
@@ -106,10 +106,7 @@ struct PointSays {
 
 PointSays judge(const ModelSurface& model, const glm::dvec3& head, const glm::dvec3& p, double tolerance_m) {
   PointSays says;
-  if (const auto near = model.nearest(p, tolerance_m))
-    says.kind = PointSays::Kind::near, says.mesh = near->mesh;
-  else
-    says.kind = PointSays::Kind::off;
+  if (const auto near = model.nearest(p, tolerance_m)) says.near = near->mesh;
   const double range = length(p - head);
   if (!(range > kFromScanner_m)) return says;
   const glm::dvec3 way = (p - head) / range;
@@ -141,8 +138,8 @@ class ChangeFinder {
                       [&](std::size_t k) { says[k] = judge(model_, head, place(k), cell_m_); });
     for (std::size_t k = 0; k < says.size(); ++k) {
       const std::uint64_t points = scan.thinned[k].points;
-      if (says[k].kind == PointSays::Kind::off) off_.at(place(k)).add(place(k), points, number);
-      if (says[k].kind == PointSays::Kind::near) of(seen_, says[k].mesh).at(place(k)).add(place(k), points, number);
+      FoundCells& cells = says[k].near ? of(seen_, *says[k].near) : off_;
+      cells.at(place(k)).add(place(k), points, number);
       if (says[k].through) of(through_, says[k].through_mesh).at(says[k].met).add(says[k].met, points, number);
     }
   }

@@ -44,6 +44,18 @@ double left_out(const SearchArea& area, LeftOutReason reason) {
   return 0;
 }
 
+// A level without a way out is entered, though a closet beside it has a door to the outside.
+TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
+  test::Builder builder;
+  builder.floor(-20, -15, 20, 15, 0).box({-20.2, -15.2, 2.8}, {24.6, 15.2, 3});
+  builder.box({-20.2, -15.2, 0}, {-20, 15.2, 2.8}).box({20, -15.2, 0}, {20.2, 15.2, 2.8});
+  builder.box({-20, -15.2, 0}, {20, -15, 2.8}).box({-20, 15, 0}, {20, 15.2, 2.8});
+  builder.floor(20.2, 0, 24.4, 4, 0).box({20.2, -0.2, 0}, {24.6, 0, 2.8}).box({20.2, 4, 0}, {24.6, 4.2, 2.8});
+  builder.box({24.4, 0, 0}, {24.6, 1.5, 2.8}).box({24.4, 2.5, 0}, {24.6, 4, 2.8});
+  const SearchArea area = SearchArea::build(builder.scene());
+  EXPECT_GT(true_area(area.mesh()), 1000);
+}
+
 // The assumed person is 0.6 m wide, so areas end 0.3 m before obstacles, up to the size of a piece.
 TEST(Walkable, GroundOfTwoTrianglesHasAHoleUnderABoxAndNoPlaceOnIt) {
   const Scene scene = test::Builder().floor(-10, -10, 10, 10, 0).box({2, 2, 1}, {6, 6, 1.5}).scene();
