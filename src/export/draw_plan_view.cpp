@@ -183,9 +183,13 @@ std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const
        tick_labels(nice_ticks(window.min.y, window.max.y, std::max(2, static_cast<int>(height / 95)))))
     labels = std::max(labels, scratch.text_width(label, {.size = 12.5}));
   const double left = std::max(86.0, labels + 46);
-  const auto map_at = [&](std::size_t k) {
-    return Rect{left + static_cast<double>(k) * (width + left + 10), kTop, width, height};
-  };
+  double words = 0;  // below the title; a level is cut about as high as its floor is
+  for (std::size_t k = first; floors && k < first + count; ++k)
+    words =
+        std::max(words, scratch.text_width(level_words(levels, k) + ", cut at z = " + fixed(levels[k].floor, 2) + " m",
+                                           {.size = 12.5}));
+  const double apart = std::max(width + left + 10, words + 30);
+  const auto map_at = [&](std::size_t k) { return Rect{left + static_cast<double>(k) * apart, kTop, width, height}; };
   const double right = map_at(count - 1).right();
 
   const auto draw = [&](Canvas& canvas) {
@@ -201,9 +205,7 @@ std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const
     return bar;
   };
   const double title = scratch.text_width(view.title, {.size = 17, .bold = true});
-  const double subtitle =
-      scratch.text_width("Level 10 of 10, floor at z = 1000.00 m, cut at z = 1000.00 m", {.size = 12.5});
-  const double page_width = std::max({right + kGap + kPanel, left + title + 20, map_at(count - 1).x + subtitle + 20});
+  const double page_width = std::max({right + kGap + kPanel, left + title + 20, map_at(count - 1).x + words + 20});
   constexpr double kLongestLegend = 700;
   auto page = std::make_unique<Canvas>(page_width, kTop + height + kBottom + kLongestLegend);
   const double bar = draw(*page);

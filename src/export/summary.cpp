@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/text.hpp"
+#include "scene/room_floors.hpp"
 
 namespace vantage {
 namespace {
@@ -247,6 +248,10 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
   constexpr std::size_t kMost = 5;
   std::vector<SummaryLine> lines;
   if (area.on_plane()) lines.push_back({"ground", "none in the model: the stations stand on " + area.description()});
+  if (std::ranges::any_of(scene.meshes(), [](const MeshInfo& mesh) { return mesh.name == kRoomFloors; }))
+    lines.push_back({"ground",
+                     "laid at the bottom of rooms that have no floor in the model, whose slabs may be in another file; "
+                     "it blocks rays and is not surveyed"});
   if (std::ranges::any_of(stations, active)) add_empty_floor(lines, floor_parts(scene, area, stations));
   const auto place = [](const Vec3& p) { return fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2); };
   std::string entries;

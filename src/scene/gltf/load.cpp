@@ -24,6 +24,7 @@
 #include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
 #include "scene/recognise_units.hpp"
+#include "scene/room_floors.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/scene_builder.hpp"
 
@@ -122,6 +123,7 @@ class Loader {
     pass_notes_on();
     note_skipped();
     read_rooms();
+    lay_room_floors(raw_, budget_);
     if (const auto& defaults = file_.asset_extras("vantage"); !defaults.is_null()) raw_.defaults_json = defaults.dump();
     return std::move(raw_);
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "scene/room_floors.hpp"
+#include "scene/scene_data.hpp"
 #include "support/glb_builder.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
@@ -77,6 +81,93 @@ TEST(Rooms, ADamagedOutlineIsAnError) {
     test::GlbBuilder builder = with_a_room();
     builder.json["nodes"].back()["extras"]["vantage"]["footprint"] = outline;
     EXPECT_THROW(load(builder), Error) << outline;
+  }
+}
+
+// A level rectangle (x, y, x, y), its corners at the heights of its two ends along y.
+void add_rectangle(test::GlbBuilder& builder, const char* name, const std::array<float, 4>& at, float z0, float z1) {
+  const std::vector<float> corners{at[0], z0, -at[1], at[2], z0, -at[1], at[2], z1, -at[3],
+                                   at[0], z0, -at[1], at[2], z1, -at[3], at[0], z1, -at[3]};  // Y up
+  const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.positions(corners)}}}});
+  builder.node({{"name", name}, {"mesh", mesh}});
+}
+
+// Area of the floors that were laid, seen from above, and whether they lie over a place; 0 without any.
+struct Laid {
+  double area = 0;
+  bool over = false;
+};
+Laid laid(const Scene& scene, double x, double y) {
+  Laid found;
+  const SceneData& data = scene.data();
+  for (std::size_t m = 0; m < data.meshes.size(); ++m) {
+    if (data.meshes[m].name != kRoomFloors) continue;
+    EXPECT_EQ(data.meshes[m].role, Role::blocking);
+    for (std::uint32_t i = 0; i < data.ranges[m].triangle_count; ++i) {
+      std::array<Vec3, 3> p;
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = widen(data.positions[data.triangles[data.ranges[m].first_triangle + i][k]]) + data.origin;
+      const auto turn = [&](const Vec3& a, const Vec3& b) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); };
+      const double twice = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+      EXPECT_GT(twice, 0) << "upward";
+      found.area += twice / 2;
+      found.over = found.over || (turn(p[0], p[1]) >= 0 && turn(p[1], p[2]) >= 0 && turn(p[2], p[0]) >= 0);
+    }
+  }
+  return found;
+}
+
+TEST(RoomFloors, AreLaidUnderARoomWithoutOneAndUnderItsWalls) {
+  const Scene scene = load(with_a_room());
+  const double pi = std::acos(-1), grown = 2 * 3 + 0.3 * 10 + pi * 0.09;  // walls of 0.3 m around 2 m by 3 m
+  EXPECT_NEAR(laid(scene, 2, 2).area, grown, 0.25) << "in cells of 0.1 m";
+  EXPECT_TRUE(laid(scene, 2, 2).over);
+  EXPECT_TRUE(laid(scene, 3.15, 2).over) << "in a doorway";
+  EXPECT_FALSE(laid(scene, 3.5, 2).over);
+  ASSERT_FALSE(scene.notes().empty());
+  EXPECT_NE(scene.notes().back().find("1 of 1 room has no floor in the model"), std::string::npos);
+}
+
+TEST(RoomFloors, AFloorUnderPartOfARoomIsEnough) {
+  test::GlbBuilder builder = with_a_room();
+  add_rectangle(builder, "slab", {1, 1, 3, 3}, -0.2F, -0.2F);
+  EXPECT_EQ(laid(load(builder), 2, 3.5).area, 0);
+  test::GlbBuilder deep = with_a_room();
+  add_rectangle(deep, "ceiling below", {1, 1, 3, 3}, -0.5F, -0.5F);
+  EXPECT_GT(laid(load(deep), 2, 3.5).area, 0);
+}
+
+TEST(RoomFloors, AreOpenOverAStair) {
+  for (const char* name : {"IfcStairFlight 1", "IfcBeam 1"}) {
+    test::GlbBuilder builder = with_a_room();
+    add_rectangle(builder, name, {1, 1, 2, 3}, -2, -0.2F);
+    const bool stair = std::string(name).starts_with("IfcStair");
+    const Scene scene = load(builder);
+    EXPECT_EQ(laid(scene, 1.5, 2).over, !stair);
+    EXPECT_TRUE(laid(scene, 2.5, 2).over);
+    EXPECT_TRUE(laid(scene, 1.5, 3.5).over);
+  }
+}
+
+TEST(RoomFloors, ComeBeforeGlass) {
+  test::GlbBuilder builder = with_a_room();
+  add_rectangle(builder, "pane", {0, 0, 1, 0}, 0, 2);
+  builder.json["nodes"].back()["extras"]["vantage"]["glass"] = true;
+  const Scene scene = load(builder);
+  const SceneData& data = scene.data();
+  ASSERT_EQ(data.meshes.size(), 3u);
+  EXPECT_EQ(data.meshes[1].name, kRoomFloors);
+  EXPECT_TRUE(data.meshes[2].glass);
+  EXPECT_EQ(data.ranges[2].first_triangle, data.ranges[1].first_triangle + data.ranges[1].triangle_count);
+  EXPECT_EQ(data.opaque_triangles().size(), data.triangles.size() - data.ranges[2].triangle_count);
+}
+
+TEST(RoomFloors, ARoomWithoutSizeOrOfAnAbsurdOneGetsNone) {
+  for (const nlohmann::json& box : std::vector<nlohmann::json>{
+           {{1, 0, -4}, {1, 2.5, -1}}, {{-1e30, 0, -4}, {1e30, 2.5, -1}}, {{1e12, 0, -4}, {1e12 + 2, 2.5, -1}}}) {
+    test::GlbBuilder builder = with_a_room();
+    builder.json["nodes"].back()["extras"]["vantage"]["box"] = box;
+    EXPECT_EQ(laid(load(builder), 2, 2).area, 0) << box;
   }
 }
 
