@@ -37,13 +37,13 @@ std::vector<RoomShare> shares_by_room(std::span<const Room> rooms, const SearchA
   const SearchMesh& mesh = area.mesh();
   for (const auto& t : mesh.triangles)
     add_to_rooms(rooms, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]],
-              [&](std::size_t room, double m2) { shares[room].ground_m2 += m2; });
+                 [&](std::size_t room, double m2) { shares[room].ground_m2 += m2; });
   std::vector<double> most(rooms.size(), 0);
   for (const LeftOut& out : area.left_out()) {
     std::vector<double> here(rooms.size(), 0);
     for (const auto& t : out.triangles)
       add_to_rooms(rooms, out.positions[t[0]], out.positions[t[1]], out.positions[t[2]],
-                [&](std::size_t room, double m2) { here[room] += m2; });
+                   [&](std::size_t room, double m2) { here[room] += m2; });
     for (std::size_t k = 0; k < rooms.size(); ++k) {
       // Sealed floor comes before any other: an entrance makes ground of it.
       if (out.reason == LeftOutReason::sealed && here[k] >= kStanding_m2)

@@ -58,11 +58,10 @@ TEST(FloorParts, CountTheGroundOfRoomsInLargeTriangles) {
   SceneData data = builder.scene().data();
   data.rooms = {{.name = "Hall", .box = {origin + Vec3{1, 1, 0}, origin + Vec3{5, 4, 2.8}}}};
   const Scene scene(std::make_shared<const SceneData>(std::move(data)));
-  const SearchArea area = SearchArea::from_mesh(
-      {.positions = {origin + Vec3{-20, -20, 0}, origin + Vec3{20, -20, 0}, origin + Vec3{20, 20, 0},
-                     origin + Vec3{-20, 20, 0}},
-       .uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
-       .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  const SearchArea area = SearchArea::from_mesh({.positions = {origin + Vec3{-20, -20, 0}, origin + Vec3{20, -20, 0},
+                                                               origin + Vec3{20, 20, 0}, origin + Vec3{-20, 20, 0}},
+                                                 .uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+                                                 .triangles = {{0, 1, 2}, {0, 2, 3}}});
   const std::vector<FloorPart> parts = floor_parts(scene, area, {});
   ASSERT_EQ(parts.size(), 1u);
   EXPECT_NEAR(parts[0].area_m2, 12, 0.5);
