@@ -65,7 +65,7 @@ docs() {
 }
 readers() {
   command -v pcl_ply2pcd >/dev/null || { echo "nightly: pcl_ply2pcd is not installed (Debian: pcl-tools)"; return 1; }
-  run node tests/clients/pcl.mjs build/release/vantage
+  run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
 }
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
