@@ -18,14 +18,18 @@ struct GroundPart {
   double area_m2 = 0;  // in plan
 };
 
-std::vector<GroundPart> parts_of(const SearchMesh& mesh) {
-  std::vector<GroundPart> parts;
+// The triangles of a search area, or parts of them: a marked area may have triangles larger than rooms.
+std::vector<GroundPart> ground_of(const SearchMesh& mesh, bool in_parts) {
+  std::vector<GroundPart> out;
   for (const auto& t : mesh.triangles) {
     const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     const double area = std::abs(cross(b - a, c - a).z) / 2;
-    for_triangle_parts(a, b, c, [&](const Vec3& middle, double share) { parts.push_back({middle, share * area}); });
+    if (in_parts)
+      for_triangle_parts(a, b, c, [&](const Vec3& middle, double share) { out.push_back({middle, share * area}); });
+    else
+      out.push_back({(a + b + c) * (1.0 / 3), area});
   }
-  return parts;
+  return out;
 }
 
 // Sums up the ground that a part holds; its place is the ground nearest to the middle of that.
@@ -56,10 +60,10 @@ std::string to_string(FloorPart::Kind kind) {
 std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area,
                                    std::span<const PlacedStation> stations) {
   const SearchMesh& mesh = area.mesh();
-  const std::vector<GroundPart> ground_parts = parts_of(mesh);
+  std::vector<GroundPart> pieces = ground_of(mesh, false);
   std::vector<FloorPart> parts;
   const auto add = [&](FloorPart part, const auto& holds) {
-    take_ground(part, ground_parts, holds);
+    take_ground(part, pieces, holds);
     part.stations = static_cast<std::size_t>(
         std::ranges::count_if(stations, [&](const PlacedStation& s) { return active(s) && holds(s.ground); }));
     parts.push_back(std::move(part));
@@ -72,6 +76,7 @@ std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area,
     for (std::uint32_t k = 1; k <= buildings.count; ++k)
       add({.kind = FloorPart::Kind::building, .name = "building " + std::to_string(k)},
           [&](const Vec3& ground) { return buildings.at(ground) == k; });
+  if (!scene.rooms().empty()) pieces = ground_of(mesh, true);
   for (const Room& room : scene.rooms())
     add({.kind = FloorPart::Kind::room,
          .name = room.name,
