@@ -4,7 +4,7 @@
 #
 #   ./setup.sh            the program `vantage` and its library, in build/release
 #   ./setup.sh --tests    the same, with the tests, the benchmarks and the examples
-#   ./setup.sh --packages packages only, nothing is built
+#   ./setup.sh --packages what the packages and the Python module are built with; nothing is built
 #   ./setup.sh --ifc      what reading IFC takes: node, and web-ifc by npm
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -19,6 +19,7 @@ readonly packages=(
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin poppler-utils gdal-bin dpkg-dev file
   pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib python3-jsonschema libopenmpi-dev openmpi-bin)
+readonly packaging_packages=(dpkg-dev file patchelf pybind11-dev python3-dev python3-pip python3-numpy python3-wheel)
 
 mode=program
 case "${1-}" in
@@ -64,11 +65,11 @@ if [ "$mode" != program ]; then
   command -v node >/dev/null || wanted+=(nodejs)
   command -v npm >/dev/null || wanted+=(npm)
 fi
-if [ "$mode" = tests ] || [ "$mode" = packages ]; then
+if [ "$mode" = tests ]; then
   wanted+=("${test_packages[@]}")
   command -v chromium >/dev/null || wanted+=(chromium)
 fi
-[ "$mode" != packages ] || wanted+=(patchelf python3-wheel)
+[ "$mode" != packages ] || wanted+=("${packaging_packages[@]}")
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
 

@@ -29,7 +29,7 @@ install(EXPORT vantageTargets NAMESPACE vantage:: DESTINATION ${VANTAGE_PACKAGE_
 set(VANTAGE_EMBREE_MAJOR ${embree_VERSION_MAJOR})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vantageConfig.cmake.in ${PROJECT_BINARY_DIR}/vantageConfig.cmake
                               INSTALL_DESTINATION ${VANTAGE_PACKAGE_DIR})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vantageConfig.cmake ${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake
         DESTINATION ${VANTAGE_PACKAGE_DIR} COMPONENT development)
 

@@ -64,6 +64,7 @@ def carry(tree):
             if not is_program_code(path):
                 continue
             needed.update(libraries_of(path))
+            os.chmod(path, 0o755)  # `wheel unpack` of Debian 12 forgets it, and importers are run
             subprocess.run(["strip", "--strip-unneeded", path], check=True)
             up = os.path.relpath(lib, folder)
             subprocess.run(["patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/{up}", path], check=True)

@@ -10,7 +10,7 @@ make_root() {
   mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $VERSION_CODENAME" | head -n 1)
   [ -n "$mirror" ] || { say "apt has no mirror of $VERSION_CODENAME: not tried"; exit 77; }
   root=$(mktemp -d)
-  trap 'rm -rf "$root"' EXIT
+  trap 'umount -q "$root/proc" || true; rm -rf --one-file-system "$root"' EXIT
   chmod 755 "$root"
   if command -v mmdebstrap >/dev/null; then
     mmdebstrap --quiet --variant=apt "$VERSION_CODENAME" "$root" "$mirror"
@@ -20,6 +20,8 @@ make_root() {
     say "neither mmdebstrap nor debootstrap is installed: not tried"
     exit 77
   fi
+  # Programs find the libraries beside them by /proc.
+  mount -t proc proc "$root/proc" || { say "/proc cannot be mounted in a root: not tried"; exit 77; }
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   for proxy in http_proxy https_proxy; do [ -z "${!proxy-}" ] || export "${proxy?}"; done
   inside apt-get update -qq

@@ -11,6 +11,7 @@
 #   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
+#   readers    point clouds in PLY as the Point Cloud Library reads them (needs pcl-tools)
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -62,6 +63,10 @@ docs() {
   run mkdocs build
   run tests/docs/check_commands.py build/release . --night
 }
+readers() {
+  command -v pcl_ply2pcd >/dev/null || { echo "nightly: pcl_ply2pcd is not installed (Debian: pcl-tools)"; return 1; }
+  run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
+}
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
   cmake -G Ninja -S . -B build/mutation -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON -DCMAKE_LINK_DEPENDS_NO_SHARED=ON \
@@ -71,10 +76,10 @@ mutation() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs fuzz mutation)
+[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers fuzz mutation)
 for part in "${parts[@]}"; do
   case $part in
-    sites | faults | address | undefined | thread | machine | packages | docs | fuzz | mutation) "$part" ;;
+    sites | faults | address | undefined | thread | machine | packages | docs | readers | fuzz | mutation) "$part" ;;
     *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
   esac
 done

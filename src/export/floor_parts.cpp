@@ -6,34 +6,43 @@
 
 #include "export/buildings.hpp"
 #include "export/plan_levels.hpp"
+#include "placement/triangle_parts.hpp"
 #include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
 
-Vec3 middle_of(const SearchMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
-}
-double plan_area(const SearchMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  return std::abs(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]).z) /
-         2;
+// A part of the search area, which is in one floor part or another.
+struct GroundPart {
+  Vec3 middle;
+  double area_m2 = 0;  // in plan
+};
+
+// The triangles of a search area, or parts of them: a marked area may have triangles larger than rooms.
+std::vector<GroundPart> ground_of(const SearchMesh& mesh, bool in_parts) {
+  std::vector<GroundPart> out;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const double area = std::abs(cross(b - a, c - a).z) / 2;
+    if (in_parts)
+      for_triangle_parts(a, b, c, [&](const Vec3& middle, double share) { out.push_back({middle, share * area}); });
+    else
+      out.push_back({(a + b + c) * (1.0 / 3), area});
+  }
+  return out;
 }
 
-// Sums up the triangles of `mesh` that a part holds; its place is the middle of that nearest to their middle.
+// Sums up the ground that a part holds; its place is the ground nearest to the middle of that.
 template <class Holds>
-void take_ground(FloorPart& part, const SearchMesh& mesh, const Holds& holds) {
+void take_ground(FloorPart& part, std::span<const GroundPart> ground, const Holds& holds) {
   Vec3 sum;
-  for (const auto& t : mesh.triangles)
-    if (const Vec3 at = middle_of(mesh, t); holds(at)) {
-      const double area = plan_area(mesh, t);
-      part.area_m2 += area, sum = sum + at * area;
-    }
+  for (const auto& [at, area] : ground)
+    if (holds(at)) part.area_m2 += area, sum = sum + at * area;
   if (!(part.area_m2 > 0)) return;
   const Vec3 middle = sum * (1 / part.area_m2);
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& t : mesh.triangles)
-    if (const Vec3 at = middle_of(mesh, t); holds(at) && dot(at - middle, at - middle) < least)
-      least = dot(at - middle, at - middle), part.place = at;
+  for (const auto& [at, area] : ground)
+    if (const double away = dot(at - middle, at - middle); away < least && holds(at)) least = away, part.place = at;
 }
 
 bool in_room(const Room& room, const Vec3& ground) {
@@ -51,9 +60,10 @@ std::string to_string(FloorPart::Kind kind) {
 std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area,
                                    std::span<const PlacedStation> stations) {
   const SearchMesh& mesh = area.mesh();
+  std::vector<GroundPart> pieces = ground_of(mesh, false);
   std::vector<FloorPart> parts;
   const auto add = [&](FloorPart part, const auto& holds) {
-    take_ground(part, mesh, holds);
+    take_ground(part, pieces, holds);
     part.stations = static_cast<std::size_t>(
         std::ranges::count_if(stations, [&](const PlacedStation& s) { return active(s) && holds(s.ground); }));
     parts.push_back(std::move(part));
@@ -66,6 +76,7 @@ std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area,
     for (std::uint32_t k = 1; k <= buildings.count; ++k)
       add({.kind = FloorPart::Kind::building, .name = "building " + std::to_string(k)},
           [&](const Vec3& ground) { return buildings.at(ground) == k; });
+  if (!scene.rooms().empty()) pieces = ground_of(mesh, true);
   for (const Room& room : scene.rooms())
     add({.kind = FloorPart::Kind::room,
          .name = room.name,

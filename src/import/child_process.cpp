@@ -22,7 +22,6 @@
 namespace vantage::importers {
 namespace {
 
-constexpr int kCannotStart = 127;
 constexpr std::size_t kMostErrors = 4096;
 
 class Descriptor {

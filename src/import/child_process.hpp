@@ -15,6 +15,9 @@ struct Limits {
   std::uint64_t output = std::uint64_t{1} << 32;  // bytes
 };
 
+// Exit code of a program that cannot be started, or whose libraries cannot be loaded.
+inline constexpr int kCannotStart = 127;
+
 struct Ended {
   std::vector<std::uint8_t> output;  // its standard output
   std::string errors;  // the first 4 KiB of its standard error, with ? for bytes that are not printable ASCII

@@ -134,6 +134,9 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
                                            "; export parts of it");
   if (ended.exit_code == kRefused && !said.empty()) return Error(Errc::malformed_file, file + ": " + said);
   if (ended.exit_code == kUnavailable && !said.empty()) return Error(Errc::io, file + ": " + said);
+  if (ended.exit_code == kCannotStart)
+    return Error(Errc::io, who + " cannot be started" + (said.empty() ? "" : ": " + said) +
+                               "; install vantage again, with its importers and their libraries");
   if (ended.exit_code == kMemory)
     return Error(Errc::out_of_memory, who + " needs more memory than the " + bytes_text(limits.memory) +
                                           " that are free; close other programs, or export parts of the model");

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "placement/triangle_parts.hpp"
+
 namespace vantage {
 namespace {
 
 constexpr double kKnee_m = 0.5;     // above a floor one is surely in its room
 constexpr double kStanding_m2 = 1;  // floor that a tripod stands on
-constexpr double kPiece_m = 0.4;    // sides of the parts of a triangle that are in one room or another
 
 double edge_length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -21,17 +22,11 @@ std::optional<std::size_t> room_above(std::span<const Room> rooms, const Vec3& g
 
 // Adds the area of a triangle to the rooms that its parts lie in.
 template <class Add>
-void for_parts(std::span<const Room> rooms, const Vec3& a, const Vec3& b, const Vec3& c, const Add& add) {
-  const double longest = std::max({edge_length(b - a), edge_length(c - b), edge_length(a - c)});
-  const auto n = static_cast<int>(std::clamp(std::ceil(longest / kPiece_m), 1.0, 1000.0));
-  const Vec3 u = (b - a) * (1.0 / n), v = (c - a) * (1.0 / n);
-  const double area = 0.5 * edge_length(cross(u, v));
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; i + j < n; ++j)
-      for (int half = 0; half < (i + j + 1 < n ? 2 : 1); ++half) {
-        const double third = (half + 1) / 3.0;
-        if (const auto room = room_above(rooms, a + u * (i + third) + v * (j + third))) add(*room, area);
-      }
+void add_to_rooms(std::span<const Room> rooms, const Vec3& a, const Vec3& b, const Vec3& c, const Add& add) {
+  const double area = 0.5 * edge_length(cross(b - a, c - a));
+  for_triangle_parts(a, b, c, [&](const Vec3& middle, double share) {
+    if (const auto room = room_above(rooms, middle)) add(*room, share * area);
+  });
 }
 
 }  // namespace
@@ -41,14 +36,14 @@ std::vector<RoomShare> shares_by_room(std::span<const Room> rooms, const SearchA
   if (rooms.empty()) return shares;
   const SearchMesh& mesh = area.mesh();
   for (const auto& t : mesh.triangles)
-    for_parts(rooms, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]],
-              [&](std::size_t room, double m2) { shares[room].ground_m2 += m2; });
+    add_to_rooms(rooms, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]],
+                 [&](std::size_t room, double m2) { shares[room].ground_m2 += m2; });
   std::vector<double> most(rooms.size(), 0);
   for (const LeftOut& out : area.left_out()) {
     std::vector<double> here(rooms.size(), 0);
     for (const auto& t : out.triangles)
-      for_parts(rooms, out.positions[t[0]], out.positions[t[1]], out.positions[t[2]],
-                [&](std::size_t room, double m2) { here[room] += m2; });
+      add_to_rooms(rooms, out.positions[t[0]], out.positions[t[1]], out.positions[t[2]],
+                   [&](std::size_t room, double m2) { here[room] += m2; });
     for (std::size_t k = 0; k < rooms.size(); ++k) {
       // Sealed floor comes before any other: an entrance makes ground of it.
       if (out.reason == LeftOutReason::sealed && here[k] >= kStanding_m2)

@@ -16,7 +16,7 @@ const heads = [[2.5, 2, 1.85], [3.25, 2.5, 1.7], [500, 500, 500]];
 const stations = heads.flatMap((head) => ['--station', head.join(',')]);
 for (const [heading, noise] of [['0', 'off'], ['217.25', 'rtc360']]) {
   const scan = ['scan', 'walls.glb', ...stations, '--step', '0.8', '--heading', heading, '--noise', noise, '--engine',
-                'embree', '--outputs', 'reflectivity,colour,normal'];
+                'embree', '--outputs', 'colour,normal'];  // intensity comes unasked
   vantage(...scan, '-o', 'points.ply');
   vantage(...scan, '-o', 'points.e57');
   vantage(...scan, '-o', 'again.e57');

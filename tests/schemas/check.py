@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check.py PROGRAM SCHEMAS MANUAL: front.json, config.json and stations.csv of plans against the schemas that are shipped, and the manual
-pages and completions against the program's own --help."""
+"""check.py PROGRAM SCHEMAS MANUAL: what plans and `next` write against the schemas that are shipped, and the manual pages and completions
+against the program's own --help."""
 import csv
 import gzip
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -17,14 +18,19 @@ except ImportError:
     sys.exit("python3-jsonschema is not installed (setup.sh --tests does it)")
 
 PROGRAM, SCHEMAS, MANUAL = (os.path.abspath(path) for path in sys.argv[1:4])
-QUICK = ["--engine", "embree", "--step", "2", "--user-size", "0.4", "--no-report"]
+QUICK = ["--engine", "embree", "--user-size", "0.4"]
+COARSE = [*QUICK, "--step", "2"]
 SEARCH = ["--population", "6", "--iterations", "2", "--sample", "200"]
 PLANS = {
     "front": ["--problem", "coverage-overlap-fix", "--stations", "3", *SEARCH],
     "required": ["--objectives", "coverage,registration", "--require", "parts<=1", "--stations", "2..4", *SEARCH],
     "kept": ["--problem", "coverage-fix", "--stations", "2", "--keep", "x=8,y=3,z=1.5,heading=30,tilt=80,scanner=rtc360,step=2.5", *SEARCH],
     "survey": ["--capture", "0.5", "--max-time", "5s"],
+    "targets": ["--problem", "coverage-fix", "--stations", "1", "--keep", "7,1,1.5", "--keep", "7.5,-1,1.5", "--targets", "2", "--targets-from",
+                "have.csv", *SEARCH],
 }
+TARGETS = "name,x,y,z,sigma\nC1,5.5,1,1.5,0.002\nC2,7,-1,1.2,0.003\nC3,6.5,2,1.7,0.002\nT1,5.6,-1,1.8,\n"
+TEXTS = {"name", "scanner", "status", "proposed", "storey", "room", "why_no_station", "node"}  # columns
 
 
 def run(folder, *arguments, expected=(0,)):
@@ -45,38 +51,75 @@ def require(holds, value, what):
     assert not errors, "\n".join(errors)
 
 
-def rows(path):
-    """With the types of the schema's columns."""
-    def typed(name, cell):
-        return cell if name in ("name", "scanner", "status") else json.loads(cell)
+def rows(path, texts=TEXTS):
+    """The lines of a table, with numbers as numbers, but in columns of text."""
     with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            yield {name: typed(name, cell) for name, cell in row.items() if cell != ""}
+        return [{name: cell if name in texts else json.loads(cell) for name, cell in row.items() if cell != ""} for row in csv.DictReader(file)]
+
+
+def add_room(folder, source, to):
+    """A copy of a GLB with a room all around its origin, as importers describe one."""
+    with open(os.path.join(folder, source), "rb") as file:
+        data = file.read()
+    size = struct.unpack_from("<I", data, 12)[0]
+    tree, rest = json.loads(data[20:20 + size]), data[20 + size:]
+    tree["scenes"][tree.get("scene", 0)]["nodes"].append(len(tree["nodes"]))
+    tree["nodes"].append({"extras": {"vantage": {"box": [[-8, 0, -8], [8, 3, 8]], "name": "1.01", "long_name": "Hall"}}})
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    with open(os.path.join(folder, to), "wb") as file:
+        file.write(struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest)
+
+
+def check_tables(folder, written):
+    """Tables of a plan with targets and a room; `written` is its front.json."""
+    entry = written["front"][written["answer"] - 1]
+    assert {"with_targets", "without_targets", "in_site_frame"} == set(entry["registration_mm"])
+    assert {target["proposed"] for target in entry["targets"]} == {True, False}
+    assert [part["name"] for part in written["floor"]["parts"] if part["kind"] == "room"] == ["1.01 Hall"]
+    names = {station["name"] for station in entry["stations"]}
+    for name, broken in (("targets", {"proposed": "perhaps"}), ("rooms", {"hidden": 2}), ("missed", {"voxels": -1})):
+        holds = validator(os.path.join(SCHEMAS, f"{name}.schema.json"))
+        table = rows(os.path.join(folder, "targets", f"{name}.csv"), TEXTS | {"stations"})
+        assert table
+        for row in table:
+            require(holds, row, f"{name}.csv")
+            assert set(row.get("stations", "").split()) <= names
+        assert not holds.is_valid({**table[0], **broken}) and not holds.is_valid({**table[0], "more": 1})
+    assert len(rows(os.path.join(folder, "targets/targets.csv"), TEXTS | {"stations"})) == len(entry["targets"])
 
 
 def check_files(folder):
     front, stations, after = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations", "next"))
     config = validator(os.path.join(MANUAL, "schemas/config.schema.json"))
-    run(folder, "generate", "four-walls", "-o", "walls.glb")
+    run(folder, "generate", "four-walls", "-o", "empty.glb")
+    add_room(folder, "empty.glb", "walls.glb")
+    with open(os.path.join(folder, "have.csv"), "w", encoding="utf-8") as file:
+        file.write(TARGETS)
     for name, how in PLANS.items():
-        run(folder, "plan", "walls.glb", *QUICK, *how, "-o", name, expected=(0, 3))
+        # Targets are measured with steps as fine as a scanner's.
+        run(folder, "plan", "walls.glb", *(QUICK if name == "targets" else COARSE), "--no-report", *how, "-o", name, expected=(0, 3))
         with open(os.path.join(folder, name, "front.json"), encoding="utf-8") as file:
             written = json.load(file)
         require(front, written, f"{name}/front.json")
         with open(os.path.join(folder, name, "config.json"), encoding="utf-8") as file:
             require(config, json.load(file), f"{name}/config.json")
-        table = list(rows(os.path.join(folder, name, "stations.csv")))
+        table = rows(os.path.join(folder, name, "stations.csv"))
         assert len(table) == len(written["front"][written["answer"] - 1]["stations"])
         for row in table:
             require(stations, row, f"{name}/stations.csv")
         # What a schema lets through must not be just anything.
         for broken in ({**written, "more": 1}, {**written, "front": []}, {k: v for k, v in written.items() if k != "seed"}):
             assert not front.is_valid(broken)
-    run(folder, "scan", "walls.glb", *QUICK[:-1], "--station", "8,0,1.5", "-o", "day.e57")
-    run(folder, "next", "walls.glb", *QUICK[:-1], "--scans", "day.e57", "--stations", "survey/front.json", "--link", "0", expected=(0, 3))
+        if name == "targets":
+            check_tables(folder, written)
+    run(folder, "scan", "walls.glb", *COARSE, "--station", "8,0,1.5", "-o", "day.e57")
+    run(folder, "next", "walls.glb", *COARSE, "--scans", "day.e57", "--stations", "survey/front.json", "--link", "0", expected=(0, 3))
     with open(os.path.join(folder, "next/next.json"), encoding="utf-8") as file:
         written = json.load(file)
     require(after, written, "next.json")
+    for row in rows(os.path.join(folder, "next/stations.csv")):
+        require(stations, row, "next/stations.csv")
     assert not after.is_valid({**written, "taken": []}) and not after.is_valid({**written, "more": 1})
     assert not config.is_valid({"user-sise": 0.1})
     assert not stations.is_valid({**table[0], "status": "perhaps"})

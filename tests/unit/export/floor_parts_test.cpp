@@ -51,6 +51,24 @@ struct Lawn {
   }
 };
 
+// A marked search area of two triangles that reach beyond the room.
+TEST(FloorParts, CountTheGroundOfRoomsInLargeTriangles) {
+  test::Builder builder;
+  builder.floor(-20, -20, 20, 20, 0);
+  SceneData data = builder.scene().data();
+  data.rooms = {{.name = "Hall", .box = {origin + Vec3{1, 1, 0}, origin + Vec3{5, 4, 2.8}}}};
+  const Scene scene(std::make_shared<const SceneData>(std::move(data)));
+  const SearchArea area = SearchArea::from_mesh({.positions = {origin + Vec3{-20, -20, 0}, origin + Vec3{20, -20, 0},
+                                                               origin + Vec3{20, 20, 0}, origin + Vec3{-20, 20, 0}},
+                                                 .uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+                                                 .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  const std::vector<FloorPart> parts = floor_parts(scene, area, {});
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_NEAR(parts[0].area_m2, 12, 0.5);
+  EXPECT_NEAR(parts[0].place.x, origin.x + 3, 0.4);
+  EXPECT_NEAR(parts[0].place.y, origin.y + 2.5, 0.4);
+}
+
 TEST(FloorParts, AreBuildingsAndRoomsWithTheirStations) {
   const Lawn lawn;
   const std::vector<FloorPart> parts = floor_parts(lawn.scene, lawn.area, Lawn::stations({{4, 4, 0}, {11, -12, 0}}));

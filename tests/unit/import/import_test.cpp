@@ -113,11 +113,19 @@ TEST_F(ImporterTest, FailuresAreOneClearError) {
   failing("exit 3", Errc::malformed_file, "failed (exit code 3)");
   failing("exit 71", Errc::out_of_memory, "needs more memory than the 3.0 GiB", {.memory = std::uint64_t{3} << 30});
   failing("echo 'reader is not installed' >&2; exit 69", Errc::io, "reader is not installed");
+  failing("echo 'libassimp.so.5: cannot open shared object file' >&2; exit 127", Errc::io,
+          "cannot be started: libassimp.so.5: cannot open shared object file; install vantage again");
   failing("echo no GLB", Errc::malformed_file, "gave no GLB");
   failing("head -c 200 $(dirname $0)/scene.glb", Errc::malformed_file, "gave no GLB");
   failing("sleep 60", Errc::malformed_file, "took more than 1 s", {.wall_s = 1});
   failing("while :; do :; done", Errc::malformed_file, "took more than 1 s of computing", {.cpu_s = 1});
   failing("cat $(dirname $0)/scene.glb", Errc::malformed_file, "would take more than", {.output = 100});
+}
+
+TEST_F(ImporterTest, OneThatMayNotRunIsToldFromADamagedFile) {
+  use_script("exit 0");
+  std::filesystem::permissions(folder_.path() / "importers/vantage-import-mesh", std::filesystem::perms::owner_read);
+  expect_error(Errc::io, "cannot be started; install vantage again", [&] { import(model_); });
 }
 
 TEST_F(ImporterTest, MissingOneIsNamedWithWhatBringsIt) {
