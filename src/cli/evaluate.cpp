@@ -110,7 +110,8 @@ struct EvaluateCommandOptions {
 
   bool sampled() const { return sample || error; }
   bool wants_field() const {
-    return !sampled() && (cartography || rooms || !missed.files.empty() || !registration_files.empty() || !reports.empty());
+    return !sampled() &&
+           (cartography || rooms || !missed.files.empty() || !registration_files.empty() || !reports.empty());
   }
 };
 

@@ -21,7 +21,8 @@ std::string title_of(const PlanEntry& entry) {
     std::string shares;
     if (!std::isnan(coverage)) shares = fixed(100 * coverage, 1) + " % of the site captured";
     if (!std::isnan(capture->second.value))
-      shares += (shares.empty() ? "captured " : ", ") + fixed(100 * capture->second.value, 1) + " % of what is attainable";
+      shares +=
+          (shares.empty() ? "captured " : ", ") + fixed(100 * capture->second.value, 1) + " % of what is attainable";
     return title + ": " + (shares.empty() ? "the time was over before anything was measured" : shares);
   }
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);

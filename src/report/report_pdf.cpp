@@ -277,11 +277,11 @@ void rooms_table(std::vector<Sheet>& sheets, const std::vector<RoomFacts>& rooms
               {.size = 9, .colour = kFaintInk});
   sheet.y += 6;
   write_table(sheets, a4(),
-              {{"Room", 130, Align::start},
-               {"Storey", 95, Align::start},
-               {"floor, m²", 55},
-               {"captured", 55},
-               {"Stations", 160, Align::start}},
+              {{"Room", 110, Align::start},
+               {"Storey", 90, Align::start},
+               {"floor, m²", 50},
+               {"captured", 52},
+               {"Stations", 230, Align::start}},
               rooms.size(), rooms.size(), "", [&](std::size_t k) -> std::vector<std::string> {
                 const RoomFacts& room = rooms[k];
                 return {room.name, room.storey, fixed(room.floor_m2, 1), room.captured ? percent(*room.captured) : "–",

@@ -129,7 +129,8 @@ class PlanIndex {
     std::vector<std::uint32_t> at(first_.begin(), first_.end() - 1);
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
       bool many = false;
-      visit(i, [&](std::size_t c) { items_[at[c]++] = i; }, &many);
+      visit(
+          i, [&](std::size_t c) { items_[at[c]++] = i; }, &many);
       if (many) large_.push_back(i);
     }
   }

@@ -371,8 +371,8 @@ bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
          other.upright >= kMostUpright;
 }
 
-// Nobody draws on another unit's grid: doors and stairs may be a coincidence of sizes then. A site in metres has no such
-// grid.
+// Nobody draws on another unit's grid: doors and stairs may be a coincidence of sizes then. A site in metres has no
+// such grid.
 bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
   return best.unit != Unit::metre && best.grid == 0 && other.grid > 0 && other.up == best.up &&
          features_of(other)[0] >= kSize;
@@ -404,8 +404,7 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   const auto rivals = [&](const Hypothesis& other) {
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
     return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
-           (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) ||
-                      drawn_otherwise(best, other)));
+           (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) || drawn_otherwise(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
     out.question =

@@ -226,7 +226,8 @@ struct Site::Impl {
     add(options.user_size_m.has_value(), "user-size " + rounded(config.user_size_m));
     add(options.spacing_m.has_value(), "spacing " + rounded(config.point_spacing_m));
     add(options.height_m.has_value(), "height " + rounded(scanner.height_m));
-    add(options.range_m || options.scanner, "range " + rounded(scanner.min_range_m) + "," + rounded(scanner.max_range_m));
+    add(options.range_m || options.scanner,
+        "range " + rounded(scanner.min_range_m) + "," + rounded(scanner.max_range_m));
     add(options.security_m.has_value(),
         "security " + rounded(security.lower_m) + "," + rounded(security.upper_m) + "," + rounded(security.radius_m));
     if (made_up.empty()) return;

@@ -305,10 +305,10 @@ class Loader {
     std::string some;
     std::size_t named = 0, at = 0;
     while (at < names.size() && named < kNamed) {
-      const std::size_t same = static_cast<std::size_t>(
-          std::find_if(names.begin() + static_cast<std::ptrdiff_t>(at), names.end(),
-                       [&](const std::string& other) { return other != names[at]; }) -
-          (names.begin() + static_cast<std::ptrdiff_t>(at)));
+      const std::size_t same =
+          static_cast<std::size_t>(std::find_if(names.begin() + static_cast<std::ptrdiff_t>(at), names.end(),
+                                                [&](const std::string& other) { return other != names[at]; }) -
+                                   (names.begin() + static_cast<std::ptrdiff_t>(at)));
       some += (named++ ? ", " : "") + gltf::quoted(names[at]) + (same > 1 ? " (" + std::to_string(same) + ")" : "");
       at += same;
     }

@@ -76,8 +76,8 @@ TEST_F(Bound, EvaluateTellsOfRooms) {
     const int points = glb.positions(corners);
     const std::vector<std::uint32_t> order{0, 1, 2, 0, 2, 3};
     glb.node({{"name", name},
-              {"mesh", glb.mesh({{"attributes", {{"POSITION", points}}},
-                                 {"indices", glb.accessor(order, 5125, "SCALAR")}})}});
+              {"mesh",
+               glb.mesh({{"attributes", {{"POSITION", points}}}, {"indices", glb.accessor(order, 5125, "SCALAR")}})}});
   };
   quad("floor", {-5, 0, 5, 5, 0, 5, 5, 0, -5, -5, 0, -5});
   quad("wall", {-5, 0, -5, 5, 0, -5, 5, 3, -5, -5, 3, -5});

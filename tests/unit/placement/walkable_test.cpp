@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -48,7 +49,7 @@ double left_out(const SearchArea& area, LeftOutReason reason) {
 SearchArea level_with_annex(double width) {
   test::Builder builder;
   const double x = 20.2 + width, y = width;
-  builder.floor(-20, -15, 20, 15, 0).box({-20.2, -15.2, 2.8}, {x + 0.2, 15.2, 3});
+  builder.floor(-20, -15, 20, 15, 0).box({-20.2, -15.2, 2.8}, {x + 0.2, std::max(15.2, y + 0.2), 3});
   builder.box({-20.2, -15.2, 0}, {-20, 15.2, 2.8}).box({20, -15.2, 0}, {20.2, 15.2, 2.8});
   builder.box({-20, -15.2, 0}, {20, -15, 2.8}).box({-20, 15, 0}, {20, 15.2, 2.8});
   builder.floor(20.2, 0, x, y, 0).box({20.2, -0.2, 0}, {x + 0.2, 0, 2.8}).box({20.2, y, 0}, {x + 0.2, y + 0.2, 2.8});
@@ -61,7 +62,7 @@ SearchArea level_with_annex(double width) {
 TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
   EXPECT_GT(true_area(level_with_annex(4.2).mesh()), 1000);
   EXPECT_GT(true_area(level_with_annex(12).mesh()), 1000);
-  const SearchArea entered = level_with_annex(14.9);
+  const SearchArea entered = level_with_annex(17);
   EXPECT_LT(true_area(entered.mesh()), 300);
   ASSERT_FALSE(entered.not_entered().empty());
   EXPECT_GT(entered.not_entered()[0].area_m2, 1000);

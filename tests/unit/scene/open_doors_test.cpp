@@ -16,8 +16,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// A wall 0.2 m thick along x from 0 to 10, 2.8 m high, with openings 0.9 m wide and 2.1 m high from x = 1, 4 and 7, on a
-// floor; other boxes by meshes. Metres, Z up.
+// A wall 0.2 m thick along x from 0 to 10, 2.8 m high, with openings 0.9 m wide and 2.1 m high from x = 1, 4 and 7, on
+// a floor; other boxes by meshes. Metres, Z up.
 class Joinery {
  public:
   Joinery() {
@@ -61,12 +61,12 @@ TEST(OpenDoors, ALeafIsAMeshOfItsOwnByNameOrByTheWallAroundIt) {
 TEST(OpenDoors, LeavesAreFoundAmongThePartsOfOneMesh) {
   Joinery site;
   site.mesh("joinery").leaf(1, 0.08, 0.12);
-  site.box({1.8, 0.03, 1}, {1.85, 0.07, 1.1});      // a handle before it
-  site.leaf(4, 0, 0.04);                            // in the plane of the wall's face
-  site.box({7, -1, 0}, {7.9, -0.5, 2.1});           // a cabinet
-  site.box({7, -0.49, 0}, {7.9, -0.47, 2.1});       // and its door
-  site.box({2.5, -0.03, 0}, {3.4, -0.01, 2.1});     // a board on the wall
-  for (int i = 0; i < 4; ++i)                       // a screen of panels
+  site.box({1.8, 0.03, 1}, {1.85, 0.07, 1.1});   // a handle before it
+  site.leaf(4, 0, 0.04);                         // in the plane of the wall's face
+  site.box({7, -1, 0}, {7.9, -0.5, 2.1});        // a cabinet
+  site.box({7, -0.49, 0}, {7.9, -0.47, 2.1});    // and its door
+  site.box({2.5, -0.03, 0}, {3.4, -0.01, 2.1});  // a board on the wall
+  for (int i = 0; i < 4; ++i)                    // a screen of panels
     site.box({1.0 * i, 3, 0}, {1.0 * i + 0.98, 3.05, 2.1});
   const std::size_t before = site.raw.triangles.size();
   EXPECT_EQ(site.open(), (Names{"joinery", "joinery"}));
@@ -105,11 +105,14 @@ TEST(OpenDoors, AFrameIsADoorIfAPaneOfAnotherMeshFillsIt) {
     site.mesh("frames");
     for (const double y : {0.05, 0.1})
       for (const auto& [inset, drop] : {std::pair{0.0, 0.0}, {0.1, 0.1}})
-        for (const Vec3& p : {Vec3{4 + inset, y, drop}, {4.9 - inset, y, drop}, {4.9 - inset, y, 2.1 - drop},
+        for (const Vec3& p : {Vec3{4 + inset, y, drop},
+                              {4.9 - inset, y, drop},
+                              {4.9 - inset, y, 2.1 - drop},
                               {4 + inset, y, 2.1 - drop}})
           site.raw.positions.push_back(to_glm(p));
     const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-      site.raw.triangles.push_back({first + a, first + b, first + c}), site.raw.triangles.push_back({first + a, first + c, first + d});
+      site.raw.triangles.push_back({first + a, first + b, first + c}),
+          site.raw.triangles.push_back({first + a, first + c, first + d});
       site.raw.ranges.back().triangle_count += 2, site.raw.meshes.back().triangle_count += 2;
     };
     for (std::uint32_t i = 0; i < 4; ++i) {
