@@ -425,9 +425,10 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
     move_to_open(small, most_open);
     only_lowest(open);
     // A closet of a closed level is no entrance: what is left closed must not dwarf what is entered.
+    constexpr double least_entered = 0.1;
     double entered = 0;
     for (const Candidate& c : open) entered += c.area;
-    if (entered < large_open * largest) open.clear();
+    if (entered < least_entered * largest) open.clear();
   }
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
