@@ -27,7 +27,7 @@ struct EvaluateCommandOptions {
   bool exact = false, skip = false, no_overlap = false, with_registration = false, attainable = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
-  std::optional<std::string> cartography, matrix, picture;
+  std::optional<std::string> cartography, rooms, matrix, picture;
   std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
   ReportHead report_head;
@@ -87,6 +87,9 @@ struct EvaluateCommandOptions {
              cartography)
         ->group("Results");
     missed.add(command);
+    add_text(command, "--rooms", "FILE",
+             "Write what is captured of each room that the model names, and why one has no station: .csv", rooms)
+        ->group("Results");
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
         ->group("Results");
@@ -107,7 +110,8 @@ struct EvaluateCommandOptions {
 
   bool sampled() const { return sample || error; }
   bool wants_field() const {
-    return !sampled() && (cartography || !missed.files.empty() || !registration_files.empty() || !reports.empty());
+    return !sampled() &&
+           (cartography || rooms || !missed.files.empty() || !registration_files.empty() || !reports.empty());
   }
 };
 
@@ -129,6 +133,9 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   must_end(options.cartography, "--cartography", ".ply");
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
+  must_end(options.rooms, "--rooms", ".csv");
+  if (options.rooms && site.scene().rooms().empty())
+    refuse("--rooms: the model names no rooms, as IFC and floor plans do");
   must_end(options.proposed_targets, "--propose-targets", ".csv");
   if ((options.targets || options.proposed_targets) && !options.with_registration)
     refuse("--targets-from and --propose-targets: targets are for --registration, which was not asked for");
@@ -145,8 +152,8 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     must_end(file, "--registration-map", ".ply", ".png", ".svg");
 
   if (options.cartography && options.sampled()) refuse("--cartography: shows every voxel, and so needs --exact");
-  if (!options.missed.files.empty() && options.sampled())
-    refuse("--missed: looks at every voxel, and so needs --exact");
+  if ((!options.missed.files.empty() || options.rooms) && options.sampled())
+    refuse("--missed and --rooms: look at every voxel, and so need --exact");
   if ((options.matrix || options.picture) && options.no_overlap)
     refuse("--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
   if (!options.registration_files.empty() && (options.sampled() || !options.with_registration))
@@ -183,6 +190,8 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
                  site, found.stations);
+  if (judged && options.rooms)
+    write_rooms_csv(*options.rooms, site.scene().rooms(), judged->rooms, found.stations, names);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
   for (const std::string& file : options.registration_files) {
@@ -325,7 +334,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.attainable) found.attainable_growth = candidates.ended() == "all" ? 0 : candidates.change();
 
   std::optional<MissedVoxels> judged;
-  if (!options.missed.files.empty() || (!options.reports.empty() && !options.sampled())) {
+  if (!options.missed.files.empty() || options.rooms || (!options.reports.empty() && !options.sampled())) {
     judged = judge_missed(site, found.field, program);
     if (!judged && program.abort.stop_requested()) return exit_failed;
   }

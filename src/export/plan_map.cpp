@@ -105,7 +105,7 @@ std::optional<double> common_ground(const PlanView& view, const PlanLevel& level
 class Stations {
  public:
   Stations(Canvas& canvas, const Chart& chart, const PlanView& view, const PlanLevel& level)
-      : canvas_(canvas), map_(chart.area()), view_(view), level_(level) {
+      : canvas_(canvas), chart_(chart), map_(chart.area()), view_(view), level_(level) {
     for (std::size_t i = 0; i < view.stations.size(); ++i) {
       const PlacedStation& s = view.stations[i];
       if (s.status == StationStatus::hole) continue;
@@ -229,9 +229,36 @@ class Stations {
       if (!named && !put(k, name(k)))
         canvas_.text(discs_[k], name(k), {.size = 8, .bold = true, .across = Align::middle, .halo = 1.5});
     }
+    name_rooms(inside, taken);
+  }
+
+  // In the middle of each room its name, or nearby where that is taken and within the room.
+  void name_rooms(const Rect& inside, std::vector<Rect>& taken) {
+    const TextStyle style{.size = 10, .colour = style::faint, .across = Align::middle, .halo = 2};
+    for (const Room& room : view_.scene.rooms()) {
+      if (!lies_on(room, level_)) continue;
+      const Point low = chart_.at(room.box.min.x, room.box.max.y), high = chart_.at(room.box.max.x, room.box.min.y);
+      const Point middle{(low.x + high.x) / 2, (low.y + high.y) / 2};
+      const double width = canvas_.text_width(room.name, style) + 4, height = 13;
+      const Rect over{middle.x - width / 2, middle.y - height / 2, width, height};
+      const auto free = [&](const Rect& r) {
+        return r.x >= inside.x && r.y >= inside.y && r.right() <= inside.right() && r.bottom() <= inside.bottom() &&
+               std::ranges::none_of(taken, [&](const Rect& t) { return t.overlaps(r); });
+      };
+      std::optional<Rect> place;
+      const double reach = std::max(0.0, (high.y - low.y - height) / 2);
+      for (const double share : {0.0, -0.4, 0.4, -0.8, 0.8}) {
+        const Rect there{over.x, over.y + share * reach, width, height};
+        if (!place && free(there)) place = there;
+      }
+      if (!place) continue;
+      taken.push_back(*place);
+      canvas_.text({place->x + width / 2, place->y + height / 2}, room.name, style);
+    }
   }
 
   Canvas& canvas_;
+  const Chart& chart_;
   Rect map_;
   const PlanView& view_;
   const PlanLevel& level_;
@@ -416,6 +443,10 @@ void draw_target(Canvas& canvas, Point at, bool control, double radius) {
     }
     canvas.polygon(quarter, kTargetInk);
   }
+}
+
+bool lies_on(const Room& room, const PlanLevel& level) {
+  return room.box.max.z > level.floor + 0.5 && room.box.min.z < level.floor + 1.5;
 }
 
 bool stands_on(const Target& target, const PlanLevel& level) {

@@ -18,7 +18,7 @@ namespace vantage {
 
 // Content of all maps of a plan view. Borrows scene, area and stations.
 struct PlanView {
-  const Scene& scene;
+  const Scene& scene;  // names of its rooms stand in them
   const SearchArea& area;
   std::span<const PlacedStation> stations;
   std::vector<std::string> names;  // one for each station
@@ -79,6 +79,8 @@ void draw_elsewhere(Canvas& canvas, Point at, const std::string& text);
 inline constexpr double kTargetRadius = 5;
 void draw_target(Canvas& canvas, Point at, bool control, double radius = kTargetRadius);
 bool stands_on(const Target& target, const PlanLevel& level);
+// Whether a person on the floor of the level is in the room's height.
+bool lies_on(const Room& room, const PlanLevel& level);
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors);
 
 // Overlaps in the legend. The scale of widths is the same on every picture and ends with the last.

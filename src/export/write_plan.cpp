@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <system_error>
 
 #include "core/text.hpp"
@@ -14,9 +15,16 @@ namespace {
 
 std::string title_of(const PlanEntry& entry) {
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
-  if (const auto capture = entry.values.find("capture"); capture != entry.values.end())
-    return title + ": " + fixed(100 * entry.value("coverage"), 1) + " % of the site captured, " +
-           fixed(100 * capture->second.value, 1) + " % of what is attainable";
+  // A plan whose time was over may know neither.
+  const double coverage = entry.value("coverage");
+  if (const auto capture = entry.values.find("capture"); capture != entry.values.end()) {
+    std::string shares;
+    if (!std::isnan(coverage)) shares = fixed(100 * coverage, 1) + " % of the site captured";
+    if (!std::isnan(capture->second.value))
+      shares +=
+          (shares.empty() ? "captured " : ", ") + fixed(100 * capture->second.value, 1) + " % of what is attainable";
+    return title + ": " + (shares.empty() ? "the time was over before anything was measured" : shares);
+  }
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 

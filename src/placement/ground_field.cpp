@@ -402,6 +402,11 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
     for (const Candidate& c : some) largest = std::max(largest, c.area);
     return largest;
   };
+  const auto only_lowest = [&](std::vector<Candidate>& some) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Candidate& c : some) lowest = std::min(lowest, c.z);
+    std::erase_if(some, [&](const Candidate& c) { return c.z > lowest + storey; });
+  };
   const double largest = std::max(largest_of(open), largest_of(closed));
   only_above(open, large_open * largest);
   std::vector<Candidate> small = closed;
@@ -418,6 +423,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   move_to_open(closed, 1);
   if (open.empty()) {
     move_to_open(small, most_open);
+    only_lowest(open);
     // A closet of a closed level is no entrance: what is left closed must not dwarf what is entered.
     constexpr double least_entered = 0.1;
     double entered = 0;
@@ -427,9 +433,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Candidate& c : choice) lowest = std::min(lowest, c.z);
-  std::erase_if(choice, [&](const Candidate& c) { return c.z > lowest + storey; });
+  only_lowest(choice);
   std::ranges::sort(choice, [](const Candidate& a, const Candidate& b) {
     return a.area != b.area ? a.area > b.area : a.part < b.part;
   });
@@ -627,6 +631,18 @@ double GroundField::covered_area() const {
   double area = 0;
   for (const Part& part : parts_)
     if (2 * part.in_the_sky <= part.samples && part.area(cell_) >= room()) area += part.area(cell_);
+  return area;
+}
+
+double GroundField::walled_area(const MeshTree& tree, double highest_z) const {
+  constexpr double kMostOpen = 0.85;  // of a roof's edge hardly anything is seen to rise
+  double area = 0;
+  for (std::uint32_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    const bool roof = 2 * part.in_the_sky > part.samples && 2 * part.above_others > part.samples;
+    if (roof || part.mean_z > highest_z || part.area(cell_) < 10 * room()) continue;
+    if (ways_out(tree, part, i).share <= kMostOpen) area += part.area(cell_);
+  }
   return area;
 }
 

@@ -70,6 +70,9 @@ class GroundField {
   double ground_area(double highest_z) const;
   // Area of parts with room under a cover, reached or not: large in a building, small in a machine.
   double covered_area() const;
+  // Area of parts as large as a hall, reached or not, no higher on average, from which one sees walls around: a site's
+  // floors, whatever steps lie between them, and not the tops of a machine.
+  double walled_area(const MeshTree& tree, double highest_z) const;
   // Large parts beyond steps higher than a person takes but less than twice as high, and the highest of those steps.
   struct HighSteps {
     double highest_m = 0, area_m2 = 0;

@@ -30,8 +30,8 @@ constexpr double weld_share = 1e-5;
 // Walkable surfaces form a ground if, in the lower half of the model, the reached ones and their continuations cover
 // this share of the model's outline seen from above. Flat parts of a machine are clear, too, but they are scattered or
 // on its top, and nobody stands there to scan it. Surfaces also form a ground if as much area, reached or not, is under
-// a cover, as in a building.
-constexpr double ground_share = 0.3;
+// a cover, as in a building, or if floors with walls around them, reached or not, are this share of what is built.
+constexpr double ground_share = 0.3, floor_share = 0.5;
 constexpr double lower_half = 0.5;
 // A part without room for a disc of this radius, in sides of the smallest square part, is the top of a pipe or a rail.
 // Parts of `surely_wide` times the smallest area are not tested.
@@ -267,7 +267,8 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
   const bool around = field.ground_area(lower_half_z) >= ground_share * plan_hull_area(points);
   const bool inside = field.covered_area() >= ground_share * field.outline();
-  if (field.entries().empty() || (options.enter.empty() && !around && !inside)) return {};
+  const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
+  if (field.entries().empty() || (options.enter.empty() && !around && !inside && !floors())) return {};
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
   if (surface.mesh.triangles.empty()) return surface;
   tell_entries(surface, field, scene);

@@ -212,8 +212,7 @@ class MapSheet {
   void rooms(std::span<const Room> rooms) {
     for (const Room& room : rooms) {
       const Vec3 middle = room.box.centre();
-      const bool here = room.box.max.z > level_.floor + 0.5 && room.box.min.z < level_.floor + 1.5;
-      if (here && holds(middle))
+      if (lies_on(room, level_) && holds(middle))
         label(at(middle), 0, room.name, {.size = 7.5, .colour = kRoomInk, .across = Align::middle, .halo = 1.5});
     }
   }

@@ -12,6 +12,23 @@ ReportOptions titled(ReportOptions options, const Site& site) {
   return options;
 }
 
+std::vector<RoomFacts> rooms_of(const Report& report, const Scene& scene) {
+  std::vector<RoomFacts> facts;
+  const std::span<const Room> rooms = scene.rooms();
+  if (!report.options.missed || report.options.missed->rooms.size() != rooms.size()) return facts;
+  const Evaluation& network = report.shown();
+  const std::vector<std::string> names = station_names(network.stations, network.names);
+  const std::vector<std::vector<std::size_t>> in = stations_in_rooms(rooms, network.stations);
+  for (std::size_t k = 0; k < rooms.size(); ++k) {
+    const RoomShare& share = report.options.missed->rooms[k];
+    RoomFacts& room = facts.emplace_back(RoomFacts{rooms[k].storey, rooms[k].name, floor_area(rooms[k])});
+    if (share.share.voxels > 0) room.captured = share.share.share(WhyMissed::captured);
+    for (const std::size_t station : in[k]) room.stations += (room.stations.empty() ? "" : ", ") + names[station];
+    if (in[k].empty()) room.why = why_no_station(share);
+  }
+  return facts;
+}
+
 }  // namespace
 
 Report report_of(const PlanResult& result, Site& site, const ReportOptions& options) {
@@ -31,6 +48,7 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
   for (const PlanEntry& entry : result.front) report.networks.push_back({entry, entry.dominated});
   report.facts = report_facts(report, site.simulator());
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
+  report.rooms = rooms_of(report, site.scene());
   return report;
 }
 
@@ -46,6 +64,7 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
   if (!report.options.field && !evaluation.field.count.empty()) report.options.field = &evaluation.field;
   report.facts = report_facts(report, site.simulator());
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
+  report.rooms = rooms_of(report, site.scene());
   return report;
 }
 

@@ -16,6 +16,15 @@
 
 namespace vantage {
 
+// A room, and what the answer does in it.
+struct RoomFacts {
+  std::string storey, name;
+  double floor_m2 = 0;
+  std::optional<double> captured = {};  // share of its surveyed surface; empty: it has none
+  std::string stations = {};            // names of those in it; empty: there is none, and `why`
+  std::string why = {};
+};
+
 // Borrows its content.
 struct Report {
   struct Network {
@@ -35,6 +44,7 @@ struct Report {
   std::string parameters = "{}";               // JSON text of an object
   std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
   std::optional<Accuracy> accuracy = {};                        // of the answer, by room or mesh
+  std::vector<RoomFacts> rooms = {};                            // under the answer; empty: none, or not looked at
   // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 

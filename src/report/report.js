@@ -61,6 +61,8 @@
     at('targets-section').hidden = !network.targets.length;
     accuracyTable(at('accuracy'), at('accuracy-words'), k === report.answer ? report.accuracy : null);
     at('accuracy-section').hidden = k !== report.answer || !report.accuracy;
+    roomTable(at('rooms'), report.rooms);
+    at('rooms-section').hidden = k !== report.answer || !report.rooms.length;
     linkTable(at('links'), at('links-words'), network);
     valuesTable(at('values'), report, network);
     only = null;

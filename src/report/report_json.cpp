@@ -201,6 +201,18 @@ ordered_json accuracy_json(const Report& report) {
           {"rows", std::move(rows)}};
 }
 
+ordered_json rooms_json(const std::vector<RoomFacts>& rooms) {
+  ordered_json rows = ordered_json::array();
+  for (const RoomFacts& room : rooms)
+    rows.push_back({{"storey", room.storey},
+                    {"name", room.name},
+                    {"floor_m2", room.floor_m2},
+                    {"captured", room.captured ? ordered_json(*room.captured) : ordered_json()},
+                    {"stations", room.stations},
+                    {"why_no_station", room.why}});
+  return rows;
+}
+
 // As the address of a picture in a page; empty: none.
 std::string logo_json(const std::filesystem::path& file) {
   if (file.empty()) return "";
@@ -244,6 +256,7 @@ ordered_json report_json(const Report& report) {
           {"networks", std::move(networks)},
           {"missed", missed_json(report)},
           {"accuracy", accuracy_json(report)},
+          {"rooms", rooms_json(report.rooms)},
           {"trade_off", trade_off_json(report.trade_off)},
           {"parameters", ordered_json::parse(report.parameters)}};
 }

@@ -269,6 +269,26 @@ void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, Accura
               });
 }
 
+void rooms_table(std::vector<Sheet>& sheets, const std::vector<RoomFacts>& rooms) {
+  Sheet& sheet = sheets.back();
+  sheet.heading("Rooms");
+  sheet.words(Sheet::kMargin,
+              "Captured: share of the surfaces in and around a room. A room without a station says why it has none.",
+              {.size = 9, .colour = kFaintInk});
+  sheet.y += 6;
+  write_table(sheets, a4(),
+              {{"Room", 110, Align::start},
+               {"Storey", 90, Align::start},
+               {"floor, m²", 50},
+               {"captured", 52},
+               {"Stations", 230, Align::start}},
+              rooms.size(), rooms.size(), "", [&](std::size_t k) -> std::vector<std::string> {
+                const RoomFacts& room = rooms[k];
+                return {room.name, room.storey, fixed(room.floor_m2, 1), room.captured ? percent(*room.captured) : "–",
+                        room.stations.empty() ? "none: " + room.why : room.stations};
+              });
+}
+
 void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& shares) {
   Sheet& sheet = sheets.back();
   constexpr double kMargin = Sheet::kMargin;
@@ -341,6 +361,10 @@ void write_report_pdf(const std::filesystem::path& file, const Report& report, S
   if (report.accuracy && !report.accuracy->places.empty()) {
     sheets.emplace_back(a4());
     accuracy_table(sheets, *report.accuracy, network.accuracy_class);
+  }
+  if (!report.rooms.empty()) {
+    sheets.emplace_back(a4());
+    rooms_table(sheets, report.rooms);
   }
   if (report.options.missed && !report.options.missed->shares.empty()) {
     sheets.emplace_back(a4());

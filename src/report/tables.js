@@ -137,6 +137,12 @@ function accuracyTable(holder, wordsHolder, accuracy) {
       r.beyond > 0 ? element('span', { class: 'tag weak' }, 'not met') : 'met']), [0, 4], kShown, (n) => `${n} more`));
 }
 
+function roomTable(holder, rooms) {
+  holder.replaceChildren(...foldedTable(['Room', 'Storey', 'Floor (m²)', 'Captured', 'Stations'],
+    rooms.map((r) => [r.name, r.storey || null, r.floor_m2.toFixed(1), r.captured === null ? null : percent(r.captured), r.stations || `none: ${r.why_no_station}`]),
+    [0, 1, 4], kRows, (n) => `${n} more rooms`));
+}
+
 // The round in a sentence.
 function roundWords(network) {
   if (!network.visit) return '';

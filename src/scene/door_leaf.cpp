@@ -17,7 +17,7 @@ namespace {
 // Sizes of leaves, with their frames where these are one with them. Metres.
 constexpr double kLowest = 1.75, kHighest = 3.0, kNarrowest = 0.55, kWidest = 2.6, kThickest = 0.4;
 // Of those that no name tells.
-constexpr double kLowestPlain = 1.85, kHighestPlain = 2.5, kNarrowestPlain = 0.6, kWidestPlain = 1.3,
+constexpr double kLowestPlain = 1.85, kHighestPlain = 2.6, kNarrowestPlain = 0.6, kWidestPlain = 1.3,
                  kThickestPlain = 0.12;
 
 }  // namespace
@@ -37,7 +37,7 @@ std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
     mean += glm::dvec2(p.x, p.y), ++count;
   });
   DoorLeaf leaf{.height = high - low};
-  if (broken || count == 0 || leaf.height < kLowest || leaf.height > kHighest) return std::nullopt;
+  if (broken || count == 0 || !is_leaf_high(leaf.height)) return std::nullopt;
   mean /= count;
   double xx = 0, xy = 0, yy = 0;
   for_points([&](const glm::dvec3& p) {
@@ -56,6 +56,8 @@ std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
   leaf.middle.z = (low + high) / 2;
   return leaf;
 }
+
+bool is_leaf_high(double height) { return height >= kLowest && height <= kHighest; }
 
 bool is_plain_leaf(const DoorLeaf& leaf) {
   return leaf.height >= kLowestPlain && leaf.height <= kHighestPlain && leaf.width >= kNarrowestPlain &&

@@ -23,6 +23,9 @@ struct DoorLeaf {
 std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
                                     const std::function<glm::dvec3(std::uint32_t vertex)>& place);
 
+// Whether a box of that height may be one.
+bool is_leaf_high(double height);
+
 // Whether it is as large as a single leaf, and may be a door whatever it is called.
 bool is_plain_leaf(const DoorLeaf& leaf);
 

@@ -354,9 +354,11 @@ std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optiona
 }
 
 namespace {
+constexpr double kSize = 0.3;  // least share of a plausible extent
+
 // Where neither a door nor a stair nor a drawing grid tells, headroom alone does, and halls have any.
 bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
-  constexpr double kPlausible = 0.2, kSize = 0.3;
+  constexpr double kPlausible = 0.2;
   const bool told = best.doors >= 1 || best.flights >= 1 || best.grid > 0;
   return !told && other.up == best.up && other.unit != best.unit && features_of(other)[0] >= kSize &&
          other.rooms >= kPlausible * best.rooms;
@@ -368,6 +370,14 @@ bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
   return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.up != UpAxis::x &&
          other.upright >= kMostUpright;
 }
+
+// Nobody draws on another unit's grid: doors and stairs may be a coincidence of sizes then. A site in metres has no
+// such grid.
+bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
+  return best.unit != Unit::metre && best.grid == 0 && other.grid > 0 && other.up == best.up &&
+         features_of(other)[0] >= kSize;
+}
+
 bool has_ways(const Hypothesis& h) { return h.doors >= 1 || h.flights >= 1; }
 
 // A tower that lies on its side has floors, too, and few models have X up: without a door or a stair along it, X gives
@@ -394,7 +404,7 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   const auto rivals = [&](const Hypothesis& other) {
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
     return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
-           (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other)));
+           (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) || drawn_otherwise(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
     out.question =

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -14,13 +13,15 @@
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
+#include "scene/door_leaf.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
 
-std::string number(double value, int digits = 3) {
+// For people.
+std::string rounded(double value, int digits = 3) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
   return buffer.data();
@@ -128,7 +129,7 @@ WalkableOptions walkable_of(const SiteOptions& options, double scale) {
   walkable.levels = options.levels_m;
   if (walkable.levels && (*walkable.levels)[0] > (*walkable.levels)[1])
     throw Error(Errc::invalid_argument,
-                "levels: " + number((*walkable.levels)[0], 6) + " is not below " + number((*walkable.levels)[1], 6));
+                "levels: " + rounded((*walkable.levels)[0], 6) + " is not below " + rounded((*walkable.levels)[1], 6));
   walkable.within = options.within, walkable.without = options.without;
   return walkable;
 }
@@ -139,15 +140,13 @@ void log_area(const SearchArea& area, const Scene& scene, const std::function<vo
   std::string left_out;
   bool sealed = false;
   for (const LeftOut& out : area.left_out()) {
-    left_out += (left_out.empty() ? "" : ", ") + number(out.area_m2) + " m² " + to_string(out.reason);
+    left_out += (left_out.empty() ? "" : ", ") + rounded(out.area_m2) + " m² " + to_string(out.reason);
     sealed = sealed || (out.reason == LeftOutReason::sealed && out.area_m2 >= 1);
   }
   if (!left_out.empty()) log("left out of the search area: " + left_out);
   if (!sealed || !scene.options().doors.empty()) return;
   for (const MeshInfo& mesh : scene.meshes()) {
-    std::string name = mesh.name;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.find("door") == std::string::npos) continue;
+    if (!names_a_door(mesh.name)) continue;
     log("sealed parts may lie behind closed doors, such as \"" + mesh.name + "\"; the setting doors opens them");
     return;
   }
@@ -207,14 +206,14 @@ struct Site::Impl {
     const bool details_differ = asks_for_detail(scene) && !detail;
     config.spacing_by_detail = options.spacing_by_detail || (details_differ && !options.spacing_m);
     if (!options.user_size_m)
-      choose("user-size", number(config.user_size_m), scale == 1 ? "the usual size" : "by the size of the scene");
+      choose("user-size", rounded(config.user_size_m), scale == 1 ? "the usual size" : "by the size of the scene");
     if (!options.spacing_m)
-      choose("spacing", number(config.point_spacing_m),
+      choose("spacing", rounded(config.point_spacing_m),
              detail ? "the detail that all surveyed nodes ask for" : "the scanner's own steps at 10 m");
     if (!details_differ || !config.spacing_by_detail) return;
     choose("spacing-by-detail", "true", "nodes ask for details that differ");
     log("surveyed nodes are wanted as densely as the detail that they ask for, others with a point every " +
-        number(config.point_spacing_m) + " m");
+        rounded(config.point_spacing_m) + " m");
   }
 
   // Logs the values scaled for a scene smaller than a site in one line.
@@ -224,16 +223,17 @@ struct Site::Impl {
       if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
     };
     const Scanner& scanner = scanners.front();
-    add(options.user_size_m.has_value(), "user-size " + number(config.user_size_m));
-    add(options.spacing_m.has_value(), "spacing " + number(config.point_spacing_m));
-    add(options.height_m.has_value(), "height " + number(scanner.height_m));
-    add(options.range_m || options.scanner, "range " + number(scanner.min_range_m) + "," + number(scanner.max_range_m));
+    add(options.user_size_m.has_value(), "user-size " + rounded(config.user_size_m));
+    add(options.spacing_m.has_value(), "spacing " + rounded(config.point_spacing_m));
+    add(options.height_m.has_value(), "height " + rounded(scanner.height_m));
+    add(options.range_m || options.scanner,
+        "range " + rounded(scanner.min_range_m) + "," + rounded(scanner.max_range_m));
     add(options.security_m.has_value(),
-        "security " + number(security.lower_m) + "," + number(security.upper_m) + "," + number(security.radius_m));
+        "security " + rounded(security.lower_m) + "," + rounded(security.upper_m) + "," + rounded(security.radius_m));
     if (made_up.empty()) return;
     const Vec3 size = scene.bounds().size();
-    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) +
-        " m, smaller than a site: lengths are taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
+    log("the scene measures " + rounded(size.x) + " x " + rounded(size.y) + " x " + rounded(size.z) +
+        " m, smaller than a site: lengths are taken as " + rounded(scale, 2) + " times the usual (" + made_up + ")");
   }
 
   const SearchArea& search_area() {

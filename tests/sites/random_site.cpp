@@ -28,7 +28,8 @@ enum Word { wall_, floor_, stair_, table_, door_, column_ };
 
 class Maker {
  public:
-  explicit Maker(std::uint64_t seed) : random_(seed) {
+  // `together`: all leaves of doors are one mesh.
+  Maker(std::uint64_t seed, bool together) : random_(seed), together_(together) {
     language_ = below(kWords.size() + 1);
     made_.site.name = "random";
   }
@@ -153,9 +154,9 @@ class Maker {
     carve(add_part(made_.site, name(floor_), sites::kConcrete, Surface::floor), slabs, holes_in_slabs);
     carve(add_part(made_.site, name(wall_), sites::kPlaster, Surface::wall_top), walls, openings);
     for (const Box& leaf : leaves) {
-      Part part{.name = name(door_), .colour = sites::kWood};
-      add_box(part, leaf);
-      made_.leaves.push_back(std::move(part));
+      if (made_.leaves.empty() || !together_)
+        made_.leaves.push_back({.name = name(together_ ? table_ : door_), .colour = sites::kWood});
+      add_box(made_.leaves.back(), leaf);
     }
     if (lawn)
       add_box(add_part(made_.site, "lawn", sites::kGrass, Surface::floor), block(-8, x1 + 6, -8, y1 + 7, -0.5, -slab));
@@ -169,7 +170,7 @@ class Maker {
     std::ostringstream text;
     text << "building of " << columns << " x " << rows << " rooms on " << storeys << " storeys"
          << (stairs ? " with stairs" : "") << (lawn ? " on a lawn" : "") << (entrance ? "" : " without an entrance")
-         << ", " << leaves.size() << " leaves";
+         << ", " << leaves.size() << (together_ ? " leaves in one mesh" : " leaves");
     made_.told = text.str();
   }
 
@@ -242,13 +243,14 @@ class Maker {
 
   RandomSite made_;
   std::uint64_t random_;
+  bool together_;
   std::size_t language_ = 0;
   int named_ = 0;
 };
 
 }  // namespace
 
-RandomSite make_random_site(std::uint64_t seed) { return Maker(seed * 2 + 1).make(); }
+RandomSite make_random_site(std::uint64_t seed) { return Maker(seed * 2 + 1, seed % 3 == 0).make(); }
 
 void write_site(const RandomSite& random, const std::filesystem::path& file) {
   KnownSite site = random.site;

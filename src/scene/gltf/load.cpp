@@ -301,11 +301,20 @@ class Loader {
                          some_of(names) + "; the word opaque for the setting glass stops rays too");
   }
 
+  // Some of the names, each once with how often it occurs if that is more.
   static std::string some_of(const std::vector<std::string>& names) {
     constexpr std::size_t kNamed = 3;
     std::string some;
-    for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) some += (i ? ", " : "") + gltf::quoted(names[i]);
-    return some + (names.size() > kNamed ? ", …" : "");
+    std::size_t named = 0, at = 0;
+    while (at < names.size() && named < kNamed) {
+      const std::size_t same =
+          static_cast<std::size_t>(std::find_if(names.begin() + static_cast<std::ptrdiff_t>(at), names.end(),
+                                                [&](const std::string& other) { return other != names[at]; }) -
+                                   (names.begin() + static_cast<std::ptrdiff_t>(at)));
+      some += (named++ ? ", " : "") + gltf::quoted(names[at]) + (same > 1 ? " (" + std::to_string(same) + ")" : "");
+      at += same;
+    }
+    return some + (at < names.size() ? ", …" : "");
   }
 
   void read(const Job& job) {

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "program.hpp"
+#include "support/glb_builder.hpp"
 
 namespace vantage::test {
 namespace {
@@ -65,6 +66,31 @@ TEST_F(Bound, EvaluateTellsWhatIsMissed) {
   EXPECT_NEAR(sum, 1, 1e-3);
   expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--missed", path("missed.txt")})), 2,
                  "missed.txt");
+}
+
+TEST_F(Bound, EvaluateTellsOfRooms) {
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--rooms", path("rooms.csv")})), 2,
+                 "names no rooms");
+  GlbBuilder glb;
+  const auto quad = [&](const char* name, const std::vector<float>& corners) {
+    const int points = glb.positions(corners);
+    const std::vector<std::uint32_t> order{0, 1, 2, 0, 2, 3};
+    glb.node({{"name", name},
+              {"mesh",
+               glb.mesh({{"attributes", {{"POSITION", points}}}, {"indices", glb.accessor(order, 5125, "SCALAR")}})}});
+  };
+  quad("floor", {-5, 0, 5, 5, 0, 5, 5, 0, -5, -5, 0, -5});
+  quad("wall", {-5, 0, -5, 5, 0, -5, 5, 3, -5, -5, 3, -5});
+  const nlohmann::json box = {{-5, 0, -5}, {0, 3, 5}};
+  glb.node({{"name", "room"}, {"extras", {{"vantage", {{"class", "IfcSpace"}, {"name", "7"}, {"box", box}}}}}});
+  glb.write_glb(path("rooms.glb"));
+  const Outcome outcome = run_program({"evaluate", path("rooms.glb"), "--engine", "embree", "--station", "-2,0,1.5",
+                                       "--step", "2", "--user-size", "0.5", "--rooms", path("rooms.csv")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string table = read("rooms.csv");
+  EXPECT_TRUE(table.starts_with("storey,room,floor_m2,ground_m2,stations,why_no_station,voxels,captured,")) << table;
+  EXPECT_NE(table.find("\n,7,50.00,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",S1,,"), std::string::npos) << table;
 }
 
 }  // namespace

@@ -322,6 +322,19 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   EXPECT_THROW(draw_plan_view(folder / "bad.png", site, stations, {.values = OverlapMatrix(3)}, "Wrong"), Error);
 }
 
+TEST(Pictures, PlanViewNamesTheRoomsOfItsFloor) {
+  const auto ink = [&](double z) {
+    const test::TemporaryFolder folder;
+    auto data = std::make_shared<SceneData>(room().data());
+    for (const auto& [name, x] : {std::pair{"Kitchen", -1.0}, {"Hall", 1.0}})
+      data->rooms.push_back({.name = name, .storey = "", .box = {{x - 1, -2, z}, {x + 1, 2, z + 2.5}}});
+    Site site = site_of(Scene(std::shared_ptr<const SceneData>(std::move(data))), floor_of_room());
+    draw_plan_view(folder / "plan.png", site, {}, {}, "Rooms");
+    return test::Drawn(folder / "plan.png").near(style::faint, 30);
+  };
+  EXPECT_GT(ink(0), ink(3) + 100) << "above the floor that is shown, they have no name on it";
+}
+
 TEST(Pictures, PlanViewDrawsStandardEllipses) {
   const test::TemporaryFolder folder;
   const std::vector<PlacedStation> stations{{.uv = {}, .position = {-1, -1, 1.8}, .ground = {-1, -1, 0}},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -44,16 +45,42 @@ double left_out(const SearchArea& area, LeftOutReason reason) {
   return 0;
 }
 
-// A level without a way out is entered, though a closet beside it has a door to the outside.
-TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
+// A closed level of 1200 m² with an annex beside it that is this wide, has a door to the outside and none to the level.
+SearchArea level_with_annex(double width) {
   test::Builder builder;
-  builder.floor(-20, -15, 20, 15, 0).box({-20.2, -15.2, 2.8}, {24.6, 15.2, 3});
+  const double x = 20.2 + width, y = width;
+  builder.floor(-20, -15, 20, 15, 0).box({-20.2, -15.2, 2.8}, {x + 0.2, std::max(15.2, y + 0.2), 3});
   builder.box({-20.2, -15.2, 0}, {-20, 15.2, 2.8}).box({20, -15.2, 0}, {20.2, 15.2, 2.8});
   builder.box({-20, -15.2, 0}, {20, -15, 2.8}).box({-20, 15, 0}, {20, 15.2, 2.8});
-  builder.floor(20.2, 0, 24.4, 4, 0).box({20.2, -0.2, 0}, {24.6, 0, 2.8}).box({20.2, 4, 0}, {24.6, 4.2, 2.8});
-  builder.box({24.4, 0, 0}, {24.6, 1.5, 2.8}).box({24.4, 2.5, 0}, {24.6, 4, 2.8});
-  const SearchArea area = SearchArea::build(builder.scene());
-  EXPECT_GT(true_area(area.mesh()), 1000);
+  builder.floor(20.2, 0, x, y, 0).box({20.2, -0.2, 0}, {x + 0.2, 0, 2.8}).box({20.2, y, 0}, {x + 0.2, y + 0.2, 2.8});
+  builder.box({x, 0, 0}, {x + 0.2, 1.5, 2.8}).box({x, 2.5, 0}, {x + 0.2, y, 2.8});
+  return SearchArea::build(builder.scene());
+}
+
+// A level without a way out is entered, though a closet or an annex beside it has a door to the outside; an annex of
+// more than a tenth of its size is where one enters.
+TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
+  EXPECT_GT(true_area(level_with_annex(4.2).mesh()), 1000);
+  EXPECT_GT(true_area(level_with_annex(10).mesh()), 1000);
+  const SearchArea entered = level_with_annex(12);
+  EXPECT_LT(true_area(entered.mesh()), 200);
+  ASSERT_FALSE(entered.not_entered().empty());
+  EXPECT_GT(entered.not_entered()[0].area_m2, 1000);
+}
+
+// Open yards, each a step above the last that nobody takes, with walls around them: no plane is laid below. Blocks of
+// the same heights are no yards.
+TEST(Walkable, FloorsWithWallsAroundAreAGround) {
+  for (const double walls : {3.0, 0.0}) {
+    test::Builder builder;
+    for (int k = 0; k < 4; ++k) {
+      const double x = 10.0 * k, z = 0.6 * k;
+      builder.box({x, 0, -0.2}, {x + 10, 10, z});
+      if (walls > 0) builder.box({x, -0.2, -0.2}, {x + 10, 0, z + walls}).box({x, 10, -0.2}, {x + 10, 10.2, z + walls});
+    }
+    if (walls > 0) builder.box({-0.2, 0, -0.2}, {0, 10, walls}).box({40, 0, -0.2}, {40.2, 10, 1.8 + walls});
+    EXPECT_EQ(SearchArea::build(builder.scene()).on_plane(), walls == 0);
+  }
 }
 
 // The assumed person is 0.6 m wide, so areas end 0.3 m before obstacles, up to the size of a piece.

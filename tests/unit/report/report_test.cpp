@@ -112,6 +112,36 @@ const Word* find(const std::vector<Word>& words, const std::string& text) {
   return found == words.end() ? nullptr : &*found;
 }
 
+// A survey of a wall with two rooms before it, of which one has a station.
+TEST(Report, TellsOfEachRoom) {
+  const test::TemporaryFolder folder;
+  test::QuadScene scene = test::wall_and_floor();
+  for (const auto& [name, y] : {std::pair{"Kitchen", -3.0}, {"Hall", 0.0}})
+    scene.data().rooms.push_back({.name = name, .storey = "Ground", .box = {{-2, y, -1.5}, {5, y + 3, 2}}});
+  Site site(scene.scene(),
+            {.scanners = {test::coarse_scanner(2)}, .user_size_m = 0.4, .spacing_m = 0.1, .engine = Engine::embree});
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {1, 1, 0.3}, .ground = {1, 1, -1.5}}};
+  const Evaluation found = site.evaluate(stations, {.field = true});
+  const MissedVoxels missed = missed_voxels(site, found.field);
+  const auto rows = report_json(report_of(found, site, {.missed = &missed}))["rooms"];
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["name"], "Kitchen");
+  EXPECT_EQ(rows[0]["storey"], "Ground");
+  EXPECT_NEAR(rows[0]["floor_m2"].get<double>(), 21, 1e-9);
+  EXPECT_EQ(rows[0]["stations"], "");
+  EXPECT_EQ(rows[0]["why_no_station"], why_no_station(missed.rooms[0]));
+  EXPECT_EQ(rows[1]["stations"], "S1");
+  EXPECT_EQ(rows[1]["why_no_station"], "");
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(rows[k]["captured"], missed.rooms[k].share.share(WhyMissed::captured)) << k;
+  EXPECT_TRUE(report_json(report_of(found, site, {}))["rooms"].empty()) << "not looked at";
+
+  write_report(folder / "report.pdf", found, site, {.missed = &missed});
+  const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
+  const auto told = [&](const std::vector<Word>& sheet) { return find(sheet, "Rooms") && find(sheet, "Kitchen"); };
+  EXPECT_EQ(std::ranges::count_if(sheets, told), 1);
+}
+
 TEST(Report, SheetsNameEveryStationAndKeepTheirRatio) {
   const test::TemporaryFolder folder;
   Survey survey("EPSG:25832");

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scene/positions.hpp"
 #include "support/box.hpp"
 #include "support/glb_builder.hpp"
@@ -172,6 +174,33 @@ TEST(RecogniseUnits, OptionsSettleIt) {
   EXPECT_NEAR(inches.bounds().size().x, 18'000 * 0.0254, 1e-3);
   EXPECT_NEAR(inches.bounds().size().y, 3000 * 0.0254, 1e-3);
   EXPECT_NEAR(inches.bounds().size().z, 14'000 * 0.0254, 1e-3);
+}
+
+// Rooms, openings and a stair that fit a person in centimetres, drawn on a grid of eight as models in inches are.
+TEST(RecogniseUnits, AnotherUnitsDrawingGridIsAskedAbout) {
+  for (const double shift : {0.0, 1.0}) {
+    House drawn;
+    drawn.points.clear(), drawn.triangles.clear();
+    const double s = shift;
+    const auto box = [&](Vec3 low, Vec3 high) {
+      const Vec3 by{s, 3 * s, 5 * s};
+      drawn.box(low + by, high + by);
+    };
+    box({-400, -400, -16}, {1400, 1000, 0});
+    for (const double y : {0.0, 584.0}) box({0, y, 0}, {1000, y + 16, 264});
+    box({0, 0, 0}, {16, 600, 264}), box({984, 0, 0}, {1000, 200, 264}), box({984, 288, 0}, {1000, 600, 264});
+    box({984, 200, 208}, {1000, 288, 264});
+    for (const double x : {240.0, 504.0, 752.0})
+      box({x, 0, 0}, {x + 16, 304, 264}), box({x, 392, 0}, {x + 16, 600, 264}), box({x, 304, 208}, {x + 16, 392, 264});
+    box({0, 0, 264}, {1000, 600, 280});
+    for (int i = 0; i < 16; ++i) box({104.0 + 32 * i, -120, 0}, {136.0 + 32 * i, 0, 16.0 * (i + 1)});
+    const RawScene raw = drawn.written(Unit::metre, UpAxis::z);  // the numbers as they are
+    const Recognised found = recognise(raw, {}, UpAxis::z);
+    EXPECT_EQ(found.unit, Unit::centimetre) << found.question;
+    EXPECT_EQ(found.question.empty(), shift != 0) << found.question << found.note;
+    const auto inches = [](const std::string& choice) { return choice.find("unit in,") != std::string::npos; };
+    EXPECT_EQ(std::ranges::any_of(found.choices, inches), shift == 0);
+  }
 }
 
 TEST(RecogniseUnits, MarkedFilesAreNotAsked) {

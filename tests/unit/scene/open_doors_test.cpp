@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Leaves of doors that are nodes of their own, or connected parts of a larger mesh, and what only looks like one.
+#include "scene/open_doors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "scene/positions.hpp"
+#include "support/box.hpp"
+
+namespace vantage {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// A wall 0.2 m thick along x from 0 to 10, 2.8 m high, with openings 0.9 m wide and 2.1 m high from x = 1, 4 and 7, on
+// a floor; other boxes by meshes. Metres, Z up.
+class Joinery {
+ public:
+  Joinery() {
+    mesh("wall");
+    for (const auto& [from, to] : {std::pair{0.0, 1.0}, {1.9, 4.0}, {4.9, 7.0}, {7.9, 10.0}})
+      box({from, 0, 0}, {to, 0.2, 2.8});
+    for (const double x : {1.0, 4.0, 7.0}) box({x, 0, 2.1}, {x + 0.9, 0.2, 2.8});
+    box({-5, -5, -0.2}, {15, 5, 0});
+  }
+  Joinery& mesh(const std::string& name) {
+    raw.ranges.push_back({static_cast<std::uint32_t>(raw.triangles.size()), 0, 0});
+    raw.meshes.push_back({.name = name});
+    return *this;
+  }
+  // Each triangle has vertices of its own, as in files without an index.
+  Joinery& box(const Vec3& low, const Vec3& high) {
+    const std::vector<Vec3> corners = test::box_corners(low, high);
+    for (const auto& t : test::box_triangles) {
+      const auto first = static_cast<std::uint32_t>(raw.positions.size());
+      for (const std::uint32_t corner : t) raw.positions.push_back(to_glm(corners[corner]));
+      raw.triangles.push_back({first, first + 1, first + 2});
+      ++raw.ranges.back().triangle_count, ++raw.meshes.back().triangle_count;
+    }
+    return *this;
+  }
+  // A leaf in the opening from x, from one depth to another.
+  Joinery& leaf(double x, double front, double back) { return box({x, front, 0}, {x + 0.9, back, 2.1}); }
+  Names open() { return open_doors(raw, std::vector<std::uint8_t>(raw.meshes.size(), 1)); }
+
+  RawScene raw;
+};
+
+TEST(OpenDoors, ALeafIsAMeshOfItsOwnByNameOrByTheWallAroundIt) {
+  Joinery site;
+  site.mesh("slab 1").leaf(1, 0.08, 0.12).mesh("Tür 2").box({4.1, -2, 0}, {5, -1.96, 2});
+  const std::size_t before = site.raw.triangles.size();
+  EXPECT_EQ(site.open(), (Names{"slab 1", "Tür 2"}));
+  EXPECT_EQ(site.raw.triangles.size(), before - 24);
+}
+
+TEST(OpenDoors, LeavesAreFoundAmongThePartsOfOneMesh) {
+  Joinery site;
+  site.mesh("joinery").leaf(1, 0.08, 0.12);
+  site.box({1.8, 0.03, 1}, {1.85, 0.07, 1.1});   // a handle before it
+  site.leaf(4, 0, 0.04);                         // in the plane of the wall's face
+  site.box({7, -1, 0}, {7.9, -0.5, 2.1});        // a cabinet
+  site.box({7, -0.49, 0}, {7.9, -0.47, 2.1});    // and its door
+  site.box({2.5, -0.03, 0}, {3.4, -0.01, 2.1});  // a board on the wall
+  for (int i = 0; i < 4; ++i)                    // a screen of panels
+    site.box({1.0 * i, 3, 0}, {1.0 * i + 0.98, 3.05, 2.1});
+  const std::size_t before = site.raw.triangles.size();
+  EXPECT_EQ(site.open(), (Names{"joinery", "joinery"}));
+  EXPECT_EQ(site.raw.triangles.size(), before - 36) << "two leaves and a handle";
+  EXPECT_EQ(site.raw.meshes.size(), 2U);
+  for (const glm::dvec3& p : {glm::dvec3{1.45, 0.1, 1}, {4.45, 0.02, 1}})
+    for (const Triangle& t : site.raw.triangles) {
+      const auto near = [&](std::uint32_t v) { return std::abs(site.raw.positions[v].x - p.x) < 0.44; };
+      EXPECT_FALSE(near(t[0]) && near(t[1]) && near(t[2]) && site.raw.positions[t[0]].z < 2.05 &&
+                   std::abs(site.raw.positions[t[0]].y - p.y) < 0.1);
+    }
+}
+
+// The leaf and its frame are one part, as deep as the wall and its trims.
+TEST(OpenDoors, APanelIsMeasuredWithoutItsFrame) {
+  Joinery site;
+  site.mesh("joinery").box({8, -3, 0}, {9, -2, 0.5});
+  for (const double x : {1.0, 1.84}) site.box({x, -0.02, 0}, {x + 0.06, 0.22, 2.1});
+  site.leaf(1, 0.08, 0.12);
+  std::uint32_t frame = static_cast<std::uint32_t>(site.raw.triangles.size()) - 36;
+  // Triangles without area hold the three boxes together.
+  for (const std::uint32_t box : {0U, 12U})
+    for (const std::uint32_t other : {0U, 12U}) {
+      const Triangle a = site.raw.triangles[frame + box], b = site.raw.triangles[frame + 12 + other];
+      site.raw.triangles.push_back({a[0], b[0], b[0]});
+      ++site.raw.ranges.back().triangle_count;
+    }
+  EXPECT_EQ(site.open(), Names{"joinery"});
+  EXPECT_EQ(site.raw.meshes.back().name, "joinery");
+  EXPECT_EQ(site.raw.ranges.back().triangle_count, 12U) << "the chest stays";
+}
+
+TEST(OpenDoors, AFrameIsADoorIfAPaneOfAnotherMeshFillsIt) {
+  const auto frame = [](Joinery& site) {  // one connected ring
+    const auto first = static_cast<std::uint32_t>(site.raw.positions.size());
+    site.mesh("frames");
+    for (const double y : {0.05, 0.1})
+      for (const auto& [inset, drop] : {std::pair{0.0, 0.0}, {0.1, 0.1}})
+        for (const Vec3& p : {Vec3{4 + inset, y, drop},
+                              {4.9 - inset, y, drop},
+                              {4.9 - inset, y, 2.1 - drop},
+                              {4 + inset, y, 2.1 - drop}})
+          site.raw.positions.push_back(to_glm(p));
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+      site.raw.triangles.push_back({first + a, first + b, first + c}),
+          site.raw.triangles.push_back({first + a, first + c, first + d});
+      site.raw.ranges.back().triangle_count += 2, site.raw.meshes.back().triangle_count += 2;
+    };
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t j = (i + 1) % 4;
+      for (const std::uint32_t side : {0U, 8U}) quad(side + i, side + j, side + 4 + j, side + 4 + i);
+      quad(i, j, 8 + j, 8 + i), quad(4 + i, 4 + j, 12 + j, 12 + i);
+    }
+    site.box({8, -3, 0}, {9, -2, 0.5});  // and a chest
+  };
+  Joinery empty;
+  frame(empty);
+  EXPECT_TRUE(empty.open().empty());
+  Joinery filled;
+  frame(filled);
+  filled.mesh("panes").box({4.1, 0.07, 0.1}, {4.8, 0.08, 2}).box({9, -4, 0.5}, {9.5, -4, 1.5});
+  const std::size_t before = filled.raw.triangles.size();
+  EXPECT_EQ(filled.open(), Names{"frames"});
+  EXPECT_EQ(filled.raw.triangles.size(), before - 32 - 12) << "the frame and its pane";
+}
+
+TEST(OpenDoors, NoLeafOfAMeshThatIsNoCandidate) {
+  Joinery site;
+  site.mesh("joinery").leaf(1, 0.08, 0.12).box({8, -3, 0}, {9, -2, 0.5});
+  EXPECT_TRUE(open_doors(site.raw, {1, 0}).empty());
+}
+
+}  // namespace
+}  // namespace vantage
