@@ -142,13 +142,15 @@ struct BendersMaster::Impl {
       }
     }
     use.of.resize(covered.size());
-    const auto apart = [&](std::uint32_t a, std::uint32_t b) {
-      return std::ranges::none_of(pockets[a].members, [&](std::uint32_t k) { return use.members[b][k] != 0; });
-    };
+    std::vector<std::vector<char>> apart(pockets.size(), std::vector<char>(pockets.size()));
+    for (std::size_t a = 0; a < pockets.size(); ++a)
+      for (std::size_t b = 0; b < pockets.size(); ++b)
+        apart[a][b] =
+            std::ranges::none_of(pockets[a].members, [&](std::uint32_t k) { return use.members[b][k] != 0; }) ? 1 : 0;
     for (std::size_t e = 0; e < covered.size(); ++e) {
       std::ranges::stable_sort(limits[e], std::greater<>(), &Limit::less);
       for (const Limit& limit : limits[e]) {
-        if (!std::ranges::all_of(use.of[e], [&](std::uint32_t p) { return apart(p, limit.pocket); })) continue;
+        if (!std::ranges::all_of(use.of[e], [&](std::uint32_t p) { return apart[p][limit.pocket] != 0; })) continue;
         use.of[e].push_back(limit.pocket), covered[e] -= limit.less;
       }
     }

@@ -36,6 +36,8 @@ constexpr int kNested = 3;
 // Rows are dropped after so many slack rounds.
 constexpr std::size_t kSlackRounds = 12;
 constexpr std::size_t kMostPockets = 200;
+// Capacity below which nothing flows.
+constexpr double kNone = 1e-9;
 
 using Set = std::vector<std::uint32_t>;
 
@@ -52,6 +54,7 @@ class NodeCuts {
   bool augment(std::size_t root, std::size_t to, std::span<const double> capacity);
 
   const std::vector<Set>& links_;
+  std::vector<Set> near_;  // links of the root and of candidates with capacity, to such and the end
   // Flow through each candidate, and along links between two with capacity.
   std::vector<double> through_;
   std::vector<std::vector<std::pair<std::uint32_t, double>>> along_;
@@ -61,7 +64,6 @@ class NodeCuts {
 // One shortest path of free capacity (Edmonds, Karp, 1972). Each candidate is two nodes, its capacity between them.
 bool NodeCuts::augment(std::size_t root, std::size_t to, std::span<const double> capacity) {
   const std::size_t n = links_.size();
-  constexpr double kNone = 1e-9;
   std::ranges::fill(entered_, 0), std::ranges::fill(left_, 0);
   struct From {
     std::uint32_t node;  // 2 k: before candidate k; 2 k + 1: behind it
@@ -83,8 +85,7 @@ bool NodeCuts::augment(std::size_t root, std::size_t to, std::span<const double>
       seen[next / 2] = 1, from[next] = {node, free}, open.push_back(next);
     };
     if (node % 2 == 1) {
-      for (const std::uint32_t other : links_[k]) {
-        if (other == root) continue;
+      for (const std::uint32_t other : near_[k]) {
         if (other == to) {
           // Found: the free capacity of the path, then its flow.
           double free = std::numeric_limits<double>::infinity();
@@ -110,13 +111,13 @@ bool NodeCuts::augment(std::size_t root, std::size_t to, std::span<const double>
           }
           return true;
         }
-        reach(2 * other, capacity[other] > kNone || through_[other] > kNone ? 1e9 : 0);
+        reach(2 * other, std::numeric_limits<double>::infinity());
       }
       if (k != root) reach(2 * k, through_[k]);  // back through it
     } else {
       reach(2 * k + 1, capacity[k] - through_[k]);
-      for (const std::uint32_t other : links_[k])
-        if (other != root && other != to) reach(2 * other + 1, flow_of(other, k));
+      for (const std::uint32_t other : near_[k])
+        if (other != to) reach(2 * other + 1, flow_of(other, k));
     }
   }
   return false;
@@ -125,6 +126,11 @@ bool NodeCuts::augment(std::size_t root, std::size_t to, std::span<const double>
 std::pair<BendersMaster::Pocket, double> NodeCuts::between(std::size_t root, std::size_t to,
                                                            std::span<const double> capacity) {
   const std::size_t n = links_.size();
+  near_.assign(n, {});
+  for (std::size_t k = 0; k < n; ++k)
+    if (k == root || capacity[k] > kNone)
+      for (const std::uint32_t other : links_[k])
+        if (other != root && (other == to || capacity[other] > kNone)) near_[k].push_back(other);
   through_.assign(n, 0), along_.assign(n, {});
   entered_.assign(n, 0), left_.assign(n, 0);
   while (augment(root, to, capacity)) {

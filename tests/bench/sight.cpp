@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "bare_embree.hpp"
 #include "core/philox.hpp"
@@ -21,10 +22,11 @@ double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 }  // namespace
 
-Sight::Sight(const SceneData& scene, const Scanner& scanner, std::size_t spots, std::uint64_t seed)
+Sight::Sight(const SceneData& scene, const Scanner& scanner, double spacing_m, std::size_t spots, std::uint64_t seed)
     : origin_(scene.origin),
       nearest_m_(scanner.min_range_m),
       farthest_m_(scanner.max_range_m),
+      dense_m2_(spacing_m * spacing_m / (scanner.azimuth_step.in_radians() * scanner.zenith_step.in_radians())),
       device_(embree::new_device()),
       tree_(tree_of(device_.get(), scene.positions, scene.opaque_triangles())) {
   std::vector<double> upto;  // area of the triangles up to each
@@ -71,21 +73,24 @@ Sight::View Sight::from(const Vec3& head) const {
   const Vec3 local = head - origin_;
   View view;
   view.sides.resize(spots_.size());
-  std::vector<double> distances;
+  std::vector<std::pair<double, double>> captured;  // distance, share of the wanted points
   for (std::size_t k = 0; k < spots_.size(); ++k) {
     const Vec3 way = local - spots_[k].at;
     const double metres = length(way), cosine = dot(way, spots_[k].normal) / std::max(metres, kBefore_m);
     if (metres < nearest_m_ || metres > farthest_m_ || std::abs(cosine) < kSteepest) continue;
     if (blocked(local, spots_[k].at, kBefore_m / std::abs(cosine))) continue;
     view.sides[k] = cosine > 0 ? 1 : -1;
-    distances.push_back(metres);
+    ++view.seen;
+    captured.emplace_back(metres, std::min(1.0, dense_m2_ * std::abs(cosine) / (metres * metres)));
   }
-  view.seen = distances.size();
-  if (view.seen > 0) {
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::ranges::nth_element(distances, middle);
-    view.median_m = *middle;
-  }
+  std::ranges::sort(captured);
+  double all = 0, sum = 0;
+  for (const auto& [metres, share] : captured) all += share;
+  for (const auto& [metres, share] : captured)
+    if ((sum += share) >= all / 2) {
+      view.median_m = metres;
+      break;
+    }
   return view;
 }
 

@@ -15,8 +15,8 @@ namespace vantage::bench {
 
 class Sight {
  public:
-  // Spreads `spots` points evenly over the area of all surfaces that stop rays.
-  Sight(const SceneData& scene, const Scanner& scanner, std::size_t spots, std::uint64_t seed = 1);
+  // Spreads `spots` points evenly over the area of all surfaces that stop rays. `spacing_m`: wanted distance of points.
+  Sight(const SceneData& scene, const Scanner& scanner, double spacing_m, std::size_t spots, std::uint64_t seed = 1);
 
   // Whether nothing stands between two points, survey frame.
   bool free(const Vec3& a, const Vec3& b) const { return !blocked(a - origin_, b - origin_, 0); }
@@ -24,7 +24,7 @@ class Sight {
   struct View {
     std::vector<std::int8_t> sides;  // of each spot: 0 unseen, 1 seen from the front, -1 from behind
     std::size_t seen = 0;            // spots
-    double median_m = 0;             // distance to what is seen
+    double median_m = 0;             // distance to what is captured: points at the wanted distance, or fewer in part
   };
   View from(const Vec3& head) const;  // survey frame
 
@@ -35,7 +35,7 @@ class Sight {
   bool blocked(const Vec3& a, const Vec3& b, double short_m) const;  // local frame; ends `short_m` before b
 
   Vec3 origin_;
-  double nearest_m_, farthest_m_;
+  double nearest_m_, farthest_m_, dense_m2_;  // dense: squared distance at which points are as dense as wanted
   embree::Device device_;
   embree::Scene tree_;
   std::vector<Spot> spots_;
