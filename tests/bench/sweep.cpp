@@ -308,7 +308,7 @@ std::vector<std::string> cells(const SweptSite& site, const Score& score) {
 }
 
 // What no plan may do, in words.
-std::vector<std::string> faults_of(const Score& score) {
+std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   std::vector<std::string> faults;
   const auto none = [&](std::size_t count, const std::string& what) {
     if (count > 0) faults.push_back(number(count) + " " + what);
@@ -316,7 +316,8 @@ std::vector<std::string> faults_of(const Score& score) {
   none(score.off_ground, "stations off the true ground");
   none(score.through_walls, "links through walls");
   none(score.near_pairs, "pairs of stations nearer than a quarter of what they look at");
-  if (score.plan.stations > score.by_thumb)
+  // Without the truth the rule knows no rooms.
+  if (site.truth && score.plan.stations > score.by_thumb)
     faults.push_back(number(score.plan.stations) + " stations, a person takes " + number(score.by_thumb));
   return faults;
 }
@@ -392,7 +393,7 @@ bool Sweep::add(const SweptSite& swept, const SweepOptions& options) {
   std::fprintf(stderr, "%s, %s: %zu stations, %zu proven, %zu by thumb, %s captured, %.0f s\n", swept.name.c_str(),
                swept.told.c_str(), score.plan.stations, score.at_least, score.by_thumb,
                percent(score.plan.captured).c_str(), score.seconds);
-  const std::vector<std::string> faults = faults_of(score);
+  const std::vector<std::string> faults = faults_of(swept, score);
   for (const std::string& fault : faults) std::fprintf(stderr, "    fault: %s\n", fault.c_str());
   if (const auto pair = compare(swept, site, result, options)) {
     const auto& [hand, equal] = *pair;
