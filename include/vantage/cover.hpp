@@ -211,8 +211,8 @@ Settings settings(const BoundConfig& config);
 ///
 /// The bound is that of the linear relaxation max Σ w_e z_e, z_e <= b_e + Σ_k y_k min(a_ke / goal, 1), Σ y <= N, 0 <=
 /// y, z <= 1, by Benders cuts; b_e is the share from existing candidates. Branch and bound lowers it if it has time.
-/// Only then do exclusions and links enter it, links as a flow (Dehbi, Leonhardt, Oehrlein, Haunert: Optimal scan
-/// planning with enforced network connectivity, 2021). The wanted coverage is ignored. A stopped call returns its
+/// Only then do exclusions and links enter it, links by separators around each root (Álvarez-Miranda, Ljubić, Mutzel:
+/// The Maximum Weight Connected Subgraph Problem, 2013). The wanted coverage is ignored. A stopped call returns its
 /// results so far. Throws Error invalid_argument without candidates, or if `problem.most` is 0 or has no limit.
 CoverSolution max_cover(const CoverProblem& problem, const BoundConfig& config = {}, const Progress& progress = {});
 

@@ -5,9 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <coin/CbcModel.hpp>
-#include <coin/CglFlowCover.hpp>
-#include <coin/CglGomory.hpp>
-#include <coin/CglMixedIntegerRounding2.hpp>
 #include <coin/ClpSimplex.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 #include <functional>
@@ -34,17 +31,12 @@ constexpr double kBoundSlack = 1e-6;
 constexpr double kKnownSlack = 1e-7;
 // A cut is added if it is violated by this share of all weight.
 constexpr double kViolated = 1e-9;
+// A pocket limits an element if the doors allow so much less of it.
+constexpr double kLimited = 1e-6;
 
 }  // namespace
 
 struct BendersMaster::Impl {
-  struct Cut {
-    std::size_t group;
-    double constant;
-    std::vector<double> of;  // a coefficient for each candidate
-    std::size_t idle = 0;
-  };
-
   const CoverProblem& problem;
   const CoverageMatrix& matrix;
   const std::vector<std::size_t>& existing;
@@ -93,16 +85,76 @@ struct BendersMaster::Impl {
     return sum;
   }
 
-  std::vector<Cut> cuts_at(std::span<const double> y) const {
-    const std::vector<double> covered = covered_at(y);
+  std::vector<Cut> cuts_at(std::span<const double> y, std::span<const Pocket> pockets = {}) const {
+    std::vector<double> covered = covered_at(y);
+    const PocketUse use = pockets_used(y, pockets, covered);
     std::vector<Cut> made(groups);
     for (std::size_t g = 0; g < groups; ++g) made[g] = {g, 0, std::vector<double>(candidates), 0};
     for (std::size_t e = 0; e < covered.size(); ++e)
       made[group_of(e)].constant += weight[e] * (covered[e] >= 1 ? 1 : base[e]);
     for (std::size_t k = 0; k < candidates; ++k)
       for (const CoverageMatrix::Entry& one : matrix.column(k))
-        if (covered[one.element] < 1) made[group_of(one.element)].of[k] += weight[one.element] * share(one);
+        if (covered[one.element] < 1 && !use.holds(one.element, k))
+          made[group_of(one.element)].of[k] += weight[one.element] * share(one);
+    for (std::size_t e = 0; e < use.of.size(); ++e)
+      if (covered[e] < 1)
+        for (const std::uint32_t p : use.of[e])
+          for (const std::uint32_t door : pockets[p].doors) made[group_of(e)].of[door] += weight[e];
     return made;
+  }
+
+  // The disjoint pockets that limit each element.
+  struct PocketUse {
+    std::vector<std::vector<std::uint32_t>> of;  // by element; empty: no pockets
+    std::vector<std::vector<char>> members;      // by pocket and candidate
+    bool holds(std::size_t element, std::size_t k) const {
+      return !of.empty() && std::ranges::any_of(of[element], [&](std::uint32_t p) { return members[p][k] != 0; });
+    }
+  };
+  // Lowers what is covered at y by them.
+  PocketUse pockets_used(std::span<const double> y, std::span<const Pocket> pockets,
+                         std::vector<double>& covered) const {
+    PocketUse use;
+    if (pockets.empty()) return use;
+    struct Limit {
+      double less;
+      std::uint32_t pocket;
+    };
+    std::vector<std::vector<Limit>> limits(covered.size());
+    std::vector<double> inside(covered.size());
+    std::vector<std::uint32_t> touched;
+    for (std::uint32_t p = 0; p < pockets.size(); ++p) {
+      use.members.emplace_back(candidates, 0);
+      for (const std::uint32_t k : pockets[p].members) use.members[p][k] = 1;
+      double most = 0;
+      for (const std::uint32_t door : pockets[p].doors) most += y[door];
+      touched.clear();
+      for (const std::uint32_t k : pockets[p].members) {
+        if (y[k] <= 0) continue;
+        for (const CoverageMatrix::Entry& one : matrix.column(k)) {
+          if (inside[one.element] == 0) touched.push_back(one.element);
+          inside[one.element] += y[k] * share(one);
+        }
+      }
+      for (const std::uint32_t e : touched) {
+        if (const double less = inside[e] - most; less > kLimited) limits[e].push_back({less, p});
+        inside[e] = 0;
+      }
+    }
+    use.of.resize(covered.size());
+    std::vector<std::vector<char>> apart(pockets.size(), std::vector<char>(pockets.size()));
+    for (std::size_t a = 0; a < pockets.size(); ++a)
+      for (std::size_t b = 0; b < pockets.size(); ++b)
+        apart[a][b] =
+            std::ranges::none_of(pockets[a].members, [&](std::uint32_t k) { return use.members[b][k] != 0; }) ? 1 : 0;
+    for (std::size_t e = 0; e < covered.size(); ++e) {
+      std::ranges::stable_sort(limits[e], std::greater<>(), &Limit::less);
+      for (const Limit& limit : limits[e]) {
+        if (!std::ranges::all_of(use.of[e], [&](std::uint32_t p) { return apart[p][limit.pocket] != 0; })) continue;
+        use.of[e].push_back(limit.pocket), covered[e] -= limit.less;
+      }
+    }
+    return use;
   }
 
   double at(const Cut& cut, std::span<const double> y) const {
@@ -143,9 +195,6 @@ struct BendersMaster::Impl {
     return least;
   }
 
-  // Adds columns and rows of a flow that connects the taken candidates. It enters at one of them with a unit for each;
-  // each keeps a unit and sends the others on along links to taken ones. Returns the columns that must be integer.
-  std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations) const;
   void add_exclusions(ClpSimplex& lp, std::size_t stations) const;
 
   Relaxed solve(bool fewest, double limit, double tolerance, double seconds, const Progress& progress);
@@ -207,8 +256,16 @@ BendersMaster::~BendersMaster() = default;
 double BendersMaster::value(std::span<const double> y) const { return impl_->value(y); }
 
 void BendersMaster::cut_at(std::span<const double> y) {
-  for (Impl::Cut& cut : impl_->cuts_at(y)) impl_->cuts.push_back(std::move(cut));
+  for (Cut& cut : impl_->cuts_at(y)) impl_->cuts.push_back(std::move(cut));
 }
+
+std::vector<BendersMaster::Cut> BendersMaster::supergradients(std::span<const double> y,
+                                                              std::span<const Pocket> pockets) const {
+  return impl_->cuts_at(y, pockets);
+}
+const std::vector<BendersMaster::Cut>& BendersMaster::cuts() const { return impl_->cuts; }
+std::size_t BendersMaster::groups() const { return impl_->groups; }
+double BendersMaster::group_weight(std::size_t group) const { return impl_->group_weight[group]; }
 
 Relaxed BendersMaster::max_coverage(double stations, double tolerance, double seconds, const Progress& progress) {
   return impl_->solve(false, stations, tolerance, seconds, progress);
@@ -284,61 +341,6 @@ Relaxed BendersMaster::Impl::solve(bool fewest, double limit, double tolerance, 
   }
 }
 
-std::vector<int> BendersMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stations) const {
-  const auto all = static_cast<double>(stations + existing.size());
-  const auto exists = [&](std::size_t k) { return std::ranges::find(existing, k) != existing.end(); };
-  const auto add_column = [&](double most) {
-    lp.addColumn(0, nullptr, nullptr, 0, most, 0);
-    return lp.numberColumns() - 1;
-  };
-  std::vector<int> whole;
-  // The flow into each candidate, and its excess over the outflow.
-  struct Terms {
-    std::vector<int> index;
-    std::vector<double> value;
-    void add(int column, double factor) { index.push_back(column), value.push_back(factor); }
-  };
-  std::vector<Terms> in(candidates), net(candidates);
-  Terms sources;
-  for (std::size_t k = 0; k < candidates; ++k) {
-    if (!existing.empty() && k != existing.front()) continue;
-    const int flow = add_column(all), here = add_column(1);
-    whole.push_back(here);
-    sources.add(here, 1);
-    const int index[] = {flow, here};
-    const double value[] = {1, -all};
-    lp.addRow(2, index, value, -COIN_DBL_MAX, 0);
-    in[k].add(flow, 1), net[k].add(flow, 1);
-  }
-  lp.addRow(static_cast<int>(sources.index.size()), sources.index.data(), sources.value.data(), -COIN_DBL_MAX, 1);
-  for (std::size_t a = 0; a < candidates; ++a)
-    for (std::size_t b = 0; b < candidates; ++b) {
-      if (!problem.graph->linked(a, b, problem.link)) continue;
-      const int flow = add_column(all - 1);
-      in[b].add(flow, 1), net[b].add(flow, 1), net[a].add(flow, -1);
-    }
-  for (std::size_t k = 0; k < candidates; ++k) {
-    const int y = static_cast<int>(k);
-    const double there = exists(k) ? 1 : 0;
-    if (there == 0) in[k].add(y, -all), net[k].add(y, -1);
-    lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
-    lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
-    // Fractional flows reach far, so each taken candidate needs a taken neighbour, too.
-    Terms neighbours;
-    bool existing_neighbour = there > 0;
-    for (std::size_t l = 0; l < candidates; ++l) {
-      if (!problem.graph->linked(k, l, problem.link)) continue;
-      existing_neighbour = existing_neighbour || exists(l);
-      neighbours.add(static_cast<int>(l), -1);
-    }
-    if (existing_neighbour || all < 2) continue;
-    neighbours.add(y, 1);
-    lp.addRow(static_cast<int>(neighbours.index.size()), neighbours.index.data(), neighbours.value.data(),
-              -COIN_DBL_MAX, 0);
-  }
-  return whole;
-}
-
 // At most one of two candidates that exclude each other. One row for each candidate: if it is taken, none of the others
 // is. Existing candidates are exempt.
 void BendersMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations) const {
@@ -370,29 +372,16 @@ BendersMaster::Choice BendersMaster::choose(std::size_t stations, double seconds
   for (std::size_t g = 0; g < m.groups; ++g) lp.setObjectiveCoefficient(static_cast<int>(m.candidates + g), 1);
   lp.setRowUpper(Impl::number, static_cast<double>(stations));
   lp.setRowLower(Impl::coverage, known - kKnownSlack);
-  std::vector<int> whole;
   for (const std::size_t k : m.existing)
     if (k < m.candidates) lp.setColumnUpper(static_cast<int>(k), 0);  // it cannot be taken again
-  const bool connected = m.problem.link > 0;
-  if (connected) whole = m.add_flow(lp, stations);
   m.add_exclusions(lp, stations);
   OsiClpSolverInterface solver(&lp);
   solver.messageHandler()->setLogLevel(0);
-  for (const int column : whole) solver.setInteger(column);
   for (std::size_t k = 0; k < m.candidates; ++k) solver.setInteger(static_cast<int>(k));
   CbcModel model(solver);
   model.setLogLevel(0);
   model.messageHandler()->setLogLevel(0);
   model.setMaximumSeconds(seconds);
-  // Cuts for fixed charges, which flows between stations have.
-  CglFlowCover flow_cover;
-  CglMixedIntegerRounding2 rounding;
-  CglGomory gomory;
-  if (connected) {
-    model.addCutGenerator(&flow_cover, -1, "flow cover");
-    model.addCutGenerator(&rounding, -1, "rounding");
-    model.addCutGenerator(&gomory, -1, "gomory");
-  }
   model.branchAndBound();
   Choice choice;
   // Cbc minimises the negated objective.

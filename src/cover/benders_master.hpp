@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -39,6 +40,24 @@ class BendersMaster {
   // Bounds F around y by its supergradient there.
   void cut_at(std::span<const double> y);
 
+  // θ_group <= constant + Σ_k of_k y_k.
+  struct Cut {
+    std::size_t group;
+    double constant;
+    std::vector<double> of;  // a coefficient for each candidate
+    std::size_t idle = 0;    // rounds for which it was slack
+  };
+  // Candidates that are taken only together with one of `doors`, of which each member is one or stands behind one.
+  struct Pocket {
+    std::vector<std::uint32_t> members, doors;
+  };
+  // One for each group. For networks that keep to the pockets these are tighter: all of a pocket adds no more to an
+  // element than its doors are taken, so that halves of a station in a room and of one in its door do not add up.
+  std::vector<Cut> supergradients(std::span<const double> y, std::span<const Pocket> pockets = {}) const;
+  const std::vector<Cut>& cuts() const;  // so far
+  std::size_t groups() const;
+  double group_weight(std::size_t group) const;  // upper bound of θ_group
+
   // max F(y) subject to Σ y <= stations, to `tolerance`. `seconds`: gives up after; 0: never.
   Relaxed max_coverage(double stations, double tolerance, double seconds, const Progress& progress = {});
   // min Σ y subject to F(y) >= coverage, to `tolerance` in F. `bound` is a lower bound of the number; `reached` is Σ y
@@ -46,8 +65,8 @@ class BendersMaster {
   Relaxed min_stations(double coverage, double tolerance, double seconds, const Progress& progress = {});
 
   // The best integer y of at most `stations` stations, by branch and bound over the cuts so far; empty if none was
-  // found in time. `bound` is an upper bound for every such choice. Choices below `known` are ignored. Links and
-  // exclusions of the problem apply; links also among existing candidates.
+  // found in time. `bound` is an upper bound for every such choice. Choices below `known` are ignored. Exclusions of
+  // the problem apply, links do not.
   struct Choice {
     std::vector<std::size_t> candidates;
     double bound = 1;

@@ -7,6 +7,7 @@
 #include "core/seconds_since.hpp"
 #include "core/setting_list.hpp"
 #include "cover/benders_master.hpp"
+#include "cover/connected_branch.hpp"
 #include "cover/network.hpp"
 #include "vantage/error.hpp"
 
@@ -60,6 +61,17 @@ void branch_and_bound(const CoverProblem& problem, BendersMaster& master, double
   }
 }
 
+// The same for connected networks.
+void branch_connected(const CoverProblem& problem, const BendersMaster& master, double seconds, CoverSolution& result,
+                      const std::stop_token& stop) {
+  const double known = result.chosen.empty() ? 0 : problem.matrix.coverage(result.chosen);
+  ConnectedBranch found = branch_connected(problem, master, known, result.bound, seconds, stop);
+  result.bound = found.bound;
+  if (found.chosen.empty()) return;
+  result.chosen = problem.existing;
+  result.chosen.insert(result.chosen.end(), found.chosen.begin(), found.chosen.end());
+}
+
 }  // namespace
 
 Settings settings(const BoundConfig& config) {
@@ -97,7 +109,10 @@ CoverSolution max_cover(const CoverProblem& asked, const BoundConfig& config, co
   result.complete = before.complete && after.complete;
   result.half_bound = before.bound;
   result.spacing_term = std::max(after.bound - before.bound, 0.0);
-  if (config.exact_seconds > 0) branch_and_bound(problem, master, config.exact_seconds, result, progress.stop);
+  if (config.exact_seconds > 0 && problem.link > 0)
+    branch_connected(problem, master, config.exact_seconds, result, progress.stop);
+  else if (config.exact_seconds > 0)
+    branch_and_bound(problem, master, config.exact_seconds, result, progress.stop);
   const CoverSolution best = evaluate_cover(problem, result.chosen);
   result.coverage = best.coverage, result.link = best.link, result.violation = best.violation;
   progress(1);

@@ -11,29 +11,10 @@
 #include <limits>
 #include <memory>
 
-#include "core/embree.hpp"
-
 namespace vantage::bench {
 namespace {
 
 constexpr std::uint32_t side = 16;  // rays of a tile, each way
-
-embree::Scene tree_of(RTCDevice device, const SceneData& scene) {
-  embree::Scene tree(rtcNewScene(device));
-  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // as the engine's
-  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3),
-                                      scene.positions.size()),
-              scene.positions.data(), scene.positions.size() * sizeof(Float3));
-  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
-                                      scene.triangles.size()),
-              scene.triangles.data(), scene.triangles.size() * sizeof(Triangle));
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometry(tree.get(), geometry.get());
-  rtcCommitScene(tree.get());
-  embree::check(device, "building the tree");
-  return tree;
-}
 
 void set_ray(RTCRayHit8& rays, std::uint32_t lane, const RayPattern& pattern, std::uint32_t row, std::uint32_t column,
              const Float3& origin) {
@@ -106,6 +87,23 @@ struct Way {
 
 }  // namespace
 
+embree::Scene tree_of(RTCDevice device, std::span<const Float3> positions, std::span<const Triangle> triangles) {
+  embree::Scene tree(rtcNewScene(device));
+  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // as the engine's
+  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3),
+                                      positions.size()),
+              positions.data(), positions.size_bytes());
+  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
+                                      triangles.size()),
+              triangles.data(), triangles.size_bytes());
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(tree.get(), geometry.get());
+  rtcCommitScene(tree.get());
+  embree::check(device, "building the tree");
+  return tree;
+}
+
 void BareEmbreeOptions::add(CLI::App& command) { site.add(command); }
 
 void run_bare_embree(const BareEmbreeOptions& options) {
@@ -116,7 +114,7 @@ void run_bare_embree(const BareEmbreeOptions& options) {
   const auto engine = make_tracer(Engine::embree, std::nullopt, site.scene);
   engine->set_goal_density(site.goal_density);
   const embree::Device device = embree::new_device();
-  const embree::Scene tree = tree_of(device.get(), scene.data());
+  const embree::Scene tree = tree_of(device.get(), scene.data().positions, scene.data().triangles);
 
   std::vector<Way> ways{{"rtcIntersect8"}, {"rtcIntersectNM"}, {"engine, tracing and counting"}};
 #if VANTAGE_EMBREE_MAJOR >= 4

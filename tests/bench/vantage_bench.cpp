@@ -18,6 +18,7 @@
 #include "population.hpp"
 #include "ranks.hpp"
 #include "rates.hpp"
+#include "sweep.hpp"
 #include "vantage/error.hpp"
 
 int main(int argc, char** argv) {
@@ -52,6 +53,8 @@ int main(int argc, char** argv) {
   choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
   vantage::bench::DayOptions day;
   day.add(*app.add_subcommand("day", "A simulated day: the plan that is made anew after each scan, and the kept one"));
+  vantage::bench::SweepOptions sweep;
+  sweep.add(*app.add_subcommand("sweep", "Plans of many sites by the default question, against the truth"));
 #ifdef VANTAGE_HAS_EDITOR
   vantage::bench::DragOptions drag;
   drag.add(*app.add_subcommand("drag", "The editor: from a station that moves to new numbers and colours"));
@@ -72,6 +75,7 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("day")) vantage::bench::run_day(day);
+    if (app.got_subcommand("sweep") && !vantage::bench::run_sweep(sweep)) return 1;
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());

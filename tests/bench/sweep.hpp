@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans of many sites by the default question, scored against what is known of each site.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vantage::bench {
+
+struct SweepOptions {
+  std::vector<std::string> sites;       // random ones by seed ("7", "1..12"), reference ones by name, else files
+  std::string folder, by_hand;          // for results; of plans by hand, NAME.csv each. Empty: none
+  std::optional<std::string> unit, up;  // of files
+  std::optional<double> step_deg, user_size_m, spacing_m;
+  double max_seconds = 0;
+  void add(CLI::App& command);
+};
+
+// Writes sweep.csv, sweep.md and sweep.png to the folder, with plans by hand also by_hand.csv and by_hand.md. Returns
+// false if a site cannot be planned, or a plan does what none may do; standard error tells which.
+bool run_sweep(const SweepOptions& options);
+
+}  // namespace vantage::bench
