@@ -56,6 +56,20 @@ TEST_F(Next, SpeaksInWords) {
     EXPECT_NE(told.out.find(words), std::string::npos) << words << " is not in\n" << told.out;
 }
 
+TEST_F(Next, WithoutAModelTheScansAreTheSite) {
+  take_one();
+  std::filesystem::create_directory(path("day"));
+  std::filesystem::rename(path("day.e57"), path("day/one.e57"));
+  const Outcome told = run_program({"next", "--scans", path("day"), "--engine", "embree", "--user-size", "0.4",
+                                    "--link", "0", "--capture", "0.6", "-o", path("next"), "--json"});
+  ASSERT_TRUE(told.exit_code == 0 || told.exit_code == 3) << told.err;
+  const auto json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json["options"]["unknown"], true);
+  EXPECT_GT(json["unknown"].get<double>(), 0.01);
+  EXPECT_NEAR(json["captured"].get<double>() + json["not_seen"].get<double>() + json["unknown"].get<double>(), 1, 1e-6);
+  EXPECT_FALSE(json["next"].empty());
+}
+
 TEST_F(Next, ExitsWithThreeWhereItIsNotEnough) {
   take_one();
   const Outcome told = run_program(next({"--capture", "1", "--most", "1"}));
