@@ -335,4 +335,28 @@ assert.equal(await desktop.evaluate(() => document.referrer), '');
 assert.deepEqual(desktop.troubles, []);
 await stop(editor);
 assert.ok(!fs.existsSync(opened), 'the page goes with the editor');
+
+// Scans appear as they come into a folder: the planned station that one is of becomes a taken one, where it was really taken.
+fs.mkdirSync(at('day'));
+fs.writeFileSync(at('plan.csv'), 'name,x,y,z\nA,8,0,1.5\nB,0,8,1.5\n');
+({ editor, url } = await start('--stations', 'plan.csv', '--scans', 'day', '-o', 'edited-day'));
+const site = await watchedPage(browser, { width: 1280, height: 900 });
+await site.goto(url);
+await site.waitForSelector('html[data-ready]');
+assert.equal(await site.locator('.label.existing').count(), 0);
+const planned = await coverageOf(site);
+vantage('scan', 'walls.glb', ...coarse, '--station', '0.2,8.1,1.5', '-o', 'taken.e57');
+fs.copyFileSync(at('taken.e57'), at('day/taken.e57'));
+await site.waitForFunction(() => document.querySelectorAll('.label.existing').length === 1, null, { timeout: 60000 });
+assert.equal(await site.locator('.label.existing').innerText(), 'B');
+assert.match(await site.locator('#status').innerText(), /^B is taken, .* points; it was moved by /);
+assert.match(await site.locator('#legend').innerText(), /planned station\s*taken/);
+assert.notEqual(await coverageOf(site), planned, 'its real points count');
+fs.writeFileSync(at('day/broken.e57'), 'no scan at all');
+await site.waitForFunction(() => document.getElementById('status').textContent.includes('broken.e57'), null, { timeout: 60000 });
+await site.locator('.label.existing').click();
+assert.equal(await site.locator('#station button').count(), 1, 'it is renamed at most');
+if (process.env.VANTAGE_SCREENSHOTS) await site.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit-scans.png` });
+assert.deepEqual(site.troubles, []);
+await stop(editor);
 await browser.close();
