@@ -37,10 +37,7 @@ std::optional<Next> next_of(GuardedSite& self, const std::filesystem::path& scan
     self.site.area();  // an error now, not behind the scans
     day.scans = read_taken_scans(scans, 0.02, call.progress(0, 0.1));
     if (call.stop().stop_requested()) return false;
-    if (!fit_to_model(self.site, day.scans, day.config.tolerance_m, call.progress(0.1, 0.2))) return false;
-    day.changes = changes_of(self.site, day.scans, day.config.tolerance_m, call.progress(0.2, 0.4));
-    if (call.stop().stop_requested()) return false;
-    if (day.config.unknown) day.changes.unknown = unknown_space(self.site, day.scans);
+    if (!find_changes(self.site, day, call.progress(0.1, 0.4))) return false;
     next.found = std::shared_ptr<GuardedSite>(new GuardedSite{changed_site(self.site, day.changes)});
     auto answer =
         next_stations(next.found->site, day.scans, day.changes, day.planned, day.config, call.progress(0.4, 1));

@@ -190,10 +190,16 @@ struct Day {
   NextConfig config = {};
   NextAnswer answer = {};
 
-  /// Of the scans, by the planned station that they are of, else by the name in their file; then of the next stations.
+  /// Of the scans, by the planned station that they are of, else by the name in their file, with ", taken" if a planned
+  /// station has it; then of the next stations.
   std::vector<std::string> names() const;
   /// The scans as existing stations, then the next ones.
   std::vector<PlacedStation> stations() const;
 };
+
+/// Fills `day.changes` by its scans and its configuration: fits the scans to the model, and finds how the site differs
+/// from it. If unknown space is a goal, the site was made of the scans: they keep their poses, and only that space is
+/// found. False if stopped. Throws Error invalid_argument without ground.
+bool find_changes(Site& site, Day& day, const Progress& progress = {});
 
 }  // namespace vantage

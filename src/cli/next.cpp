@@ -175,13 +175,8 @@ int next(CLI::App& command, NextOptions& options, Program& program) {
   day.scans = read_taken_scans(*options.scans, 0.02, progress);
   if (program.stop.stop_requested()) throw Stopped{};
   spdlog::info("{}: {} scan{}", *options.scans, day.scans.size(), day.scans.size() == 1 ? "" : "s");
-  line.set_label("fitting the scans to the model");
-  if (!fit_to_model(site, day.scans, day.config.tolerance_m, progress)) throw Stopped{};
-  line.set_label("looking for what is not in the model");
-  day.changes = changes_of(site, day.scans, day.config.tolerance_m, progress);
-  if (program.stop.stop_requested()) throw Stopped{};
-
-  if (day.config.unknown) day.changes.unknown = unknown_space(site, day.scans);
+  line.set_label("comparing the scans with the model");
+  if (!find_changes(site, day, progress)) throw Stopped{};
 
   Site found = changed_site(site, day.changes);
   Simulator& simulator = build_simulator(found, program);

@@ -232,8 +232,12 @@ std::string EditSession::take(const TakenScan& scan) {
     return station.placed.existing ? std::numeric_limits<double>::infinity() : std::sqrt(dot(apart, apart));
   };
   auto at = std::ranges::min_element(stations_, {}, distance);
-  if (at == stations_.end() || distance(*at) > options_.taken_within_m)
-    at = stations_.insert(stations_.end(), EditStation{.id = next_id_++, .placed = {}, .name = scan.name});
+  if (at == stations_.end() || distance(*at) > options_.taken_within_m) {
+    // A planned station keeps its name.
+    std::string name = scan.name;
+    if (std::ranges::find(stations_, name, &EditStation::name) != stations_.end()) name += ", taken";
+    at = stations_.insert(stations_.end(), EditStation{.id = next_id_++, .placed = {}, .name = std::move(name)});
+  }
   EditStation& station = *at;
   station.placed = site_.place_head(scan.head).station;
   station.placed.existing = true, station.locked = true;

@@ -405,6 +405,12 @@ TEST(EditSession, AScanMakesItsStationATakenOne) {
   state = bench.session.state();
   EXPECT_EQ(state["ids"], json({2, 3, 1}));
   EXPECT_EQ(state["network"]["stations"][1]["name"], "morning");
+  TakenScan other = scan_at(3, 3);
+  other.name = "S1";
+  ASSERT_TRUE(bench.session.take(std::span(&other, 1)));
+  state = bench.session.state();
+  EXPECT_EQ(state["network"]["stations"][2]["name"], "S1, taken");
+  EXPECT_EQ(state["network"]["stations"][3]["name"], "S1");
 }
 
 TEST(EditSession, ARealScanCountsByItsPoints) {
