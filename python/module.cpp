@@ -52,6 +52,7 @@ PYBIND11_MODULE(_core, m) {
   add_candidates(m);
   add_problems(m);
   add_plans(m);
+  add_next(m);
   m.attr("__name__") = name;
 
   m.attr("__version__") = vantage::version();

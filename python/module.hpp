@@ -20,5 +20,6 @@ void add_missed(pybind11::module_& m);
 void add_candidates(pybind11::module_& m);
 void add_problems(pybind11::module_& m);
 void add_plans(pybind11::module_& m);
+void add_next(pybind11::module_& m);
 
 }  // namespace vantage::python

@@ -31,20 +31,6 @@ std::shared_ptr<GuardedSite> guarded(Site site) {
   return std::shared_ptr<GuardedSite>(new GuardedSite{std::move(site)});
 }
 
-// Places stations given by heads alone as the program does: on the ground below, with checks.
-std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
-  std::vector<PlacedStation> placed = stations_of(stations);
-  for (PlacedStation& station : placed) {
-    if (station.ground != station.position || station.status == StationStatus::hole) continue;
-    const StationSetup setup = station.setup;
-    const bool skipped = !active(station);
-    station = site.place_head(station.position).station;
-    station.setup = setup;
-    if (skipped) station.status = StationStatus::clash;
-  }
-  return placed;
-}
-
 Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const EvaluationOptions& options,
                     py::object progress) {
   const auto lock = guarded.taken();
@@ -68,6 +54,19 @@ void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, 
 }
 
 }  // namespace
+
+std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
+  std::vector<PlacedStation> placed = stations_of(stations);
+  for (PlacedStation& station : placed) {
+    if (station.ground != station.position || station.status == StationStatus::hole) continue;
+    const StationSetup setup = station.setup;
+    const bool skipped = !active(station);
+    station = site.place_head(station.position).station;
+    station.setup = setup;
+    if (skipped) station.status = StationStatus::clash;
+  }
+  return placed;
+}
 
 void add_sites(py::module_& m) {
   py::class_<SiteChoice>(m, "SiteChoice", "A setting that the user left open and the site chose.")

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "casters.hpp"
 #include "simulator.hpp"
@@ -24,5 +25,8 @@ struct GuardedSite {
     return lock;
   }
 };
+
+/// Places stations given by heads alone as the program does: on the ground below, with checks.
+std::vector<PlacedStation> placed_on(Site& site, const py::object& stations);
 
 }  // namespace vantage::python

@@ -55,8 +55,10 @@ struct TakenScan {
 inline constexpr double default_tolerance_m = 0.1;
 
 /// Reads the scans of an E57 or PTX file, or of all such files of a folder by their names, thinned to one point for
-/// each cell of `cell_m`. Throws Error: io, malformed_file (no such file, no scan with a pose), out_of_memory.
-std::vector<TakenScan> read_taken_scans(const std::filesystem::path& path, double cell_m = 0.02);
+/// each cell of `cell_m`. Empty if stopped. Throws Error: io, malformed_file (no such file, no scan with a pose),
+/// out_of_memory.
+std::vector<TakenScan> read_taken_scans(const std::filesystem::path& path, double cell_m = 0.02,
+                                        const Progress& progress = {});
 
 /// Moves each scan to where it fits the site's model best, as poses on site are rough: by point-to-plane iterations
 /// (Chen, Medioni: Object modelling by registration of multiple range images, 1992), with weights that make little of
@@ -79,24 +81,42 @@ struct SeenThrough {
   bool removed = false;  ///< It is all of the mesh, nearly: the site as it was found does without it.
 };
 
+/// Cells beside what scans saw, in the space of a person above the ground, that no scan saw.
+struct UnknownSpace {
+  double cell_m = 0;
+  Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
+  std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Ascending.
+};
+
 /// How a site differs from its model, by the scans.
 struct SiteChanges {
   std::vector<FoundThing> things = {};  ///< Largest first.
+  /// Things of one scan that another scan saw through: people who stood still, cars that left. They count as nothing.
+  std::vector<FoundThing> passing = {};
   std::vector<SeenThrough> seen_through = {};
   double cell_m = 0;                                    ///< Cells of things.
   Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
   std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Of all things, ascending.
   std::vector<std::uint32_t> removed = {};              ///< Meshes of `Scene::meshes()`, ascending.
-  bool any() const { return !cells.empty() || !removed.empty(); }
+  UnknownSpace unknown = {};                            ///< If it is a goal: see `unknown_space()`.
+  bool any() const { return !cells.empty() || !removed.empty() || !unknown.cells.empty(); }
 };
 
-/// Things are clusters of points farther than `tolerance_m` from every surface, larger than 0.3 m. A person who walked
-/// through a scan is a thing, too. Empty if stopped.
+/// Things are clusters of points farther than `tolerance_m` from every surface, larger than 0.3 m. So is a person who
+/// stood still, unless another scan saw through them. Empty if stopped.
 SiteChanges changes_of(Site& site, std::span<const TakenScan> scans, double tolerance_m = default_tolerance_m,
                        const Progress& progress = {});
 
-/// The site as it was found: things block rays and nobody stands in them; what is removed does neither. With the
-/// settings and weights of `site`.
+/// The edge of what the scans saw, for a site that was made of these scans alone: the next station is wanted where it
+/// uncovers what is not known. Put it into `SiteChanges::unknown`. Throws Error invalid_argument without ground.
+UnknownSpace unknown_space(Site& site, std::span<const TakenScan> scans);
+
+/// A m² of the edge of unknown space counts as so much surface: behind a door is a room.
+inline constexpr std::uint32_t unknown_weight = 5;
+
+/// The site as it was found: things block rays and nobody stands in them; what is removed does neither. Unknown space
+/// blocks as well, and the faces of its cells are surveyed, each m² as `unknown_weight` of surface. With the settings
+/// and weights of `site`.
 Site changed_site(Site& site, const SiteChanges& changes);
 
 struct NextConfig {
@@ -107,6 +127,7 @@ struct NextConfig {
   double taken_within_m = 1;
   std::uint64_t sample_voxels = 20'000;
   std::size_t most = 32;  ///< Most further stations.
+  bool unknown = false;   ///< Whether the edge of `unknown_space()` is a goal.
 };
 
 Settings settings(const NextConfig& config);
@@ -141,6 +162,7 @@ struct NextAnswer {
   std::vector<double> captured_by;      ///< By each taken scan alone.
   std::vector<double> hidden_by;        ///< Missing share that a thing hides from all taken scans, one for each thing.
   double not_seen = 0;                  ///< Missing share that no thing hides.
+  double unknown = 0;                   ///< Missing share that is the edge of unknown space.
   std::vector<NextStation> next;        ///< Empty: there is enough.
   std::vector<PlannedStation> planned;  ///< One for each planned station.
   double captured_then = 0;             ///< With all of `next`.
@@ -148,6 +170,7 @@ struct NextAnswer {
   bool enough = true;                   ///< Whether `captured_then` reaches the wanted share, and all are linked.
   Visit visit = {};                     ///< The round over the next stations.
   std::size_t candidates = 0;           ///< Places that were tried.
+  std::vector<PlacedStation> taken;     ///< The scans as existing stations, on the site as found.
 };
 
 /// `found`: the site as it was found. Counts the scans' points near its surveyed surfaces in its voxels, and chooses
@@ -157,5 +180,26 @@ struct NextAnswer {
 std::optional<NextAnswer> next_stations(Site& found, std::span<const TakenScan> scans, const SiteChanges& changes,
                                         std::span<const PlacedStation> planned, const NextConfig& config = {},
                                         const Progress& progress = {});
+
+/// Scans that were taken, what they tell, and the answer to where to stand next.
+struct Day {
+  std::vector<TakenScan> scans = {};
+  std::vector<PlacedStation> planned = {};
+  std::vector<std::string> planned_names = {};  ///< One for each of `planned`.
+  SiteChanges changes = {};
+  NextConfig config = {};
+  NextAnswer answer = {};
+
+  /// Of the scans, by the planned station that they are of, else by the name in their file, with ", taken" if a planned
+  /// station has it; then of the next stations.
+  std::vector<std::string> names() const;
+  /// The scans as existing stations, then the next ones.
+  std::vector<PlacedStation> stations() const;
+};
+
+/// Fills `day.changes` by its scans and its configuration: fits the scans to the model, and finds how the site differs
+/// from it. If unknown space is a goal, the site was made of the scans: they keep their poses, and only that space is
+/// found. False if stopped. Throws Error invalid_argument without ground.
+bool find_changes(Site& site, Day& day, const Progress& progress = {});
 
 }  // namespace vantage

@@ -11,6 +11,7 @@
 #include "vantage/image.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/missed.hpp"
+#include "vantage/next.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
 #include "vantage/optimiser.hpp"

@@ -858,6 +858,20 @@ class Site:
         save_every: Setting = None,
         resume: Setting = None,
     ) -> PlanResult: ...
+    def next(
+        self,
+        scans: Path,
+        planned: Optional[Stations] = None,
+        *,
+        planned_names: Sequence[str] = [],
+        progress: Optional[Progress] = None,
+        capture: Setting = None,
+        link: Setting = None,
+        most: Setting = None,
+        unknown: Setting = None,
+        tolerance: Setting = None,
+        taken_within: Setting = None,
+    ) -> Optional[NextResult]: ...
 
 def find_candidates(
     site: Site,
@@ -1196,3 +1210,23 @@ class PlanResult:
     def write_report(
         self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None
     ) -> None: ...
+
+class NextResult:
+    @property
+    def captured(self) -> Estimate: ...
+    @property
+    def captured_then(self) -> float: ...
+    @property
+    def enough(self) -> bool: ...
+    @property
+    def taken(self) -> List[PlacedStation]: ...
+    @property
+    def stations(self) -> List[PlacedStation]: ...
+    @property
+    def names(self) -> List[str]: ...
+    @property
+    def visit(self) -> Visit: ...
+    @property
+    def found(self) -> Site: ...
+    def to_dict(self) -> Dict[str, Any]: ...
+    def write(self, folder: Path) -> None: ...

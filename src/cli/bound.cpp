@@ -10,6 +10,7 @@
 #include "cli/prove.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
+#include "core/options_json.hpp"
 #include "core/text.hpp"
 #include "vantage/candidates.hpp"
 
@@ -190,7 +191,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
                                        {"engine", to_string(simulator.engine().engine)},
                                        {"device", simulator.engine().device},
                                        {"seed", site.simulator_config().seed},
-                                       {"options", options_of(site.settings())},
+                                       {"options", options_json(site.settings())},
                                        {"version", version()}});
   return exit_ok;
 }

@@ -16,6 +16,7 @@
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
 #include "core/read_json.hpp"
+#include "edit/scan_watcher.hpp"
 #include "edit/server.hpp"
 
 extern char** environ;
@@ -28,13 +29,16 @@ struct EditCommandOptions {
   StationOptions stations;
   EditOptions edit;
   std::optional<SampleSize> sample;
-  std::optional<std::string> output;
+  std::optional<std::string> scans, output;
   std::optional<double> link;
   bool no_browser = false;
 
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
+    add_text(command, "--scans", "DIR",
+             "Folder into which scans of the day come, as E57 or PTX: each makes its station a taken one", scans)
+        ->group("Stations");
     add_value(command, "--sample", "N|P%", "Number or share of voxels for every evaluation; 40000 otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Evaluation");
@@ -122,6 +126,9 @@ class Browser {
 
 int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   Site site = open_site(command, options.site);
+  std::error_code failure;
+  if (options.scans && !std::filesystem::is_directory(*options.scans, failure))
+    throw Error(Errc::io, *options.scans + ": there is no such folder of scans; make it, and copy scans into it");
   const std::filesystem::path folder = options.output ? *options.output : site.name() + "-edit";
   make_folder(folder);
   const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene().fingerprint())};
@@ -155,6 +162,8 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   EditSession session(
       site, stations, options.edit,
       [&](const std::vector<EditStation>& now) { keeper.keep(now, simulator.scanners()); }, save);
+  std::optional<ScanWatcher> watcher;
+  if (options.scans) watcher.emplace(session, site, *options.scans, options.edit.tolerance_m);
   std::optional<Browser> browser;
   serve_editor(
       session, site.name(),

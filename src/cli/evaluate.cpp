@@ -12,6 +12,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/options_json.hpp"
 #include "export/run_json.hpp"
 
 namespace vantage::cli {
@@ -250,7 +251,7 @@ nlohmann::json json_of(const EvaluateCommandOptions& options, const Site& site, 
   json["engine"] = to_string(simulator.engine().engine);
   json["device"] = simulator.engine().device;
   json["seed"] = site.simulator_config().seed;
-  json["options"] = options_of(site.settings());
+  json["options"] = options_json(site.settings());
   json["version"] = version();
   return json;
 }

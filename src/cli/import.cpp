@@ -6,6 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "core/atomic_file.hpp"
+#include "core/text.hpp"
 #include "scene/importer_settings.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
@@ -27,17 +28,21 @@ const SettingTable<SiteOptions>& floor_plan_settings() {
 struct ImportOptions {
   std::string file;
   std::optional<std::string> output;
-  SiteOptions site;  // as far as an importer takes them
+  SiteOptions site;              // as far as an importer takes them
+  std::optional<double> cell_m;  // of a point cloud
   bool json = false;
 
   void add(CLI::App& command) {
     command
         .add_option("file", file,
                     "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, "
-                    "LAS, PLY, XYZ, PTS, PTX or PCD")
+                    "LAS, PLY, XYZ, PTS, PTX or PCD; or a folder of scans, or of floor plans, a file for each storey")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, floor_plan_settings(), site, "Floor plan");
+    add_number(command, "--cell", "M", "Size of the cells of a point cloud, in metres; chosen by its density otherwise",
+               cell_m, {.low = 0.005, .high = 10})
+        ->group("Point cloud");
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -47,12 +52,26 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (!options.output) throw Error(Errc::invalid_argument, "import: no file to write; give one with -o site.glb");
   SceneOptions read = options.site.scene;
   read.doors = {"closed"};
-  const Scene scene = Scene::load(options.file, read);  // reports what is wrong with it
   const importers::Format& format = *importers::recognise(options.file).format;
-  if (!format.importer)
+  std::vector<std::string> settings = importer_settings(read, format, options.file);
+  if (options.cell_m && !takes_setting(format, "cell"))
+    throw Error(Errc::invalid_argument, options.file + ": --cell is for point clouds, and this is " + format.name);
+  if (options.cell_m) settings.push_back("cell=" + number(*options.cell_m));
+  if (!format.importer) {
+    Scene::load(options.file, read);  // reports what is wrong with it
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
-  const auto glb = importers::as_glb(options.file, format, {}, importer_settings(read, format, options.file));
-  write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+  }
+  ProgressLine line(program.console, "reading " + options.file);
+  const auto glb = importers::as_glb(options.file, format, {}, settings,
+                                     {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  if (glb.empty()) throw Stopped{};
+  const auto write = [&] {
+    write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+  };
+  // It is read to report what is wrong with it, mostly from the cache; the cache of a site has no cells by hand.
+  if (options.cell_m) write();
+  const Scene scene = options.cell_m ? Scene::load(*options.output) : Scene::load(options.file, read);
+  if (!options.cell_m) write();
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
   if (options.json)
     program.console.print(nlohmann::json{{"format", format.name},

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vantage/next.hpp"
+
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -9,7 +11,9 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/read_json.hpp"
 #include "core/text.hpp"
+#include "vantage/taken_scans.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -48,47 +52,6 @@ std::string in_words(const Box& box) {
   return fmt::format("{:.1f} × {:.1f} × {:.1f} m at {:.2f},{:.2f}", size.x, size.y, size.z, at.x, at.y);
 }
 
-nlohmann::json to_json(const Vec3& p) { return {p.x, p.y, p.z}; }
-nlohmann::json to_json(const Box& box) { return {{"low", to_json(box.min)}, {"high", to_json(box.max)}}; }
-
-// Everything that a command knows when it answers.
-struct Day {
-  std::vector<TakenScan> scans;
-  std::vector<SiteStation> planned;
-  std::vector<std::string> planned_names;
-  SiteChanges changes;
-  NextAnswer answer;
-
-  // Taken scans by the planned station that they are of, else by the name in their file; then the next stations.
-  std::vector<std::string> names() const {
-    std::vector<std::string> given;
-    std::vector<PlacedStation> all;
-    for (std::size_t s = 0; s < scans.size(); ++s) {
-      const auto plan = std::ranges::find(answer.planned, std::optional(s), &PlannedStation::taken_as);
-      given.push_back(plan == answer.planned.end()
-                          ? scans[s].name
-                          : planned_names[static_cast<std::size_t>(plan - answer.planned.begin())]);
-      all.emplace_back().existing = true;
-    }
-    std::size_t fresh = 0;
-    for (const NextStation& next : answer.next) {
-      given.push_back(next.planned ? planned_names[*next.planned] : "N" + std::to_string(++fresh));
-      all.push_back(next.station);
-    }
-    return station_names(all, given);
-  }
-  // Taken scans as existing stations, then the next ones.
-  std::vector<PlacedStation> stations(Site& found) const {
-    std::vector<PlacedStation> all;
-    for (const TakenScan& scan : scans) {
-      all.push_back(found.place_head(scan.head).station);
-      all.back().existing = true;
-    }
-    for (const NextStation& one : answer.next) all.push_back(one.station);
-    return all;
-  }
-};
-
 std::string scans_text(const Day& day, const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t s = 0; s < day.scans.size(); ++s) {
@@ -107,8 +70,9 @@ std::string scans_text(const Day& day, const std::vector<std::string>& names) {
 
 std::string missing_text(const Day& day) {
   const NextAnswer& answer = day.answer;
-  std::string text = fmt::format("captured   {} ± {} of what is attainable\n", percent(answer.captured.value),
-                                 percent(answer.captured.standard_error));
+  std::string text = fmt::format("captured   {} ± {} of what is attainable{}\n", percent(answer.captured.value),
+                                 percent(answer.captured.standard_error),
+                                 day.config.unknown ? ", the edge of unknown space counted" : "");
   std::size_t told = 0, others = 0;
   double rest = 0;
   for (std::size_t k = 0; k < day.changes.things.size(); ++k) {
@@ -131,7 +95,16 @@ std::string missing_text(const Day& day) {
                         opening.removed ? "it counts as open" : "it still counts as closed");
     first = false;
   }
-  return text + fmt::format("missing    {} that no scan has seen well enough yet\n", percent(answer.not_seen));
+  first = true;
+  for (const FoundThing& thing : day.changes.passing) {
+    text += fmt::format("{:11}a thing of {} was there in one scan, and another saw through it: it does not count\n",
+                        first ? "passing" : "", in_words(thing.box));
+    first = false;
+  }
+  text += fmt::format("missing    {} that no scan has seen well enough yet\n", percent(answer.not_seen));
+  if (day.config.unknown)
+    text += fmt::format("unknown    {} that is the edge of space which no scan saw\n", percent(answer.unknown));
+  return text;
 }
 
 std::string planned_text(const Day& day) {
@@ -153,9 +126,9 @@ std::string planned_text(const Day& day) {
   return text;
 }
 
-std::string next_text(const Day& day, const std::vector<std::string>& names, const NextConfig& config, Site& found,
-                      std::span<const PlacedStation> stations) {
+std::string next_text(const Day& day, const std::vector<std::string>& names, Site& found) {
   const NextAnswer& answer = day.answer;
+  const NextConfig& config = day.config;
   std::string text;
   for (std::size_t k = 0; k < answer.next.size(); ++k) {
     const NextStation& next = answer.next[k];
@@ -176,7 +149,7 @@ std::string next_text(const Day& day, const std::vector<std::string>& names, con
                                       : fmt::format("no choice links all scans by an overlap of {:g}: use targets, or "
                                                     "ask for less with --link",
                                                     config.link));
-  for (const SummaryLine& line : ground_lines(found.scene(), found.area(), stations))
+  for (const SummaryLine& line : ground_lines(found.scene(), found.area(), day.stations()))
     text += fmt::format("{:11}{}\n", line.heading, line.text);
   if (!answer.next.empty())
     text += fmt::format("on site    about {:.0f} min for {} station{}\n", answer.visit.minutes, answer.next.size(),
@@ -184,134 +157,46 @@ std::string next_text(const Day& day, const std::vector<std::string>& names, con
   return text;
 }
 
-nlohmann::json next_json(const Day& day, const std::vector<std::string>& names, const Site& site,
-                         const NextConfig& config) {
-  const NextAnswer& answer = day.answer;
-  nlohmann::json taken = nlohmann::json::array(), things = nlohmann::json::array(), open = nlohmann::json::array(),
-                 planned = nlohmann::json::array(), next = nlohmann::json::array();
-  for (std::size_t s = 0; s < day.scans.size(); ++s) {
-    const TakenScan& scan = day.scans[s];
-    taken.push_back({{"name", names[s]},
-                     {"scan", scan.name},
-                     {"sensor", scan.sensor},
-                     {"position", to_json(scan.head)},
-                     {"points", scan.points},
-                     {"captured_alone", answer.captured_by[s]},
-                     {"fitted", scan.fit.fitted},
-                     {"shift", scan.fit.shift_m},
-                     {"turn", scan.fit.turn.in_degrees()},
-                     {"residual", scan.fit.residual_m},
-                     {"near_model", scan.fit.near_share}});
-    if (!scan.fit.fitted) taken.back()["why_not_fitted"] = scan.fit.why;
-  }
-  for (std::size_t k = 0; k < day.changes.things.size(); ++k) {
-    const FoundThing& thing = day.changes.things[k];
-    things.push_back({{"box", to_json(thing.box)},
-                      {"points", thing.points},
-                      {"scans", thing.scans},
-                      {"hides", answer.hidden_by[k]}});
-  }
-  for (const SeenThrough& one : day.changes.seen_through)
-    open.push_back(
-        {{"node", one.mesh}, {"box", to_json(one.box)}, {"area", one.area_m2}, {"counts_as_open", one.removed}});
-  for (std::size_t k = 0; k < day.planned.size(); ++k) {
-    const PlannedStation& one = answer.planned[k];
-    planned.push_back({{"name", day.planned_names[k]},
-                       {"status", to_string(one.status)},
-                       {"taken", one.taken_as ? nlohmann::json(names[*one.taken_as]) : nullptr},
-                       {"adds", one.gain},
-                       {"next", one.chosen}});
-  }
-  for (std::size_t k = 0; k < answer.next.size(); ++k) {
-    const NextStation& one = answer.next[k];
-    next.push_back({{"name", names[day.scans.size() + k]},
-                    {"position", to_json(one.station.position)},
-                    {"ground", to_json(one.station.ground)},
-                    {"planned", one.planned.has_value()},
-                    {"adds", one.gain},
-                    {"captured_then", one.captured},
-                    {"linked_to", one.linked_to ? nlohmann::json(names[*one.linked_to]) : nullptr},
-                    {"overlap", one.overlap}});
-  }
-  return {{"captured", answer.captured.value},
-          {"captured_se", answer.captured.standard_error},
-          {"attainable", answer.attainable.value},
-          {"attainable_se", answer.attainable.standard_error},
-          {"not_seen", answer.not_seen},
-          {"captured_then", answer.captured_then},
-          {"enough", answer.enough},
-          {"linked", answer.linked},
-          {"minutes_on_site", answer.next.empty() ? 0 : answer.visit.minutes},
-          {"candidates", answer.candidates},
-          {"taken", taken},
-          {"not_in_model", things},
-          {"seen_through", open},
-          {"planned", planned},
-          {"next", next},
-          {"seed", site.simulator_config().seed},
-          {"options", options_of([&] {
-             Settings all = site.settings();
-             const Settings own = settings(config);
-             all.insert(all.end(), own.begin(), own.end());
-             return all;
-           }())},
-          {"version", version()}};
-}
-
-void write_files(const std::filesystem::path& folder, const Day& day, const std::vector<std::string>& names,
-                 Site& found, const std::vector<PlacedStation>& all, const nlohmann::json& json) {
-  make_folder(folder);
-  write_text(folder / "next.json", json.dump(2) + "\n");
-  const auto next = std::span(all).subspan(day.scans.size());
-  const std::vector<std::string> next_names(names.begin() + static_cast<std::ptrdiff_t>(day.scans.size()), names.end());
-  write_stations_csv(folder / "stations.csv", next, found.scanners());
-  if (!next.empty()) write_stations(folder / "stations.dxf", next, next_names, {}, found);
-  draw_plan_view(folder / "plan.png", found, all, {},
-                 fmt::format("Captured {}; next: {}", percent(day.answer.captured.value),
-                             next.empty() ? "nothing" : next_names.front()),
-                 names);
-}
-
 int next(CLI::App& command, NextOptions& options, Program& program) {
-  Site site = open_site(command, options.site);
+  if (options.site.config_file) apply_layer(command, read_json(*options.site.config_file), *options.site.config_file);
   if (!options.scans) throw Error(Errc::invalid_argument, "next: which scans were taken? Give --scans FILE_OR_DIR");
-  Day day;
+  if (options.site.scene.empty()) options.site.scene = *options.scans, options.config.unknown = true;
+  Site site = open_site(command, options.site);
+  Day day{.config = options.config};
   if (command.count("--station") == 0) options.planned.typed.clear();  // those of a scene are no plan
-  const bool plan = options.planned.file || !options.planned.typed.empty();
-  if (plan) day.planned = place(site, options.planned.read(max_stations)), day.planned_names = names_of(day.planned);
+  if (options.planned.file || !options.planned.typed.empty()) {
+    const std::vector<SiteStation> plan = place(site, options.planned.read(max_stations));
+    day.planned = placed_of(plan), day.planned_names = names_of(plan);
+  }
   site.area();  // an error now, not behind the scans
 
   ProgressLine line(program.console, "reading the scans");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
-  day.scans = read_taken_scans(*options.scans);
-  spdlog::info("{}: {} scan{}", *options.scans, day.scans.size(), day.scans.size() == 1 ? "" : "s");
-  line.set_label("fitting the scans to the model");
-  if (!fit_to_model(site, day.scans, options.config.tolerance_m, progress)) throw Stopped{};
-  line.set_label("looking for what is not in the model");
-  day.changes = changes_of(site, day.scans, options.config.tolerance_m, progress);
+  day.scans = read_taken_scans(*options.scans, 0.02, progress);
   if (program.stop.stop_requested()) throw Stopped{};
+  spdlog::info("{}: {} scan{}", *options.scans, day.scans.size(), day.scans.size() == 1 ? "" : "s");
+  line.set_label("comparing the scans with the model");
+  if (!find_changes(site, day, progress)) throw Stopped{};
 
   Site found = changed_site(site, day.changes);
   Simulator& simulator = build_simulator(found, program);
   tell_engine(simulator);
   tell_grid(simulator);
   line.set_label("choosing the next stations");
-  std::optional<NextAnswer> answer =
-      next_stations(found, day.scans, day.changes, placed_of(day.planned), options.config, progress);
+  std::optional<NextAnswer> answer = next_stations(found, day.scans, day.changes, day.planned, day.config, progress);
   if (!answer) throw Stopped{};
   day.answer = std::move(*answer);
 
-  const std::vector<std::string> names = day.names();
   const std::filesystem::path folder = options.output.value_or("next");
-  const nlohmann::json json = next_json(day, names, found, options.config);
-  const std::vector<PlacedStation> stations = day.stations(found);
-  write_files(folder, day, names, found, stations, json);
-  if (options.json)
-    program.console.print(json);
-  else
+  make_folder(folder);
+  write_next(folder, day, found);
+  if (options.json) {
+    program.console.print(nlohmann::json::parse(next_json(day, found)));
+  } else {
+    const std::vector<std::string> names = day.names();
     program.console.print(scans_text(day, names) + missing_text(day) + planned_text(day) +
-                          next_text(day, names, options.config, found, stations) + "results in " + folder.string() +
-                          "\n");
+                          next_text(day, names, found) + "results in " + folder.string() + "\n");
+  }
   return day.answer.enough ? exit_ok : exit_unmet;
 }
 

@@ -71,7 +71,4 @@ auto by_option(const CLI::App& command, const Make& make) -> decltype(make()) {
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string& key)>& accepts = {});
 
-// Settings as options, so that they can be given to --config again.
-nlohmann::json options_of(const Settings& settings);
-
 }  // namespace vantage::cli

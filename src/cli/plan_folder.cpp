@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/options.hpp"
+#include "core/options_json.hpp"
 #include "core/read_json.hpp"
 
 namespace vantage::cli {
@@ -38,7 +39,7 @@ void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
 
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
                             const PlanConfig& config) {
-  nlohmann::json options = options_of(settings(problem));
+  nlohmann::json options = options_json(settings(problem));
   if (!problem.existing_setups.empty()) {
     options["keep"] = nlohmann::json::array();
     for (std::size_t k = 0; k < problem.existing.size(); ++k) {
@@ -48,11 +49,11 @@ nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, co
   }
   if (!question.search_steps.empty()) options["search-step"] = fmt::format("{}", fmt::join(question.search_steps, ","));
   if (question.asks_for_fewest()) add_requirements(options, problem);
-  options.update(options_of(settings(config)));
+  options.update(options_json(settings(config)));
   if (config.exact) options["exact"] = true;
   if (question.fitness)
     options["fitness"] = {question.fitness->coverage, question.fitness->station_count, question.fitness->visibility};
-  nlohmann::json all = options_of(site.settings());
+  nlohmann::json all = options_json(site.settings());
   all["plan"] = std::move(options);
   return all;
 }

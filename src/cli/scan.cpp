@@ -8,6 +8,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/options_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -117,7 +118,7 @@ nlohmann::json scans_json(Scans scans, const ScanCommandOptions& options, Site& 
                       {"engine", to_string(simulator.engine().engine)},
                       {"device", simulator.engine().device},
                       {"seed", site.simulator_config().seed},
-                      {"options", options_of(site.settings())},
+                      {"options", options_json(site.settings())},
                       {"version", version()}};
   if (options.output) json["file"] = *options.output;
   return json;

@@ -14,7 +14,7 @@ void SiteArguments::add(CLI::App& command) {
   command
       .add_option("scene", scene,
                   "The site: glTF, IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or points: E57, LAS, PLY, XYZ, "
-                  "PTS, PTX or PCD")
+                  "PTS, PTX or PCD; or a folder of scans")
       ->type_name("SCENE");
   add_settings(command, site_settings(), given);
   add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",

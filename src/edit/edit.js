@@ -95,7 +95,8 @@
     }
     const keep = before && selected !== null ? before.ids[selected] : null;
     const focused = view.labels.indexOf(document.activeElement);
-    const same = before && before.ids.join() === next.ids.join();
+    const taken = (of) => of.network.stations.map((station) => station.existing).join();
+    const same = before && before.ids.join() === next.ids.join() && taken(before) === taken(next);
     state = next;
     selected = keep === null ? null : state.ids.indexOf(keep);
     if (selected === -1) selected = null;
@@ -155,6 +156,8 @@
     at('legend').replaceChildren(
       element('span', {}, 'no points', element('i', { class: 'ramp', style: `background:linear-gradient(90deg,${VIEW_COLOURS.ramp.join()})` }), 'wanted density'),
       ...(hiddenCells ? [item('', 'no place to stand could help', 'hatch')] : []),
+      ...(state.network.stations.some((station) => station.existing)
+        ? [item(`background:${VIEW_COLOURS.station}`, 'planned station'), item(`background:${VIEW_COLOURS.existing}`, 'taken')] : []),
       item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed'), item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees'),
       item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke'),
       item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke'));
@@ -184,6 +187,7 @@
     const rename = element('button', { type: 'button', id: 'rename' }, 'Rename');
     rename.addEventListener('click', () => askName(id));
     at('station').append(rename);
+    if (state.network.stations[selected].existing) return;  // a scan that was taken stays
     button(locked ? 'Unlock' : 'Lock', { do: 'lock', id, locked: !locked });
     button('Remove', { do: 'remove', id }).disabled = locked;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "placement/nearest_place.hpp"
 #include "report/packed.hpp"
 #include "report/report_json.hpp"
+#include "taken/real_counts.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
@@ -183,6 +185,7 @@ void EditSession::change(const json& request) {
     stations_.erase(stations_.begin() + (&station - stations_.data()));
   } else if (what == "lock") {
     EditStation& station = with_id(request);
+    if (station.placed.existing) throw Error(Errc::invalid_argument, "a scan was taken here: it stays locked");
     remember();
     station.locked = flag_of(request, "locked");
   } else if (what == "rename") {
@@ -205,6 +208,56 @@ void EditSession::change(const json& request) {
     measure(quick);
   ++version_;
   if (!dragging || flag_of(request, "end")) keep_(stations_);
+}
+
+bool EditSession::take(std::span<const TakenScan> scans) {
+  const std::scoped_lock lock(mutex_);
+  if (!busy_.empty()) return false;
+  message_.clear();
+  // Numbers count planned and existing stations apart; a station keeps what the crew calls it.
+  const std::vector<std::string> now = names();
+  for (std::size_t k = 0; k < stations_.size(); ++k) stations_[k].name = now[k];
+  for (const TakenScan& scan : scans) message_ += (message_.empty() ? "" : "; ") + take(scan);
+  undo_.clear(), redo_.clear();  // what was taken cannot be undone
+  measure();
+  ++version_;
+  keep_(stations_);
+  return true;
+}
+
+// Returns a sentence on it.
+std::string EditSession::take(const TakenScan& scan) {
+  const auto distance = [&](const EditStation& station) {
+    const Vec3 apart = station.placed.position - scan.head;
+    return station.placed.existing ? std::numeric_limits<double>::infinity() : std::sqrt(dot(apart, apart));
+  };
+  auto at = std::ranges::min_element(stations_, {}, distance);
+  if (at == stations_.end() || distance(*at) > options_.taken_within_m) {
+    // A planned station keeps its name.
+    std::string name = scan.name;
+    if (std::ranges::find(stations_, name, &EditStation::name) != stations_.end()) name += ", taken";
+    at = stations_.insert(stations_.end(), EditStation{.id = next_id_++, .placed = {}, .name = std::move(name)});
+  }
+  EditStation& station = *at;
+  station.placed = site_.place_head(scan.head).station;
+  station.placed.existing = true, station.locked = true;
+  station.placed.setup = scan.setup, station.placed.setup.scanner = 0;
+  surveyed_.set_real(station.id, RealCounts(simulator_, surveyed_.sample(), options_.tolerance_m).of(scan));
+  // Existing stations come first, as everywhere.
+  const auto first = std::ranges::find_if(stations_, [](const EditStation& s) { return !s.placed.existing; });
+  const std::uint32_t id = station.id;
+  if (first < at) std::rotate(first, at, at + 1);
+  const auto now = std::ranges::find(stations_, id, &EditStation::id);
+  const std::string name = names()[static_cast<std::size_t>(now - stations_.begin())];
+  return name + " is taken, " + grouped(scan.points) + " points" +
+         (scan.fit.fitted ? "; it was moved by " + fixed(100 * scan.fit.shift_m, 1) + " cm onto the model"
+                          : "; it " + scan.fit.why);
+}
+
+void EditSession::tell(const std::string& message) {
+  const std::scoped_lock lock(mutex_);
+  message_ = message;
+  ++version_;
 }
 
 EditStation& EditSession::with_id(const json& request) {
@@ -286,7 +339,8 @@ void EditSession::measure(bool quick) {
   if (!quick) {
     evaluation_.moves = station_moves(site_.area(), site_.clash(), simulator_.scanner().height_m, stations);
     if (stations.size() <= kQuickStations && !stations.empty()) {
-      evaluation_.visit = on_site_->visit(stations);
+      const auto taken = std::ranges::count(stations, true, &PlacedStation::existing);  // they come first
+      evaluation_.visit = on_site_->visit(std::span(stations).subspan(static_cast<std::size_t>(taken)));
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
   }
@@ -391,6 +445,8 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<st
   {
     const std::scoped_lock lock(mutex_);
     evaluation_ = exact, evaluation_.field = {}, colours_ = std::move(colours);
+    if (std::ranges::any_of(stations, &PlacedStation::existing))
+      message_ = "every ray is simulated, also where scans were taken";
   }
   if (!then) return;
   std::string told = then(exact);

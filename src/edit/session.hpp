@@ -8,6 +8,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,13 +19,14 @@
 #include "vantage/candidates.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/site.hpp"
+#include "vantage/taken_scans.hpp"
 
 namespace vantage {
 
 struct EditStation {
   std::uint32_t id = 0;  // unique during the session
   PlacedStation placed;
-  bool locked = false;    // neither moved nor removed, by hand or by search
+  bool locked = false;    // neither moved nor removed, by hand or by search; so is what was taken (placed.existing)
   std::string name = {};  // the user's; empty: numbered
 };
 
@@ -39,6 +41,8 @@ struct EditOptions {
   std::uint64_t registration_voxels = 20'000;  // of the sample by which the registration error is estimated
   RegistrationOptions registration = {};
   OnSiteOptions on_site = {};
+  double taken_within_m = 1;                 // a scan this near to a planned station is that station
+  double tolerance_m = default_tolerance_m;  // of points of scans from the model
 };
 
 // Borrows all arguments. Every call is safe from any thread. Long work runs on a thread of its own, and changes are
@@ -71,6 +75,13 @@ class EditSession {
   // nothing, if the request is impossible.
   void change(const nlohmann::json& request);
 
+  // Makes scans that were taken existing stations: the planned ones that they are of, which move to where they were
+  // really taken, or new ones. Their real points count in place of simulated ones, except with every ray. There is no
+  // undo. `scans`: fitted to the model. False, and nothing is done, while long work runs.
+  bool take(std::span<const TakenScan> scans);
+  // Shows a sentence.
+  void tell(const std::string& message);
+
  private:
   using Stations = std::vector<EditStation>;
   EditStation& with_id(const nlohmann::json& request);
@@ -80,6 +91,7 @@ class EditSession {
   std::vector<std::string> names() const;
   Network network() const;
   std::vector<PlacedStation> placed() const;
+  std::string take(const TakenScan& scan);
   void remember();
   void step(std::vector<Stations>& from, std::vector<Stations>& to);
   // `quick`: leaves out what takes longer than a drag allows.

@@ -27,6 +27,11 @@ TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : sim
   clear_ones(demands_.point_weights);
 }
 
+void TracedStations::set_real(std::uint32_t id, std::vector<std::uint32_t> points) {
+  std::erase_if(traced_, [&](const Traced& traced) { return traced.id == id; });
+  real_[id] = std::move(points);
+}
+
 void TracedStations::follow(const Network& network, std::span<const std::uint32_t> ids) {
   std::erase_if(traced_, [&](const Traced& traced) {
     if (traced.place >= network.size() || ids[traced.place] != traced.id) return true;
@@ -48,6 +53,11 @@ void TracedStations::trace(const Network& network, std::span<const std::uint32_t
   std::vector<Traced> fresh;
   for (std::size_t k = 0; k < network.size(); ++k) {
     if (!network[k].active || std::ranges::count(traced_, k, &Traced::place) > 0) continue;
+    if (const auto real = real_.find(ids[k]); real != real_.end()) {
+      traced_.push_back(
+          {.place = k, .id = ids[k], .head = network[k].position, .setup = network[k].setup, .points = real->second});
+      continue;
+    }
     Network one = network;
     for (std::size_t other = 0; other < one.size(); ++other) one[other].active = other == k;
     alone.push_back(std::move(one));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ class TracedStations {
  public:
   // Samples `voxels` voxels, or all of them if there are fewer. Borrows the simulator.
   TracedStations(Simulator& simulator, std::uint64_t voxels);
+
+  // Counts of a station's real scan, one for each voxel of the sample, in place of its rays from now on.
+  void set_real(std::uint32_t id, std::vector<std::uint32_t> points);
 
   // Updates to a network. `ids`: a unique id of each station, constant while it exists.
   void follow(const Network& network, std::span<const std::uint32_t> ids);
@@ -44,8 +48,9 @@ class TracedStations {
 
   Simulator& simulator_;
   std::vector<std::uint32_t> sample_;
-  VoxelDemands demands_;        // of the sample
-  std::vector<Traced> traced_;  // active ones
+  VoxelDemands demands_;                                      // of the sample
+  std::vector<Traced> traced_;                                // active ones
+  std::map<std::uint32_t, std::vector<std::uint32_t>> real_;  // by id
   NetworkCounts counts_;
   std::vector<std::uint32_t> points_;
   std::vector<Seer> seen_by_;

@@ -90,6 +90,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   if (some([](const MeshInfo& m) { return m.role == Role::blocking && !m.glass && m.name != kNotInModel; }))
     swatch(kBlockingTint, "not surveyed");
   if (some([](const MeshInfo& m) { return m.name == kNotInModel; })) swatch(kFoundTint, "found, not in the model");
+  if (some([](const MeshInfo& m) { return m.name == kUnknown; })) swatch(kUnknownTint, "unknown, not seen");
   if (content.cut) swatch(kCutTint, "cut through");
   if (content.cut && some(&MeshInfo::glass)) swatch(kGlassTint, "glass");
   canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);

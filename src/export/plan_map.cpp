@@ -303,12 +303,12 @@ Box plan_window(const PlanView& view) {
   return box;
 }
 
-// Tints what was found on site and is not in the model.
-static void tint_found(std::vector<std::uint32_t>& pixels, const SceneData& data, const MapWindow& window,
-                       const PlanLevel& level) {
+// Tints the meshes of a name: what was found on site and is not in the model, and unknown space.
+static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& data, const char* name, const Colour& tint,
+                        const MapWindow& window, const PlanLevel& level) {
   constexpr double kFoundOpacity = 0.8;
   for (std::size_t m = 0; m < data.meshes.size(); ++m) {
-    if (data.meshes[m].name != kNotInModel) continue;
+    if (data.meshes[m].name != name) continue;
     std::vector<char> found(pixels.size());
     for (std::uint32_t k = 0; k < data.ranges[m].triangle_count; ++k) {
       std::array<MapPoint, 3> corners;
@@ -321,7 +321,7 @@ static void tint_found(std::vector<std::uint32_t>& pixels, const SceneData& data
         for_each_pixel(window, corners, [&](std::size_t pixel, const auto&) { found[pixel] = 1; });
     }
     for (std::size_t k = 0; k < pixels.size(); ++k)
-      if (found[k]) pixels[k] = laid_over(pixels[k], kFoundTint, kFoundOpacity);
+      if (found[k]) pixels[k] = laid_over(pixels[k], tint, kFoundOpacity);
   }
 }
 
@@ -344,7 +344,8 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
         surfaces.empty() ? section_at(data, window, *level.cut) : section_at(data, surfaces, window, *level.cut);
     paint_section(map.pixels, section, window, line);
   }
-  tint_found(map.pixels, data, window, level);
+  tint_meshes(map.pixels, data, kNotInModel, kFoundTint, window, level);
+  tint_meshes(map.pixels, data, kUnknown, kUnknownTint, window, level);
   return map;
 }
 

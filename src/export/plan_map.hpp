@@ -85,6 +85,7 @@ void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bo
 
 // Overlaps in the legend. The scale of widths is the same on every picture and ends with the last.
 inline constexpr double kLinkSamples[] = {0.05, 0.1, 0.2, 0.5};
-inline constexpr Colour kCutTint{0.27, 0.28, 0.31}, kGlassTint{0.36, 0.66, 0.86}, kFoundTint{0.90, 0.36, 0.08};
+inline constexpr Colour kCutTint{0.27, 0.28, 0.31}, kGlassTint{0.36, 0.66, 0.86}, kFoundTint{0.90, 0.36, 0.08},
+    kUnknownTint{0.13, 0.55, 0.60};
 
 }  // namespace vantage

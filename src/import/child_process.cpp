@@ -12,8 +12,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "import/sandbox.hpp"
@@ -84,8 +86,41 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
 
 using Clock = std::chrono::steady_clock;
 
+// Lines of a standard error: shares done are reported, others are errors.
+class ErrorLines {
+ public:
+  ErrorLines(std::string& errors, const Progress& progress) : errors_(errors), progress_(progress) {}
+  ~ErrorLines() { keep(line_); }
+
+  void add(const char* text, std::size_t bytes) {
+    for (std::size_t k = 0; k < bytes; ++k) {
+      if (line_.size() < kMostErrors) line_ += text[k];
+      if (text[k] == '\n') take();
+    }
+  }
+
+ private:
+  void take() {
+    constexpr std::string_view kProgress = "progress ";
+    double done = 0;
+    const char* const end = line_.data() + line_.size();
+    if (line_.starts_with(kProgress) && std::from_chars(line_.data() + kProgress.size(), end, done).ec == std::errc() &&
+        done >= 0 && done <= 1)
+      progress_(done);
+    else
+      keep(line_);
+    line_.clear();
+  }
+  void keep(const std::string& line) { errors_.append(line, 0, kMostErrors - errors_.size()); }
+
+  std::string& errors_;
+  const Progress& progress_;
+  std::string line_;
+};
+
 // Reads both ends until they are closed; records why it stopped earlier.
-void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
+void listen(Pipe& out, Pipe& err, const Limits& limits, const Progress& progress, Ended& ended) {
+  ErrorLines lines(ended.errors, progress);
   const auto deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
   std::array<pollfd, 2> ends{pollfd{out.from.get(), POLLIN, 0}, pollfd{err.from.get(), POLLIN, 0}};
   std::vector<char> block(std::size_t{1} << 18);
@@ -95,7 +130,12 @@ void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
       ended.timed_out = true;
       return;
     }
-    const int ready = poll(ends.data(), ends.size(), static_cast<int>(std::min<long long>(left, 1000)));
+    if (progress.stopped()) {
+      ended.stopped = true;
+      return;
+    }
+    const long long wait = progress.stop.stop_possible() ? 200 : 1000;
+    const int ready = poll(ends.data(), ends.size(), static_cast<int>(std::min<long long>(left, wait)));
     if (ready < 0 && errno != EINTR) return;
     if (ready <= 0) continue;
     for (std::size_t e = 0; e < ends.size(); ++e) {
@@ -108,7 +148,7 @@ void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
       }
       const auto bytes = static_cast<std::size_t>(got);
       if (e == 1) {
-        ended.errors.append(block.data(), std::min(bytes, kMostErrors - ended.errors.size()));
+        lines.add(block.data(), bytes);
       } else if (ended.output.size() + bytes > limits.output) {
         ended.too_large = true;
         return;
@@ -137,7 +177,7 @@ int wait_for(pid_t process, unsigned seconds, bool& timed_out) {
 }  // namespace
 
 Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
-                  const Limits& limits) {
+                  const Limits& limits, const Progress& progress) {
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
   for (std::string& word : copies) argv.push_back(word.data());
@@ -153,13 +193,13 @@ Ended run_limited(const std::vector<std::string>& words, const std::vector<std::
   Ended ended;
   int status = 0;
   try {
-    listen(out, err, limits, ended);
-  } catch (...) {  // not enough memory for its output
+    listen(out, err, limits, progress, ended);
+  } catch (...) {  // not enough memory for its output, or thrown by a report
     kill(process, SIGKILL);
     waitpid(process, &status, 0);
     throw;
   }
-  if (ended.timed_out || ended.too_large) kill(process, SIGKILL);
+  if (ended.timed_out || ended.too_large || ended.stopped) kill(process, SIGKILL);
   status = wait_for(process, 10, ended.timed_out);  // a process that closed its output has nothing left to do
   if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);

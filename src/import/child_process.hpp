@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vantage/progress.hpp"
+
 namespace vantage::importers {
 
 struct Limits {
@@ -20,16 +22,17 @@ inline constexpr int kCannotStart = 127;
 
 struct Ended {
   std::vector<std::uint8_t> output;  // its standard output
-  std::string errors;  // the first 4 KiB of its standard error, with ? for bytes that are not printable ASCII
+  // The first 4 KiB of its standard error, with ? for bytes that are not printable ASCII, without lines of progress.
+  std::string errors;
   int exit_code = -1;  // -1 if a signal ended it
   int signal = 0;
-  bool timed_out = false, too_large = false;
+  bool timed_out = false, too_large = false, stopped = false;
 };
 
 // Runs a program with these words, `words[0]` its path, and waits. It can write no file, open no socket and dump no
-// core. If the kernel has Landlock, it reads nothing outside the system's folders and `readable`. Throws Error io if it
-// cannot be started.
+// core. If the kernel has Landlock, it reads nothing outside the system's folders and `readable`. Lines "progress
+// SHARE" of its standard error are reported. Throws Error io if it cannot be started.
 Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
-                  const Limits& limits);
+                  const Limits& limits, const Progress& progress = {});
 
 }  // namespace vantage::importers

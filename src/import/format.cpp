@@ -27,10 +27,11 @@ constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
 // A PLY holds either; its name alone means faces.
-constexpr Format kE57{"E57", ".e57 ", kCloud}, kLas{"LAS", ".las .laz ", kCloud},
-    kPlyPoints{"PLY of points", ".ply ", kCloud}, kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud},
-    kPcd{"PCD", ".pcd ", kCloud};
-constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "unit wall-layer wall-height"};
+constexpr const char* kCell = "cell";
+constexpr Format kE57{"E57", ".e57 ", kCloud, kCell, true}, kLas{"LAS", ".las .laz ", kCloud, kCell, true},
+    kPlyPoints{"PLY of points", ".ply ", kCloud, kCell, true},
+    kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud, kCell, true}, kPcd{"PCD", ".pcd ", kCloud, kCell, true};
+constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "unit wall-layer wall-height", true};
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
                               &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
 
@@ -299,7 +300,39 @@ bool is_drawing(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
+  std::error_code failure;
+  if (!std::filesystem::is_directory(file, failure)) return {file};
+  constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan};
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(file, failure))
+    if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); }))
+      files.push_back(entry.path());
+  if (failure) throw Error(Errc::io, file.string() + ": the folder cannot be read: " + failure.message());
+  if (files.empty())
+    throw Error(Errc::malformed_file,
+                file.string() +
+                    ": a folder is a site if it holds scans (E57, PTX, LAS, PLY, XYZ, PCD), or floor plans "
+                    "in DXF, a file for each storey; this one holds neither");
+  std::ranges::sort(files);
+  return files;
+}
+
 Recognised recognise(const std::filesystem::path& file) {
+  if (const std::vector<std::filesystem::path> files = files_of(file); files.front() != file) {
+    const Recognised first = recognise(files.front());
+    for (const std::filesystem::path& other : files) {
+      const Format* const format = recognise(other).format;
+      if (!format->several)
+        throw Error(Errc::malformed_file, other.string() + ": this is " + format->name +
+                                              ", and a folder is a site of scans, or of floor plans, alone");
+      if (format != first.format)
+        throw Error(Errc::malformed_file, other.string() + ": this is " + format->name + ", and " +
+                                              files.front().filename().string() + " is " + first.format->name +
+                                              "; give files of one format");
+    }
+    return {first.format};
+  }
   const auto head = read_head(file);
   if (!head) return {&kGltf};
   if (is_packed(file, *head)) return {&kPacked};

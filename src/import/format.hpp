@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vantage::importers {
 
@@ -12,6 +13,7 @@ struct Format {
   const char* extensions;     // each with its dot, separated by spaces
   const char* importer;       // null: the loader reads it
   const char* settings = "";  // names of the settings that the importer takes, separated by spaces
+  bool several = false;       // whether a folder of its files is one site
 };
 
 struct Recognised {
@@ -19,9 +21,13 @@ struct Recognised {
   std::string note = {};  // if the file's name says something else
 };
 
+// The files of a site: a file is its own; those of a folder are the ones that are named as a format of which several
+// are one site, by their names. Throws Error: io (a folder cannot be read), malformed_file (it holds no such file).
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file);
+
 // Recognises the format of a model by its content, else by its extension. Missing or unreadable files are left to the
 // loader's own errors. Throws Error malformed_file, which names the kind of file, for files without surfaces (a zip
-// archive, a page, a picture, …).
+// archive, a page, a picture, …), and for a folder whose files are of several formats.
 Recognised recognise(const std::filesystem::path& file);
 
 }  // namespace vantage::importers

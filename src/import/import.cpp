@@ -60,7 +60,7 @@ void add_material_tables(Hash& hash, const fs::path& file) {
 }
 
 // Changes with the model, the importer, what it is told, and this program.
-std::string cache_key(const fs::path& file, const Format& format, const Importer& importer,
+std::string cache_key(const std::vector<fs::path>& files, const Format& format, const Importer& importer,
                       const std::vector<std::string>& settings) {
   Hash hash;
   const std::string_view version = vantage::version(), name = format.name;
@@ -70,8 +70,10 @@ std::string cache_key(const fs::path& file, const Format& format, const Importer
   std::error_code failure;  // then both are -1
   hash.add(fs::file_size(importer.program, failure));
   hash.add(fs::last_write_time(importer.program, failure).time_since_epoch().count());
-  add_file(hash, file);
-  if (name == "OBJ") add_material_tables(hash, file);
+  for (const fs::path& file : files) {
+    add_file(hash, file);
+    if (name == "OBJ") add_material_tables(hash, file);
+  }
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash.value()));
   return text;
@@ -108,10 +110,11 @@ void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
 }
 
 // Upper bound of a reader's time, which grows with the file, on a slow machine. Readers of damaged files may never end.
-unsigned seconds_for(const fs::path& file) {
+unsigned seconds_for(const std::vector<fs::path>& files) {
   constexpr double kLeast = 20, kEachMegabyte = 10;
   std::error_code failure;
-  const auto bytes = static_cast<double>(fs::file_size(file, failure));
+  double bytes = 0;
+  for (const fs::path& file : files) bytes += static_cast<double>(fs::file_size(file, failure));
   return static_cast<unsigned>(std::min(kLeast + kEachMegabyte * bytes / 1e6, 1e6));
 }
 
@@ -152,13 +155,14 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 }  // namespace
 
 std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits,
-                                 const std::vector<std::string>& settings) {
+                                 const std::vector<std::string>& settings, const Progress& progress) {
   limits.memory = memory_limit(limits.memory);
   limits.memory -= std::min(limits.memory / 8, kCode);
-  limits.cpu_s = std::min(limits.cpu_s, seconds_for(file));
+  std::vector<fs::path> files = files_of(file);
+  for (fs::path& one : files) one = fs::absolute(one);
+  limits.cpu_s = std::min(limits.cpu_s, seconds_for(files));
   limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors
   limits.output = std::min(limits.output, limits.memory);
-  const fs::path absolute = fs::absolute(file);
   Importer importer = [&] {
     try {
       return find_importer(format);
@@ -170,16 +174,19 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();
-  const fs::path entry = folder / (cache_key(absolute, format, importer, settings) + ".glb");
+  const fs::path entry = folder / (cache_key(files, format, importer, settings) + ".glb");
   if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);
   importer.words.insert(importer.words.end(), settings.begin(), settings.end());
-  importer.words.push_back(absolute.string());
-  importer.readable.push_back(absolute.parent_path());
-  std::error_code failure;
-  if (const fs::path target = fs::canonical(absolute, failure); !failure)
-    importer.readable.push_back(target.parent_path());
-  Ended ended = run_limited(importer.words, importer.readable, limits);
+  for (const fs::path& one : files) {
+    importer.words.push_back(one.string());
+    importer.readable.push_back(one.parent_path());
+    std::error_code failure;
+    if (const fs::path target = fs::canonical(one, failure); !failure)
+      importer.readable.push_back(target.parent_path());
+  }
+  Ended ended = run_limited(importer.words, importer.readable, limits, progress);
+  if (ended.stopped) return {};
   if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))
     throw failure_of(ended, file.string(), format, limits);
   if (!folder.empty()) keep(entry, ended.output);

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import/program.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <new>
 
 namespace vantage::importer {
+
+void tell_progress(double done) {
+  using Clock = std::chrono::steady_clock;
+  static Clock::time_point last = Clock::now();
+  if (Clock::now() - last < std::chrono::milliseconds(200)) return;
+  last = Clock::now();
+  std::fprintf(stderr, "progress %.3f\n", std::clamp(done, 0.0, 1.0));
+}
 
 int run(const std::function<std::string()>& convert) {
   constexpr int kData = 65, kSystem = 71;

@@ -79,7 +79,7 @@ std::vector<TakenScan> taken_scans(const std::filesystem::path& file) {
   return scans;
 }
 
-std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m) {
+std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m, const Progress& progress) {
   const std::string_view name = recognise(file).format->name;
   if (name != "E57" && name != "XYZ")
     throw Error(Errc::malformed_file,
@@ -87,20 +87,20 @@ std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_
   char cell[32];
   std::snprintf(cell, sizeof cell, "cell=%.17g", cell_m);
   std::vector<ThinScan> scans;
-  read_parts(file, as_glb(file, name == "E57" ? kPoints : kTextPoints, {}, {cell}),
-             [&](const nlohmann::json& all, std::span<const std::uint8_t> binary) {
-               for (const auto& entry : all) {
-                 ThinScan scan{scan_of(entry), entry.at("points"), {}};
-                 const std::size_t first = entry.at("first"), count = entry.at("count");
-                 const std::size_t whole = binary.size() / sizeof(ThinPoint);
-                 if (first > whole || count > whole - first) throw std::out_of_range("points");
-                 scan.thinned.resize(count);
-                 if (count > 0)
-                   std::memcpy(scan.thinned.data(), binary.data() + first * sizeof(ThinPoint),
-                               count * sizeof(ThinPoint));
-                 scans.push_back(std::move(scan));
-               }
-             });
+  const auto glb = as_glb(file, name == "E57" ? kPoints : kTextPoints, {}, {cell}, progress);
+  if (glb.empty()) return scans;
+  read_parts(file, glb, [&](const nlohmann::json& all, std::span<const std::uint8_t> binary) {
+    for (const auto& entry : all) {
+      ThinScan scan{scan_of(entry), entry.at("points"), {}};
+      const std::size_t first = entry.at("first"), count = entry.at("count");
+      const std::size_t whole = binary.size() / sizeof(ThinPoint);
+      if (first > whole || count > whole - first) throw std::out_of_range("points");
+      scan.thinned.resize(count);
+      if (count > 0)
+        std::memcpy(scan.thinned.data(), binary.data() + first * sizeof(ThinPoint), count * sizeof(ThinPoint));
+      scans.push_back(std::move(scan));
+    }
+  });
   return scans;
 }
 

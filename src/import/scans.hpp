@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/progress.hpp"
 #include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
 
@@ -36,8 +37,8 @@ struct ThinScan {
 };
 
 // The scans of a file with a pose, E57 or PTX, thinned to one point for each cell of `cell_m`. Throws Error as as_glb()
-// does, and malformed_file for another file.
-std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m);
+// does, and malformed_file for another file. Empty if stopped.
+std::vector<ThinScan> thin_scans(const std::filesystem::path& file, double cell_m, const Progress& progress = {});
 
 // Heading and tilt of a scanner, from the rotation of its frame into the survey's, a quaternion w, x, y, z.
 StationSetup setup_of(const std::array<double, 4>& rotation);

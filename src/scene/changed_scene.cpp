@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
@@ -19,8 +20,8 @@ constexpr std::array kCellFaces{CellFace{{-1, 0, 0}, {0, 4, 6, 2}}, CellFace{{1,
                                 CellFace{{0, -1, 0}, {0, 1, 5, 4}}, CellFace{{0, 1, 0}, {2, 6, 7, 3}},
                                 CellFace{{0, 0, -1}, {0, 2, 3, 1}}, CellFace{{0, 0, 1}, {4, 5, 7, 6}}};
 
-// Appends the faces between cells and what is free.
-void add_cells(SceneData& data, const SolidCells& solid) {
+// Appends the faces between cells and what is free, as `mesh`.
+void add_cells(SceneData& data, const SolidCells& solid, MeshInfo mesh) {
   const auto first_triangle = static_cast<std::uint32_t>(data.triangles.size());
   const Vec3 corner = solid.corner - data.origin;
   for (const SolidCell& cell : solid.cells)
@@ -40,7 +41,8 @@ void add_cells(SceneData& data, const SolidCells& solid) {
   if (count == 0) return;
   data.materials.emplace_back();
   data.ranges.push_back({first_triangle, count, static_cast<std::uint32_t>(data.materials.size() - 1)});
-  data.meshes.push_back({.name = kNotInModel, .role = Role::blocking, .triangle_count = count});
+  mesh.triangle_count = count;
+  data.meshes.push_back(std::move(mesh));
   if (!data.normals.empty()) data.normals.resize(data.positions.size());
   if (!data.texcoords.empty()) data.texcoords.resize(data.positions.size());
   if (!data.colours.empty()) data.colours.resize(data.positions.size(), 0xFFFFFFFF);
@@ -48,14 +50,20 @@ void add_cells(SceneData& data, const SolidCells& solid) {
 
 }  // namespace
 
-Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed) {
+Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
+                    const SolidCells& unknown, std::uint32_t unknown_weight) {
   const SceneData& before = scene.data();
   auto after = std::make_shared<SceneData>(before);
   after->triangles.clear(), after->ranges.clear(), after->meshes.clear();
   after->local_bounds = {};
   bool added = false;
+  const auto add = [&] {
+    if (std::exchange(added, true)) return;
+    add_cells(*after, cells, {.name = kNotInModel, .role = Role::blocking});
+    add_cells(*after, unknown, {.name = kUnknown, .role = Role::surveyed, .weight = unknown_weight});
+  };
   for (std::uint32_t m = 0; m < before.meshes.size(); ++m) {
-    if (before.meshes[m].glass && !added) add_cells(*after, cells), added = true;  // meshes of glass come last
+    if (before.meshes[m].glass) add();  // meshes of glass come last
     if (std::ranges::find(removed, m) != removed.end()) continue;
     const MeshRange& range = before.ranges[m];
     const auto first = before.triangles.begin() + range.first_triangle;
@@ -64,7 +72,7 @@ Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const
     after->meshes.push_back(before.meshes[m]);
     after->triangles.insert(after->triangles.end(), first, first + range.triangle_count);
   }
-  if (!added) add_cells(*after, cells);
+  add();
   if (std::ranges::none_of(after->meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
     throw Error(Errc::malformed_file, "the scans saw through all that is to be surveyed: are they of another site?");
   for (const Triangle& t : after->triangles)

@@ -11,8 +11,9 @@
 
 namespace vantage {
 
-// Name of the mesh that changed_scene() adds.
+// Names of the meshes that changed_scene() adds.
 inline constexpr const char* kNotInModel = "not in the model";
+inline constexpr const char* kUnknown = "unknown space";
 
 // Cubic cells, by their index on each axis.
 using SolidCell = std::array<std::int32_t, 3>;
@@ -23,7 +24,9 @@ struct SolidCells {
 };
 
 // Returns the scene without the triangles of the meshes `removed`, and with a blocking mesh, the outside of these
-// cells. It keeps its local origin, weights and search area. Throws Error malformed_file if nothing is left to survey.
-Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed);
+// cells. That of `unknown` cells is surveyed, with a weight. It keeps its local origin, weights and search area. Throws
+// Error malformed_file if nothing is left to survey.
+Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
+                    const SolidCells& unknown = {}, std::uint32_t unknown_weight = 1);
 
 }  // namespace vantage

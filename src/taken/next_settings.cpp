@@ -13,6 +13,7 @@ Settings settings(const NextConfig& config) {
       .add("next_taken_within_m", config.taken_within_m, {"taken-within"})
       .add("next_sample_voxels", config.sample_voxels)
       .add("next_most", config.most, {"most"})
+      .add("next_unknown", config.unknown, {"unknown"})
       .take();
 }
 
@@ -28,6 +29,8 @@ const SettingTable<NextConfig>& next_settings() {
                   &Options::link, {.low = 0, .high = 1})
           .count("most", "N", otherwise("Most further stations", static_cast<double>(Options().most)), &Options::most,
                  1, 1000)
+          .flag("unknown", "The edge of space that no scan saw is a goal; so it is if the scans are the site",
+                &Options::unknown)
           .number("tolerance", "M", "Points of scans farther than this from the model are of something else, in metres",
                   &Options::tolerance_m, {.low = 0.02, .high = 1})
           .number("taken-within", "M", "A scan this near to a planned station is that station, in metres",

@@ -69,8 +69,9 @@ void check(const NextConfig& config, std::span<const TakenScan> scans) {
   if (config.sample_voxels == 0) refuse("a sample has at least one voxel");
 }
 
-std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, std::span<const PlacedStation> planned,
-                                const NextConfig& config, const Progress& progress) {
+std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, std::span<const PlacedStation> taken,
+                                std::span<const PlacedStation> planned, const NextConfig& config,
+                                const Progress& progress) {
   const auto part = [&](double from, double to) {
     return Progress{[&progress, from, to](double done) { progress(from + (to - from) * done); }, progress.stop};
   };
@@ -86,10 +87,9 @@ std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, s
   const CoverageMatrix& others = candidates.coverage().matrix();
   table.matrix = CoverageMatrix(others.weights(), others.goal());
   const RealCounts real(found.simulator(), candidates.coverage().voxels(), config.tolerance_m);
-  for (const TakenScan& scan : scans) {
+  for (const TakenScan& scan : scans)
     table.matrix.add(amounts_of(real.of(scan), found.simulator(), candidates.coverage()));
-    table.stations.push_back(station_of(found, scan));
-  }
+  table.stations.assign(taken.begin(), taken.end());
   table.matrix.append(plan.matrix());
   table.stations.insert(table.stations.end(), planned.begin(), planned.end());
   table.matrix.append(others);
@@ -191,7 +191,11 @@ void explain_missing(Site& found, const Table& table, std::span<const std::uint3
     if (!(table.matrix.goal(e) > 0)) continue;
     const double lost =
         table.matrix.weight(e) * (1 - std::min(1.0, amounts[e] / table.matrix.goal(e))) / table.matrix.total_weight();
-    (hidden_by[e] < changes.things.size() ? answer.hidden_by[hidden_by[e]] : answer.not_seen) += lost;
+    const auto near = all.nearest(to_glm(patches[e].point), margin);
+    if (near && scene.meshes()[near->mesh].name == kUnknown)
+      answer.unknown += lost;
+    else
+      (hidden_by[e] < changes.things.size() ? answer.hidden_by[hidden_by[e]] : answer.not_seen) += lost;
   }
 }
 
@@ -223,11 +227,11 @@ std::optional<NextAnswer> next_stations(Site& found, std::span<const TakenScan> 
     placed.setup = station.setup;
     there.push_back(placed);
   }
-  const std::optional<Table> made = make_table(found, scans, there, config, progress);
+  NextAnswer answer;
+  for (const TakenScan& scan : scans) answer.taken.push_back(station_of(found, scan));
+  const std::optional<Table> made = make_table(found, scans, answer.taken, there, config, progress);
   if (!made) return std::nullopt;
   const Table& table = *made;
-
-  NextAnswer answer;
   answer.candidates = table.candidates;
   answer.attainable = table.attainable.coverage();
   std::vector<double> amounts(table.matrix.elements());

@@ -31,10 +31,14 @@ std::vector<fs::path> scan_files(const fs::path& path) {
 
 }  // namespace
 
-std::vector<TakenScan> read_taken_scans(const fs::path& path, double cell_m) {
+std::vector<TakenScan> read_taken_scans(const fs::path& path, double cell_m, const Progress& progress) {
   std::vector<TakenScan> scans;
-  for (const fs::path& file : scan_files(path))
-    for (importers::ThinScan& read : importers::thin_scans(file, cell_m)) {
+  const std::vector<fs::path> files = scan_files(path);
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const auto all = static_cast<double>(files.size());
+    progress(static_cast<double>(k) / all);
+    const Progress part{[&](double done) { progress((static_cast<double>(k) + done) / all); }, progress.stop};
+    for (importers::ThinScan& read : importers::thin_scans(files[k], cell_m, part)) {
       TakenScan scan{.name = std::move(read.scan.name),
                      .sensor = std::move(read.scan.sensor),
                      .head = read.scan.head,
@@ -44,6 +48,8 @@ std::vector<TakenScan> read_taken_scans(const fs::path& path, double cell_m) {
       for (const importers::ThinPoint& point : read.thinned) scan.thinned.push_back({point.offset, point.points});
       scans.push_back(std::move(scan));
     }
+    if (progress.stopped()) return {};
+  }
   return scans;
 }
 

@@ -13,6 +13,7 @@
 
 #include "scene/changed_scene.hpp"
 #include "scene/scene_data.hpp"
+#include "taken/depth_picture.hpp"
 #include "taken/model_surface.hpp"
 #include "vantage/taken_scans.hpp"
 
@@ -128,6 +129,7 @@ class ChangeFinder {
         off_(corner_, cell_m_) {}
 
   void add(const TakenScan& scan, std::size_t number) {
+    pictures_.emplace_back(scan);
     const glm::dvec3 head = to_glm(scan.head);
     const auto place = [&](std::size_t k) {
       const auto& o = scan.thinned[k].offset;
@@ -172,6 +174,10 @@ class ChangeFinder {
       }
       if (cluster.size() < kLeastCells || longest(thing.box.size()) < kLeastThing_m) return;
       thing.scans = static_cast<std::size_t>(std::popcount(scans));
+      if (thing.scans == 1 && others_saw_through(cluster, static_cast<std::size_t>(std::countr_zero(scans)))) {
+        changes.passing.push_back(thing);
+        return;
+      }
       for (const SolidCell& cell : cluster) add_with_seam(cell, changes.cells);
       things.emplace_back(cluster.size(), thing);
     });
@@ -180,6 +186,20 @@ class ChangeFinder {
     changes.cells.erase(twice.begin(), twice.end());
     std::ranges::stable_sort(things, [](const auto& a, const auto& b) { return a.first > b.first; });
     for (auto& [size, thing] : things) changes.things.push_back(thing);
+  }
+
+  // Whether other scans saw well behind most of a thing that is of one scan, a number modulo 64.
+  bool others_saw_through(const std::vector<SolidCell>& cluster, std::size_t scan) const {
+    std::size_t through = 0;
+    for (const SolidCell& cell : cluster) {
+      const glm::dvec3 middle = to_glm(corner_) + cell_m_ * (glm::dvec3(cell[0], cell[1], cell[2]) + 0.5);
+      for (std::size_t k = 0; k < pictures_.size(); ++k)
+        if (k % 64 != scan && pictures_[k].beyond(middle) > kBehind * cell_m_) {
+          ++through;
+          break;
+        }
+    }
+    return 2 * through > cluster.size();
   }
 
   // Points of a thing that lie near the model, as those of a closed door beside its frame, pass for the model's. Cells
@@ -234,6 +254,7 @@ class ChangeFinder {
   Vec3 corner_;
   FoundCells off_;
   ByMesh seen_, through_;
+  std::vector<DepthPicture> pictures_;  // one for each scan
 };
 
 }  // namespace
@@ -257,7 +278,9 @@ Site changed_site(Site& site, const SiteChanges& changes) {
   options.user_size_m = site.simulator_config().user_size_m;
   options.spacing_m = site.simulator_config().point_spacing_m;
   options.spacing_by_detail = site.simulator_config().spacing_by_detail;
-  return Site(changed_scene(site.scene(), {changes.corner, changes.cell_m, changes.cells}, changes.removed),
+  const UnknownSpace& unknown = changes.unknown;
+  return Site(changed_scene(site.scene(), {changes.corner, changes.cell_m, changes.cells}, changes.removed,
+                            {unknown.corner, unknown.cell_m, unknown.cells}, unknown_weight),
               std::move(options), site.name());
 }
 

@@ -102,7 +102,8 @@ class Surface {
 
 class Converter {
  public:
-  Converter(const std::filesystem::path& file, const std::string& format) : source_(open_source(file, format)) {}
+  Converter(const Files& files, const std::string& format, std::optional<double> cell_m)
+      : source_(open_source(files, format)), cell_m_(cell_m) {}
 
   std::string run() {
     measure();
@@ -125,14 +126,26 @@ class Converter {
   }
 
  private:
+  // Reads all points, and tells how far the conversion is when they fill a part of it.
+  void read(double from, double to, const PointSink& sink) {
+    const auto all = static_cast<double>(std::max(source_->announced(), points_));
+    double done = 0;
+    source_->read([&](const PointBlock& block) {
+      sink(block);
+      done += static_cast<double>(block.positions.size());
+      if (all > 0) tell_progress(from + (to - from) * std::min(1.0, done / all));
+    });
+  }
+
   void measure() {
     Density density;
-    source_->read([&](const PointBlock& block) {
+    read(0, 0.3, [&](const PointBlock& block) {
       for (const Eigen::Vector3d& p : block.positions) density.add(p);
     });
     points_ = density.points();
     if (points_ == 0) throw Refused("it holds no point; export it again");
-    const double cell_m = Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
+    const double cell_m =
+        cell_m_ ? *cell_m_ : Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
     // Whole metres, so that coordinates stay short.
     grid_.emplace(density.middle().array().round(), cell_m);
     for (const CloudScan& scan : source_->scans()) posed_ += scan.posed ? 1 : 0;
@@ -144,7 +157,7 @@ class Converter {
   }
 
   void accumulate() {
-    source_->read([&](const PointBlock& block) {
+    read(0.3, 0.6, [&](const PointBlock& block) {
       const CloudScan scan = source_->scans()[block.scan];
       for (std::size_t k = 0; k < block.positions.size(); ++k) {
         const Eigen::Vector3d& p = block.positions[k];
@@ -161,7 +174,7 @@ class Converter {
   void follow_rays(FreeSpace& free) {
     const std::uint64_t stride = 1 + points_ / kMostRays;
     std::uint64_t count = 0;
-    source_->read([&](const PointBlock& block) {
+    read(0.6, 0.9, [&](const PointBlock& block) {
       const CloudScan& scan = source_->scans()[block.scan];
       if (!scan.posed) return;
       const Eigen::Vector3d from = grid_->in_cells(scan.position);
@@ -257,6 +270,7 @@ class Converter {
   }
 
   std::unique_ptr<PointSource> source_;
+  std::optional<double> cell_m_;  // as the user wants it
   std::optional<CellGrid> grid_;
   std::uint64_t points_ = 0, far_ = 0;
   std::size_t posed_ = 0;  // scans with a pose
@@ -268,12 +282,18 @@ class Converter {
 
 }  // namespace
 
-std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format) {
-  if (format == "e57") return open_e57(file);
-  if (format == "las") return open_las(file);
-  if (format == "ply") return open_ply(file);
-  if (format == "pcd") return open_pcd(file);
-  return open_text(file);
+std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format) {
+  std::vector<std::unique_ptr<PointSource>> sources;
+  for (const std::filesystem::path& file : files) try {
+      sources.push_back(format == "e57"   ? open_e57(file)
+                        : format == "las" ? open_las(file)
+                        : format == "ply" ? open_ply(file)
+                        : format == "pcd" ? open_pcd(file)
+                                          : open_text(file));
+    } catch (const Refused& why) {
+      throw files.size() == 1 ? why : Refused(file.filename().string() + ": " + why.what());
+    }
+  return joined(std::move(sources));
 }
 
 double memory_for_cells() {
@@ -283,8 +303,8 @@ double memory_for_cells() {
   return kShare * static_cast<double>(limit.rlim_cur);
 }
 
-std::string convert_cloud(const std::filesystem::path& file, const std::string& format) {
-  return Converter(file, format).run();
+std::string convert_cloud(const Files& files, const std::string& format, std::optional<double> cell_m) {
+  return Converter(files, format, cell_m).run();
 }
 
 json scan_json(const CloudScan& scan) {

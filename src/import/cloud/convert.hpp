@@ -4,20 +4,25 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "import/cloud/points.hpp"
 
 namespace vantage::importer {
 
-// The reader of a format: e57, las, ply, xyz or pcd. Throws Refused.
-std::unique_ptr<PointSource> open_source(const std::filesystem::path& file, const std::string& format);
+using Files = std::vector<std::filesystem::path>;
+
+// The reader of a format: e57, las, ply, xyz or pcd; of several files it reads one after the other. Throws Refused.
+std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format);
 
 // Bytes that cells may take: most of what this process may.
 double memory_for_cells();
 
-// A point cloud as surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. Throws Refused.
-std::string convert_cloud(const std::filesystem::path& file, const std::string& format);
+// A point cloud as surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. `cell_m`: size of the cells; empty: chosen.
+// Throws Refused.
+std::string convert_cloud(const Files& files, const std::string& format, std::optional<double> cell_m = {});
 
 // The scans of an E57 file, a GLB without meshes whose `asset.extras.scans` lists name, position (metres, Z up),
 // rotation (quaternion w, x, y, z) and sensor of those with a pose. Throws Refused.
@@ -29,8 +34,8 @@ nlohmann::json scan_json(const CloudScan& scan);
 // `points` and which records of the binary chunk are theirs, `first` and `count`. A record is the mean point in metres
 // from the head, along the axes of the file, as three floats, and the number of points as uint32 (at most 16 384).
 // Cells are twice as large, or four times, if memory is short. Throws Refused.
-std::string thin_scans(const std::filesystem::path& file, const std::string& format, double cell_m);
+std::string thin_scans(const Files& files, const std::string& format, double cell_m);
 // Of the setting cell=METRES. Throws Refused.
-double thin_cell(const std::string& setting);
+double cell_of(const std::string& setting);
 
 }  // namespace vantage::importer

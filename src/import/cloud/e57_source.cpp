@@ -86,6 +86,12 @@ class E57Source final : public PointSource {
     if (data_.empty()) throw Refused("it holds no scan; export it again, with its points");
   }
 
+  std::uint64_t announced() const override {
+    std::uint64_t sum = 0;
+    for (const Data3d& data : data_) sum += data.count;
+    return sum;
+  }
+
   void read(const PointSink& sink) override {
     for (std::size_t k = 0; k < data_.size(); ++k)
       read_scan(data_[k], scans_[k].name, static_cast<std::uint32_t>(k), sink);

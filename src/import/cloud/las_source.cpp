@@ -64,6 +64,8 @@ class LasSource final : public PointSource {
     scans_.push_back({});
   }
 
+  std::uint64_t announced() const override { return head_.count; }
+
   void read(const PointSink& sink) override {
     BlockWriter points(sink, 0, false);
     file_.seek(head_.first);

@@ -22,6 +22,8 @@ class PcdSource final : public PointSource {
     scans_.push_back({});
   }
 
+  std::uint64_t announced() const override { return count_; }
+
   void read(const PointSink& sink) override {
     file_.seek(data_at_);
     BlockWriter points(sink, 0, !normal_.empty());

@@ -47,6 +47,8 @@ class PlySource final : public PointSource {
     scans_.push_back({});
   }
 
+  std::uint64_t announced() const override { return elements_[vertex_].count; }
+
   void read(const PointSink& sink) override {
     file_.seek(data_);
     BlockWriter points(sink, 0, !normal_.empty());

@@ -35,6 +35,8 @@ class PointSource {
   virtual ~PointSource() = default;
   // Reads all points, in the same order each time. Throws Refused.
   virtual void read(const PointSink& sink) = 0;
+  // Points that the file announces; 0: it does not say.
+  virtual std::uint64_t announced() const { return 0; }
   // Complete after the first read().
   const std::vector<CloudScan>& scans() const { return scans_; }
   const std::string& crs() const { return crs_; }  // well-known text; empty if unknown
@@ -72,6 +74,9 @@ class BlockWriter {
   std::vector<Eigen::Vector3d> positions_;
   std::vector<Eigen::Vector3f> directions_;
 };
+
+// All points of several sources, one after the other.
+std::unique_ptr<PointSource> joined(std::vector<std::unique_ptr<PointSource>> sources);
 
 // Readers, one a format. Each reads the file's head. Throw Refused.
 std::unique_ptr<PointSource> open_e57(const std::filesystem::path& file);

@@ -26,7 +26,11 @@ class ThinScans {
   ThinScans(PointSource& source, double cell_m, double memory) : source_(source), cell_m_(cell_m), memory_(memory) {}
 
   std::optional<std::string> run() {
+    const auto all = static_cast<double>(source_.announced());
+    double done = 0;
     source_.read([&](const PointBlock& block) {
+      done += static_cast<double>(block.positions.size());
+      if (all > 0) tell_progress(done / all);
       if (too_many_) return;
       if (block.scan != scan_ || !grid_) {
         flush();
@@ -88,7 +92,7 @@ class ThinScans {
 
 }  // namespace
 
-double thin_cell(const std::string& setting) {
+double cell_of(const std::string& setting) {
   constexpr std::string_view kName = "cell=";
   double cell_m = 0;
   const char* end = setting.data() + setting.size();
@@ -98,8 +102,8 @@ double thin_cell(const std::string& setting) {
   return cell_m;
 }
 
-std::string thin_scans(const std::filesystem::path& file, const std::string& format, double cell_m) {
-  const std::unique_ptr<PointSource> source = open_source(file, format);
+std::string thin_scans(const Files& files, const std::string& format, double cell_m) {
+  const std::unique_ptr<PointSource> source = open_source(files, format);
   for (;; cell_m *= 2)
     if (auto glb = ThinScans(*source, cell_m, memory_for_cells()).run()) return std::move(*glb);
 }

@@ -10,6 +10,7 @@
 
 #include "import/floor_plan/drawing.hpp"
 #include "import/floor_plan/join_ends.hpp"
+#include "import/floor_plan/layers.hpp"
 #include "import/floor_plan/solids.hpp"
 #include "import/floor_plan/swings.hpp"
 #include "import/floor_plan/unit.hpp"
@@ -93,6 +94,22 @@ std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, cons
   return notes;
 }
 
+// A floor plan has doors, or names of rooms. Without both, a title may say what else it is; then nothing is raised
+// unless the user names the layer of walls.
+void check_view(const Drawing& drawing, const Plan& plan, bool doors, bool asked, std::vector<std::string>& notes) {
+  const bool named = std::ranges::any_of(plan.rooms.rooms, [](const Room& room) { return !room.name.empty(); });
+  if (doors || (named && asked)) return;
+  const auto title =
+      std::ranges::find_if(drawing.texts, [](const Text& text) { return names_another_view(text.text); });
+  if (title != drawing.texts.end() && !asked)
+    throw Refused("it seems to be no floor plan: it has no door with a swing, and a text says \"" + title->text +
+                  "\"; give a floor plan, or name its layer of walls with the setting wall-layer");
+  if (!named)
+    notes.emplace_back(
+        "no door with a swing and no name of a room was found: is this an elevation, a section or a roof "
+        "in place of a floor plan?");
+}
+
 // Triangles of a node, Y up, without a point twice.
 json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
   std::map<std::array<float, 3>, std::uint32_t> known;
@@ -109,11 +126,20 @@ json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
   return primitive;
 }
 
-json room_node(const Rooms& rooms, std::size_t r, Point origin, double height) {
+// A drawing, raised.
+struct Storey {
+  Plan plan;
+  Point origin;        // of its points, in metres of the drawing
+  double floor_m = 0;  // above the lowest one
+  std::string name;    // of its file
+  std::vector<std::string> notes;
+};
+
+json room_node(const Rooms& rooms, std::size_t r, Point origin, double low_m, double high_m) {
   const Room& room = rooms.rooms[r];
   const Bounds box = bounds(room.area);
   const Point low = box.low + origin, high = box.high + origin;
-  json vantage{{"class", "room"}, {"box", {{low.x, 0.0, -high.y}, {high.x, height, -low.y}}}};
+  json vantage{{"class", "room"}, {"box", {{low.x, low_m, -high.y}, {high.x, high_m, -low.y}}}};
   if (!room.number.empty()) vantage["name"] = room.number;
   if (!room.name.empty()) vantage[room.number.empty() ? "name" : "long_name"] = room.name;
   vantage["footprint"] = json::array();
@@ -125,29 +151,38 @@ json room_node(const Rooms& rooms, std::size_t r, Point origin, double height) {
   return {{"name", room_name(rooms, r)}, {"extras", {{"vantage", vantage}}}};
 }
 
-std::string glb_of(const Plan& plan, Point origin, const std::vector<std::string>& notes) {
+std::string glb_of(const std::vector<Storey>& storeys) {
   importer::Buffer buffer;
-  json nodes = json::array(), meshes = json::array(), children = json::array();
-  for (const Mesh& mesh : meshes_of(plan)) {
-    meshes.push_back({{"primitives", {primitive_of(mesh, buffer)}}});
-    children.push_back(nodes.size());
-    nodes.push_back({{"name", mesh.name},
-                     {"mesh", meshes.size() - 1},
-                     {"extras", {{"vantage", {{"role", mesh.surveyed ? "surveyed" : "blocking"}}}}}});
+  json nodes = json::array(), meshes = json::array(), roots = json::array(), notes = json::array();
+  for (std::size_t k = 0; k < storeys.size(); ++k) {
+    const auto& [plan, origin, floor_m, name, told] = storeys[k];
+    json children = json::array();
+    for (const Mesh& mesh : meshes_of(plan)) {
+      meshes.push_back({{"primitives", {primitive_of(mesh, buffer)}}});
+      children.push_back(nodes.size());
+      nodes.push_back({{"name", mesh.name},
+                       {"mesh", meshes.size() - 1},
+                       {"extras", {{"vantage", {{"role", mesh.surveyed ? "surveyed" : "blocking"}}}}}});
+    }
+    for (std::size_t r = 0; r < plan.rooms.rooms.size(); ++r) {
+      if (plan.rooms.rooms[r].name.empty() && plan.rooms.rooms[r].number.empty()) continue;
+      children.push_back(nodes.size());
+      nodes.push_back(room_node(plan.rooms, r, origin, floor_m, floor_m + plan.wall_height_m));
+    }
+    roots.push_back(nodes.size());
+    nodes.push_back({{"name", "floor plan"}, {"translation", {origin.x, floor_m, -origin.y}}, {"children", children}});
+    if (storeys.size() > 1) {
+      nodes.back()["name"] = name;
+      nodes.back()["extras"]["vantage"] = {{"class", "IfcBuildingStorey"}, {"name", name}};
+    }
+    for (const std::string& note : told) notes.push_back(note);
   }
-  for (std::size_t r = 0; r < plan.rooms.rooms.size(); ++r) {
-    if (plan.rooms.rooms[r].name.empty() && plan.rooms.rooms[r].number.empty()) continue;
-    children.push_back(nodes.size());
-    nodes.push_back(room_node(plan.rooms, r, origin, plan.wall_height_m));
-  }
-  const std::size_t root = nodes.size();
-  nodes.push_back({{"name", "floor plan"}, {"translation", {origin.x, 0.0, -origin.y}}, {"children", children}});
   return buffer.finish({{"asset",
                          {{"version", "2.0"},
                           {"generator", "vantage-import-plan"},
                           {"extras", {{"vantage", {{"unit", "m"}, {"up", "y"}}}, {"notes", notes}}}}},
                         {"scene", 0},
-                        {"scenes", {{{"nodes", {root}}}}},
+                        {"scenes", {{{"nodes", roots}}}},
                         {"nodes", nodes},
                         {"meshes", meshes}});
 }
@@ -170,7 +205,9 @@ void read_setting(Settings& settings, const std::string& text) {
   }
 }
 
-std::string convert(const std::filesystem::path& file, const Settings& settings) {
+namespace {
+
+Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   Drawing drawing = read_drawing(file, settings.wall_layers);
   if (drawing.lines.empty() && drawing.arcs.empty() && drawing.areas.empty())
     throw Refused("it holds no lines in its model space; export the floor plan with its lines");
@@ -193,7 +230,29 @@ std::string convert(const std::filesystem::path& file, const Settings& settings)
   for (const Opening& opening : plan.openings) open.push_back(clone(opening.area));
   if (!open.empty()) plan.solid = areas(without(walls.solid, united(std::move(open))));
   plan.furniture = find_furniture(drawing, plan.rooms);
-  return glb_of(plan, origin, notes_of(plan, drawing, walls, scale));
+  std::vector<std::string> notes = notes_of(plan, drawing, walls, scale);
+  check_view(drawing, plan, !swings.empty(), !settings.wall_layers.empty(), notes);
+  return {std::move(plan), origin, 0, file.stem().string(), std::move(notes)};
+}
+
+}  // namespace
+
+std::string convert(const std::vector<std::filesystem::path>& files, const Settings& settings) {
+  constexpr double kSlab_m = 0.3;  // between a ceiling and the floor above it
+  std::vector<Storey> storeys;
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.filename().string();
+    try {
+      storeys.push_back(storey_of(file, settings));
+    } catch (const Refused& why) {
+      throw files.size() == 1 ? why : Refused(name + ": " + why.what());
+    }
+    if (files.size() == 1) break;
+    Storey& storey = storeys.back();
+    storey.floor_m = static_cast<double>(storeys.size() - 1) * (settings.wall_height_m + kSlab_m);
+    for (std::string& note : storey.notes) note = name + ", " + fixed(storey.floor_m, 2) + " m up: " + note;
+  }
+  return glb_of(storeys);
 }
 
 }  // namespace vantage::floor_plan

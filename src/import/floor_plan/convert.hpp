@@ -16,7 +16,8 @@ struct Settings {
 // NAME=VALUE of unit, wall-layer (which may be repeated) and wall-height. Throws Refused.
 void read_setting(Settings& settings, const std::string& text);
 
-// Returns the bytes of a GLB: the floor plan of a DXF as rooms of that height. Throws Refused.
-std::string convert(const std::filesystem::path& file, const Settings& settings);
+// Returns the bytes of a GLB: the floor plan of a DXF as rooms of that height. Several files are storeys, from the
+// lowest, in the same coordinates. Throws Refused.
+std::string convert(const std::vector<std::filesystem::path>& files, const Settings& settings);
 
 }  // namespace vantage::floor_plan

@@ -120,6 +120,15 @@ Kind kind_of(const std::string& name) {
   return names_a_wall(n) ? Kind::wall : Kind::other;
 }
 
+bool names_another_view(const std::string& text) {
+  const std::string n = lower(text);
+  return has(n, {"elevation",       "ansicht",   "facade",   "façade",  "fassade",   "fachada", "alzado",
+                 "alçado",          "prospetto", "elevação", "gevel",   "fasad",     "elewacj", "фасад",
+                 "разрез",          "立面",      "剖面",     "立面図",  "roof plan", "dachauf", "dachdr",
+                 "plan de toiture", "schnitt",   "coupe",    "sezione", "doorsnede"}) ||
+         has_whole(n, {"section", "corte", "snitt", "przekrój", "toiture", "copertura"});
+}
+
 bool matches(const std::string& name, const std::string& pattern) {
   return fnmatch(lower(pattern).c_str(), lower(name).c_str(), 0) == 0;
 }

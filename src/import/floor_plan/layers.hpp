@@ -14,4 +14,7 @@ Kind kind_of(const std::string& name);
 // Whether a name matches a shell pattern (*, ?); case does not matter.
 bool matches(const std::string& name, const std::string& pattern);
 
+// Whether a text is the title of a drawing that is no floor plan: an elevation, a section or a roof.
+bool names_another_view(const std::string& text);
+
 }  // namespace vantage::floor_plan

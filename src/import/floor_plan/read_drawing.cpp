@@ -14,6 +14,7 @@
 #include "import/floor_plan/drawing.hpp"
 #include "import/floor_plan/labels.hpp"
 #include "import/floor_plan/layers.hpp"
+#include "import/floor_plan/multilines.hpp"
 #include "import/program.hpp"
 
 namespace vantage::floor_plan {
@@ -452,6 +453,9 @@ Drawing read_drawing(const std::filesystem::path& file, const std::vector<std::s
   DL_Dxf dxf;
   if (!dxf.in(file.string(), &reader)) throw Refused("it cannot be read");
   reader.finish();
+  read_multilines(file, [&](const std::string& layer, Point a, Point b) {
+    reader.model.lines.push_back({a, b, {reader.layer_of(layer), Kind::other, -1}});
+  });
   Drawing& drawing = reader.drawing;
   for (const std::string& name : drawing.layers) {
     Kind kind = kind_of(name);

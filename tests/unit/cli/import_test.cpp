@@ -67,6 +67,13 @@ TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
     EXPECT_TRUE(ground[0] > 0 && ground[0] < 6 && ground[1] > 0 && ground[1] < 4);
     EXPECT_FALSE(ground[0] > 2.6 && ground[0] < 3.4 && ground[1] > 1.6 && ground[1] < 2.4) << "on the box";
   }
+  // Cells of another size, by hand.
+  const Outcome coarse = run_program({"import", path("room.e57"), "--cell", "0.15", "-o", path("coarse.glb")});
+  EXPECT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_NE(coarse.err.find("cells of 15 cm"), std::string::npos) << coarse.err;
+  EXPECT_NEAR(Scene::load(path("coarse.glb")).bounds().max.x, 6, 0.1);
+  expect_refused(run_program({"import", path("room.obj"), "--cell", "0.1", "-o", path("no.glb")}), 2,
+                 "--cell is for point clouds, and this is OBJ");
   // The scans are the stations of another plan.
   const auto more =
       json_of({"plan", path("room.obj"), "--unit", "m", "--up", "y", "--keep-from", path("room.e57"), "--step", "1",

@@ -56,6 +56,32 @@ TEST_F(Next, SpeaksInWords) {
     EXPECT_NE(told.out.find(words), std::string::npos) << words << " is not in\n" << told.out;
 }
 
+// A room of 6 x 4 x 2.5 m, Y up, with a screen from its south wall that leaves 1.2 m at its end.
+constexpr const char* kScreenedRoom =
+    "v 0 0 0\nv 6 0 0\nv 6 0 -4\nv 0 0 -4\nv 0 2.5 0\nv 6 2.5 0\nv 6 2.5 -4\nv 0 2.5 -4\n"
+    "v 3 0 0\nv 3.2 0 0\nv 3.2 0 -2.8\nv 3 0 -2.8\nv 3 2.5 0\nv 3.2 2.5 0\nv 3.2 2.5 -2.8\nv 3 2.5 -2.8\n"
+    "o floor\nf 1 2 3 4\no ceiling\nf 5 8 7 6\no walls\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+    "o screen\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\n";
+
+TEST_F(Next, WithoutAModelTheScansAreTheSite) {
+  write("room.obj", kScreenedRoom);
+  std::filesystem::create_directory(path("day"));
+  const Outcome scanned = run_program({"scan", path("room.obj"), "--unit", "m", "--up", "y", "--station", "1.5,1.5,1.6",
+                                       "--step", "0.4", "--engine", "embree", "-o", path("day/one.e57")});
+  ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+  const auto json = json_of({"next", "--scans", path("day"), "--engine", "embree", "--step", "0.8", "--user-size",
+                             "0.3", "--link", "0", "-o", path("next")});
+  EXPECT_EQ(json["options"]["unknown"], true);
+  EXPECT_EQ(json["taken"][0]["fitted"], false);
+  EXPECT_TRUE(json["not_in_model"].empty());
+  EXPECT_GT(json["unknown"].get<double>(), 0.1);
+  EXPECT_NEAR(json["captured"].get<double>() + json["not_seen"].get<double>() + json["unknown"].get<double>(), 1, 1e-6);
+  // One station looks behind the screen, past its end.
+  ASSERT_EQ(json["next"].size(), 1u);
+  EXPECT_GT(json["next"][0]["position"][1].get<double>(), 2.2);
+  EXPECT_GT(json["captured_then"].get<double>(), 0.95);
+}
+
 TEST_F(Next, ExitsWithThreeWhereItIsNotEnough) {
   take_one();
   const Outcome told = run_program(next({"--capture", "1", "--most", "1"}));

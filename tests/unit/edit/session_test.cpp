@@ -369,6 +369,65 @@ TEST(EditSession, ImprovingMendsLinksFirst) {
   EXPECT_EQ(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
 }
 
+TEST(EditSession, AScanMakesItsStationATakenOne) {
+  Bench bench;
+  bench.add(2, -1);
+  const State before = bench.add(-2, 1);
+  const auto scan_at = [&](double x, double y) {
+    TakenScan scan{.name = "morning", .head = {1000 + x, 2000 + y, 50}};
+    for (const Vec3& p : bench.simulator.scan_points({.position = scan.head}).position) {
+      const Vec3 o = p - scan.head;
+      scan.thinned.push_back({{static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z)}, 1});
+    }
+    scan.points = scan.thinned.size(), scan.fit.fitted = true, scan.fit.shift_m = 0.012;
+    return scan;
+  };
+  const TakenScan near = scan_at(-1.7, 1.2), far = scan_at(0, -3);
+  ASSERT_TRUE(bench.session.take(std::span(&near, 1)));
+  State state = bench.session.state();
+  EXPECT_EQ(state["ids"], json({2, 1}));  // existing ones come first
+  const auto& taken = state["network"]["stations"][0];
+  EXPECT_EQ(taken["name"], "S2");
+  EXPECT_EQ(taken["existing"], true);
+  EXPECT_EQ(taken["head"], json({998.3, 2001.2, 50.0}));
+  EXPECT_EQ(state["network"]["stations"][1]["name"], "S1");
+  EXPECT_EQ(state["locked"], json({true, false}));
+  EXPECT_EQ(state["undo"], false);
+  EXPECT_EQ(state["network"]["visit"]["order"].size(), 1u) << "the round is of what is still to do";
+  EXPECT_EQ(state["message"].get<std::string>().find("S2 is taken, "), 0u) << state["message"];
+  EXPECT_NE(state["message"].get<std::string>().find("moved by 1.2 cm"), std::string::npos) << state["message"];
+  EXPECT_EQ(bench.last_kept.size(), 2u);
+  EXPECT_THROW(bench.session.change({{"do", "lock"}, {"id", 2}, {"locked", false}}), Error);
+  EXPECT_THROW(bench.session.change({{"do", "remove"}, {"id", 2}}), Error);
+  EXPECT_THROW(bench.session.change({{"do", "undo"}}), Error);
+
+  ASSERT_TRUE(bench.session.take(std::span(&far, 1)));
+  state = bench.session.state();
+  EXPECT_EQ(state["ids"], json({2, 3, 1}));
+  EXPECT_EQ(state["network"]["stations"][1]["name"], "morning");
+  TakenScan other = scan_at(3, 3);
+  other.name = "S1";
+  ASSERT_TRUE(bench.session.take(std::span(&other, 1)));
+  state = bench.session.state();
+  EXPECT_EQ(state["network"]["stations"][2]["name"], "S1, taken");
+  EXPECT_EQ(state["network"]["stations"][3]["name"], "S1");
+}
+
+TEST(EditSession, ARealScanCountsByItsPoints) {
+  Bench bench;
+  EXPECT_GT(bench.add(2, -1)["network"]["coverage"], 0.5);
+  // A scan that met nothing, as in fog.
+  const TakenScan fog{.name = "fog", .head = {1002, 1999, 50}};
+  ASSERT_TRUE(bench.session.take(std::span(&fog, 1)));
+  const State state = bench.session.state();
+  EXPECT_EQ(state["ids"].size(), 1u);
+  EXPECT_EQ(state["network"]["coverage"], 0);
+  bench.session.change({{"do", "exact"}});
+  const State exact = bench.finished();
+  EXPECT_EQ(exact["message"], "every ray is simulated, also where scans were taken");
+  EXPECT_GT(exact["network"]["coverage"], 0.5);
+}
+
 TEST(EditSession, BeginsWithNothing) {
   Bench bench;
   const State state = bench.session.state();

@@ -28,6 +28,27 @@ class ChildProcessTest : public ImportTest {
 
 std::string text(const Ended& ended) { return {ended.output.begin(), ended.output.end()}; }
 
+TEST_F(ChildProcessTest, LinesOfProgressAreReportedAndNoErrors) {
+  std::vector<double> told;
+  const Ended ended = importers::run_limited(
+      {"/bin/bash", "-c",
+       "exec >&2; printf 'progress 0.25\\nprogress 0.'; printf '5\\nprogress of my own\\nprogress 7\\nbad'"},
+      {}, {}, {[&](double done) { told.push_back(done); }, {}});
+  EXPECT_EQ(told, (std::vector<double>{0.25, 0.5}));
+  EXPECT_EQ(ended.errors, "progress of my own\nprogress 7\nbad");
+}
+
+TEST_F(ChildProcessTest, IsEndedWhenItIsStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto begin = std::chrono::steady_clock::now();
+  const Ended ended =
+      importers::run_limited({"/bin/bash", "-c", "sleep 60"}, {}, {}, {.report = {}, .stop = stop.get_token()});
+  EXPECT_TRUE(ended.stopped);
+  EXPECT_NE(ended.exit_code, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
 TEST_F(ChildProcessTest, GivesOutputErrorsAndExitCode) {
   const Ended ended = shell("printf 'a\\0b'; printf 'first\\n\\033[31mred\\303\\251' >&2; exit 7");
   EXPECT_EQ(text(ended), std::string("a\0b", 3));

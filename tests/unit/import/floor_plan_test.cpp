@@ -226,6 +226,60 @@ TEST_F(FloorPlanTest, WallsThatEncloseLittleStandOnOpenGround) {
   EXPECT_TRUE(std::ranges::none_of(scene.meshes(), [](const MeshInfo& m) { return m.name.starts_with("ceiling"); }));
 }
 
+TEST_F(FloorPlanTest, AnElevationIsToldOrRefused) {
+  DrawingText front(6);
+  front.rectangle("0", 0, 0, 12, 6);
+  for (const double x : {1.0, 4.0, 7.0}) front.rectangle("0", x, 3, x + 1.2, 4.5);
+  expect_note(load(front), "is this an elevation, a section or a roof");
+  front.text("0", 5, -1, "South Elevation 1:100");
+  refused(front, "a text says \"South Elevation 1:100\"; give a floor plan, or name its layer of walls");
+  load(front, {.wall_layers = {"0"}});
+  // A plan with doors may refer to a section.
+  DrawingText plan = small_flat();
+  plan.text("A-NAME", 8, 2, "Section A-A");
+  const std::string notes = notes_of(load(plan));
+  EXPECT_EQ(notes.find("elevation"), std::string::npos) << notes;
+}
+
+TEST_F(FloorPlanTest, MultilinesAreTheirLines) {
+  std::string text = small_flat().str();
+  const Scene without = load(small_flat());
+  // A wall 0.2 m thick across the living room, from (5.05, 2) to (10, 2).
+  std::string wall = "0\nMLINE\n8\nA-WALL\n2\nSTANDARD\n40\n0.2\n70\n1\n71\n1\n72\n2\n73\n2\n10\n5.05\n20\n2\n30\n0\n";
+  for (const char* x : {"5.05", "10"})
+    wall += std::string("11\n") + x +
+            "\n21\n2\n31\n0\n12\n1\n22\n0\n32\n0\n13\n0\n23\n1\n33\n0\n74\n2\n41\n0.1\n41\n0\n75\n0\n74\n2\n41\n-0."
+            "1\n41\n0\n75\n0\n";
+  const std::size_t entities = text.find("ENTITIES\n") + 9;
+  text.insert(entities, wall);
+  const Scene scene = Scene::load(write("multiline.dxf", text));
+  EXPECT_TRUE(blocked(scene, {8, 1, 1}, {8, 3, 1}));
+  EXPECT_FALSE(blocked(without, {8, 1, 1}, {8, 3, 1}));
+  EXPECT_TRUE(blocked(scene, {8, 1.95, 1}, {8, 1.85, 1})) << "its side is 0.1 m from its middle";
+  EXPECT_FALSE(blocked(scene, {8, 1.85, 1}, {8, 1.5, 1}));
+}
+
+TEST_F(FloorPlanTest, AFolderHasAStoreyInEachFile) {
+  std::filesystem::create_directory(folder_.path() / "house");
+  write("house/0 ground.dxf", small_flat().str());
+  write("house/1 first.dxf", small_flat(4, 1000).str());  // drawn in millimetres
+  const Scene scene = Scene::load(folder_.path() / "house");
+  expect_box(scene.bounds(), {-0.3, -0.3, 0}, {10.3, 6.3, 5.7});
+  EXPECT_EQ(scene.rooms().size(), 6u);
+  std::vector<std::string> storeys;
+  for (const Room& room : scene.rooms()) {
+    storeys.push_back(room.storey);
+    EXPECT_NEAR(room.box.min.z, room.storey == "0 ground" ? 0 : 3, 1e-9);
+  }
+  EXPECT_EQ(std::ranges::count(storeys, "0 ground"), 3);
+  EXPECT_EQ(std::ranges::count(storeys, "1 first"), 3);
+  expect_note(scene, "1 first.dxf, 3.00 m up: floor plan: unit mm");
+  write("house/scan.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  expect_error(Errc::malformed_file, "give files of one format", [&] { Scene::load(folder_.path() / "house"); });
+  write("house/2.dxf", "nothing");
+  expect_error(Errc::malformed_file, "2.dxf", [&] { Scene::load(folder_.path() / "house"); });
+}
+
 // A room is entered, or captured from its door nearly as well as the whole.
 TEST_F(FloorPlanTest, DefaultPlanCapturesEveryRoom) {
   const Scene scene = load(small_flat());

@@ -122,14 +122,14 @@ std::string section(const std::string& title, const SettingTable<Options>& table
 TEST(SettingTables, AreAPageOfTheDocumentation) {
   const std::string page =
       "# Settings\n\n"
-      "Every setting of a site, of a question and of a search, as the program's option, as a key of configuration "
-      "files\n"
-      "(`-` or `_` between words), and as a keyword in Python. A test makes this page from the tables of the library\n"
-      "(`site_settings()`, `question_settings()`, `plan_settings()`). [command_line.md](command_line.md) explains "
-      "them.\n" +
+      "Every setting of a site, of a question, of a search and of the next stations, as the program's option, as a key "
+      "of\nconfiguration files (`-` or `_` between words), and as a keyword in Python. A test makes this page from the "
+      "tables of the\nlibrary (`site_settings()`, `question_settings()`, `plan_settings()`, `next_settings()`). "
+      "[command_line.md](command_line.md) explains them.\n" +
       section("The site: `Site.open`, all commands", site_settings()) +
       section("The question: `Site.plan`, `vantage plan`", question_settings()) +
-      section("The search: `Site.plan`, `vantage plan`", plan_settings());
+      section("The search: `Site.plan`, `vantage plan`", plan_settings()) +
+      section("The next stations: `Site.next`, `vantage next`", next_settings());
   std::ofstream("settings.md") << page;
   std::ifstream file(VANTAGE_DOCS_FOLDER "/settings.md");
   const std::string written{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -65,6 +65,32 @@ TEST_F(ReadScans, AFolderIsItsFilesByName) {
   EXPECT_EQ(scans[1].head, kInSecond);
 }
 
+TEST_F(ReadScans, AFolderOfScansIsASite) {
+  Site site = site_of(Rooms{.step_deg = 1});
+  write_scan(folder_ / "a.e57", site, {kInFirst, kAcross});
+  write_scan(folder_ / "b.e57", site, {{5.4, 2.4, 1.85}});
+  const Scene scene = Scene::load(folder_.path());
+  const Box box = scene.bounds();
+  EXPECT_NEAR(box.min.x, 0, 0.06);
+  EXPECT_GT(box.max.x, 8) << "the second room, as far as the doorway shows it";
+  bool told = false;
+  for (const std::string& note : scene.notes()) told |= note.find("of 3 scans") != std::string::npos;
+  EXPECT_TRUE(told);
+}
+
+TEST_F(ReadScans, TellsHowFarItIsAndCanBeStopped) {
+  Site site = site_of(Rooms{.step_deg = 0.2});
+  write_scan(folder_ / "a.e57", site, {kInFirst, kAcross});
+  write_scan(folder_ / "b.e57", site, {kInSecond});
+  std::vector<double> told;
+  EXPECT_EQ(read_taken_scans(folder_.path(), 0.02, {[&](double done) { told.push_back(done); }, {}}).size(), 3u);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_GE(told.size(), 2u);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(read_taken_scans(folder_.path(), 0.01, {{}, stop.get_token()}).empty());
+}
+
 TEST_F(ReadScans, PtxHasPoses) {
   write("a.ptx", "2\n1\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n4 5 6\n0 0 0\n");
   const auto scans = read_taken_scans(folder_ / "a.ptx");

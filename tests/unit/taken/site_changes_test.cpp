@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "rooms.hpp"
 #include "scene/changed_scene.hpp"
@@ -35,6 +36,24 @@ TEST(SiteChanges, ACupboardIsFoundWithItsPlaceAndSize) {
   EXPECT_NEAR(box.min.z, default_tolerance_m, step);  // below, the floor is as near
   EXPECT_TRUE(changes.removed.empty());
   for (const SeenThrough& one : changes.seen_through) ADD_FAILURE() << one.mesh;
+}
+
+TEST(SiteChanges, SomebodyWhoStoodStillInOneScanDoesNotCount) {
+  const Box person{{3.1, 2.6, 0}, {3.5, 3, 1.75}};
+  Site model = site_of(Rooms{}), with = site_of(Rooms{.things = {person}});
+  const TakenScan first = scan_at(with, kInFirst), second = scan_at(model, kAcross), again = scan_at(with, kAcross);
+  const SiteChanges gone = changes_of(model, std::array{first, second});
+  EXPECT_TRUE(gone.things.empty());
+  EXPECT_TRUE(gone.cells.empty());
+  ASSERT_EQ(gone.passing.size(), 1u);
+  EXPECT_NEAR(gone.passing[0].box.max.z, person.max.z, 0.1);
+  EXPECT_EQ(gone.passing[0].scans, 1u);
+  // The order of the scans says nothing; what both saw stands there, and so does what no other scan could see.
+  EXPECT_EQ(changes_of(model, std::array{second, first}).passing.size(), 1u);
+  EXPECT_EQ(changes_of(model, std::array{first, again}).things.size(), 1u);
+  const SiteChanges alone = changes_of(model, std::array{first, scan_at(model, {11, 4.5, 1.85})});
+  EXPECT_EQ(alone.things.size(), 1u);
+  EXPECT_TRUE(alone.passing.empty());
 }
 
 TEST(SiteChanges, ADoorThatStoodOpenIsTold) {
@@ -112,6 +131,17 @@ TEST(ChangedScene, OneCellIsAClosedCube) {
   // Two cells beside each other have no face between them.
   const Scene two = changed_scene(site.scene(), {{1, 1, 1}, 0.25, {{0, 0, 0}, {1, 0, 0}}}, {});
   EXPECT_EQ(two.data().ranges.back().triangle_count, 20u);
+}
+
+TEST(ChangedScene, UnknownSpaceIsSurveyedWithItsWeight) {
+  Site site = site_of(Rooms{});
+  const Scene scene = changed_scene(site.scene(), {}, {}, {{1, 1, 1}, 0.25, {{0, 0, 0}}}, 5);
+  const MeshInfo& mesh = scene.meshes().back();
+  EXPECT_EQ(mesh.name, kUnknown);
+  EXPECT_EQ(mesh.role, Role::surveyed);
+  EXPECT_EQ(mesh.weight, 5u);
+  EXPECT_EQ(mesh.triangle_count, 12u);
+  EXPECT_EQ(scene.meshes().size(), site.scene().meshes().size() + 1);
 }
 
 TEST(ChangedScene, WithoutChangesItIsTheSame) {

@@ -87,7 +87,7 @@ class ConvertTest : public CloudTest {
   }
   Scene scene_of(const std::filesystem::path& file, const std::string& format) const {
     const auto glb = folder_.path() / "out.glb";
-    std::ofstream(glb, std::ios::binary) << importer::convert_cloud(file, format);
+    std::ofstream(glb, std::ios::binary) << importer::convert_cloud({file}, format);
     return Scene::load(glb);
   }
 };
@@ -191,7 +191,7 @@ TEST_F(ConvertTest, PointsWithoutAScannerAreSurfacesToo) {
 TEST_F(ConvertTest, TheSamePointsGiveTheSameBytes) {
   const Room room;
   const auto file = room_file({room, room}, {{1, 1, 1.6}, {5, 3, 1.6}});
-  EXPECT_EQ(importer::convert_cloud(file, "e57"), importer::convert_cloud(file, "e57"));
+  EXPECT_EQ(importer::convert_cloud({file}, "e57"), importer::convert_cloud({file}, "e57"));
 }
 
 TEST_F(ConvertTest, AMachineAloneHasNoGround) {
