@@ -37,10 +37,18 @@ double spacing_by_view(const PlacedStation& station, std::span<const CoverageMat
   return kSpacingShare * *middle;
 }
 
-CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing)
+double least_share(double share, double size, double errors) {
+  const double z2 = errors * errors / size;
+  const double deviation = std::sqrt(z2 * (share * (1 - share) + z2 / 4));
+  return std::max(0.0, (share + z2 / 2 - deviation) / (1 + z2));
+}
+
+CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing,
+                               double link_errors)
     : surveyed_(std::move(surveyed)),
       surroundings_(std::move(surroundings)),
       spacing_(std::move(spacing)),
+      link_errors_(link_errors),
       matrix_(surveyed_({}, {})),
       around_(surroundings_ ? surroundings_({}, {}) : CoverageMatrix()) {}
 
@@ -65,6 +73,16 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
   const std::size_t first = graph_.size();
   graph_.extend(around_, stations_.size());
+  for (std::size_t i = first; i < std::min(graph_.size(), around_.candidates()) && link_errors_ > 0; ++i) {
+    const std::span<const StationGraph::Overlap> known = graph_.overlaps(i);
+    for (const StationGraph::Overlap& other : std::vector(known.begin(), known.end())) {
+      if (other.candidate >= i) break;
+      const std::size_t fewer = std::min(around_.column(i).size(), around_.column(other.candidate).size());
+      graph_.set_overlap(i, other.candidate,
+                         static_cast<float>(least_share(static_cast<double>(other.share), static_cast<double>(fewer),
+                                                        link_errors_)));
+    }
+  }
   std::vector<Vec3> positions;
   for (const PlacedStation& station : stations_) positions.push_back(station.position);
   graph_.exclude_nearer(positions, spacing_.nearest_m, first);
@@ -76,6 +94,14 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
         first);
   }
   return count == stations.size();
+}
+
+void CandidateTable::take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap) {
+  for (std::size_t a = 0; a < chosen.size(); ++a)
+    for (std::size_t b = a + 1; b < chosen.size(); ++b) {
+      const auto share = static_cast<float>(overlap(a, b));
+      if (share != graph_.overlap(chosen[a], chosen[b])) graph_.set_overlap(chosen[a], chosen[b], share);
+    }
 }
 
 bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {

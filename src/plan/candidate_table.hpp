@@ -33,11 +33,16 @@ inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
+// Lower bound of a share of which a sample of `size` shows `share`, by so many standard errors (Wilson: Probable
+// Inference, the Law of Succession, and Statistical Inference, 1927). REQUIRES: size > 0.
+double least_share(double share, double size, double errors);
+
 class CandidateTable {
  public:
   // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each
-  // other.
-  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing);
+  // other. An overlap is the least that its sample admits, by `link_errors` standard errors: among thousands of pairs,
+  // those that are chosen as links are those that the sample flatters.
+  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing, double link_errors = 0);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
   // stations that were traced in full.
@@ -48,14 +53,17 @@ class CandidateTable {
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }
+  // Takes in what every ray showed of the overlaps between chosen stations. REQUIRES: a matrix of as many.
+  void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
-  // Made anew by each addition.
+  // Extended by each addition.
   const StationGraph& graph() const { return graph_; }
 
  private:
   TraceColumns surveyed_, surroundings_;
   StationSpacing spacing_;
+  double link_errors_;
   std::vector<double> least_m_;  // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;

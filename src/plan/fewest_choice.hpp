@@ -35,7 +35,8 @@ struct FewestAsked {
 };
 FewestAsked fewest_asked(const SurveyProblem& problem);
 
-// Distances of a choice from its limits, since the sample that chose it favours it.
+// Distances from the limits, since a sample favours what it chose: of the choice and the search by coverage, of the
+// search alone by links. The choice's links are the least that its sample admits.
 struct Margins {
   double coverage = 0, link = 0;
 };

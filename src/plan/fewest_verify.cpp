@@ -42,6 +42,20 @@ std::vector<double> in_order(const DecisionSpace& space, const std::vector<doubl
   return ordered;
 }
 
+// The chosen candidates in the order of an evaluation's stations, which are the same in the order of visiting.
+std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, const FewestChoice& choice) {
+  std::vector<std::size_t> left = choice.network.chosen, ordered;
+  for (const PlacedStation& station : stations) {
+    const auto nearest = std::ranges::min_element(left, {}, [&](std::size_t k) {
+      const Vec3 apart = choice.table.stations()[k].position - station.position;
+      return dot(apart, apart);
+    });
+    ordered.push_back(*nearest);
+    left.erase(nearest);
+  }
+  return ordered;
+}
+
 }  // namespace
 
 SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
@@ -149,11 +163,20 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
 }
 
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
-  const PlanEntry* best = verified.best();
-  if (!best || choice.network.violation > 0) return false;
+  const PlanEntry *best = verified.best(), &last = verified.entries().back();
+  if (!best) return false;
   const Margins missing = shortfall(*best, choice.asked, verified.problem().requirements);
   if (missing.coverage == 0 && missing.link == 0) return false;
+  // The last one verified is the chosen one.
+  const double known = choice.network.violation;
+  if (last.exact && choice.asked.link > 0 && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
+    choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
+    choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
+  }
+  if (known > 0 && choice.network.violation >= known) return false;  // every ray shows what was known
+  const std::vector<std::size_t> before = choice.network.chosen;
   raise_margins(choice, missing, stop);
+  if (choice.network.violation > 0 && choice.network.chosen == before) return false;
   return true;
 }
 

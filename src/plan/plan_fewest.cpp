@@ -26,6 +26,9 @@ constexpr std::size_t kRepairs = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 2000, kFewerStations = 500;
 
+// Standard errors of a sampled overlap by which links between candidates are taken for weaker than they seem.
+constexpr double kLinkErrors = 2;
+
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
  public:
@@ -50,9 +53,11 @@ class TableMaker {
     const std::uint64_t sample = context.link_voxels();
     surroundings_ =
         seen_columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
+    const auto all = static_cast<double>(context.surroundings().voxel_count()), some = static_cast<double>(sample);
+    if (sample > 0 && some < all) link_errors_ = kLinkErrors * std::sqrt(1 - some / all);
   }
   CandidateTable operator()(std::uint64_t sample_voxels) const {
-    return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_};
+    return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_, link_errors_};
   }
   // Of columns that are known already.
   CoverageMatrix by_goals(CoverageMatrix known) const {
@@ -65,6 +70,7 @@ class TableMaker {
   TraceColumns surroundings_;
   std::vector<double> goals_;  // attainable counts, where the choice goes by them
   StationSpacing spacing_;
+  double link_errors_ = 0;
 };
 
 // Reports the progress of the plan.
