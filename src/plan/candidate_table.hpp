@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "plan/placement_oracle.hpp"
@@ -40,9 +42,8 @@ double least_share(double share, double size, double errors);
 class CandidateTable {
  public:
   // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each
-  // other. An overlap is the least that its sample admits, by `link_errors` standard errors: among thousands of pairs,
-  // those that are chosen as links are those that the sample flatters.
-  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing, double link_errors = 0);
+  // other. `unsampled`: the share of the surroundings that their sample leaves out.
+  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing, double unsampled = 1);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
   // stations that were traced in full.
@@ -53,7 +54,11 @@ class CandidateTable {
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }
-  // Takes in what every ray showed of the overlaps between chosen stations. REQUIRES: a matrix of as many.
+  // Takes overlaps for the least that their sample admits from now on, by so many standard errors: among thousands of
+  // pairs, those that are chosen as links are those that the sample flatters.
+  void take_least_overlaps(double errors);
+  // Takes in what every ray showed of the overlaps between chosen stations, which stay so. REQUIRES: a matrix of as
+  // many.
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
@@ -62,8 +67,12 @@ class CandidateTable {
 
  private:
   TraceColumns surveyed_, surroundings_;
+  void lower_overlaps(std::size_t first);  // of pairs with candidate `first` or a later one
+
   StationSpacing spacing_;
-  double link_errors_;
+  double unsampled_, errors_ = 0;
+  StationGraph sampled_;  // as the sample shows it; empty while errors_ is 0
+  std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that every ray showed, the lower one first
   std::vector<double> least_m_;  // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;

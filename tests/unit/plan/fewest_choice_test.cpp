@@ -91,21 +91,31 @@ TEST(LeastShare, IsRarelyAboveTheTruth) {
 
 TEST(CandidateTable, TakesOverlapsForTheLeastThatTheirSampleAdmits) {
   const auto candidates = floor_candidates(6);
-  CandidateTable plain(floor_columns(), floor_columns(7, 4), {}), careful(floor_columns(), floor_columns(7, 4), {}, 2);
+  CandidateTable plain(floor_columns(), floor_columns(7, 4), {}), careful(floor_columns(), floor_columns(7, 4), {}, 0.25);
   const std::size_t half = candidates.size() / 2;
   for (CandidateTable* table : {&plain, &careful}) {
     table->add(std::span(candidates).first(half), {});
+    if (table == &careful) careful.take_least_overlaps(1);
     table->add(std::span(candidates).subspan(half), {});
   }
+  ScanOverlapMatrix exact(3);
+  exact.set(0, 1, 0.25), exact.set(0, 2, 0), exact.set(1, 2, 0.75);
+  const std::vector<std::size_t> chosen{4, 2, 7};
+  careful.take_in(chosen, exact);
+  careful.take_least_overlaps(2);
+  EXPECT_EQ(careful.graph().overlap(4, 2), 0.25F);
+  EXPECT_EQ(careful.graph().overlap(4, 7), 0);
+  EXPECT_EQ(careful.graph().overlap(7, 2), 0.75F);
   const CoverageMatrix seen = floor_columns(7, 4)(candidates, {});
   int linked = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t j = 0; j < candidates.size(); ++j) {
       if (i == j || plain.graph().overlap(i, j) == 0) continue;
+      if (std::ranges::count(chosen, i) + std::ranges::count(chosen, j) == 2) continue;
       ++linked;
       const auto share = static_cast<double>(plain.graph().overlap(i, j));
       const auto size = static_cast<double>(std::min(seen.column(i).size(), seen.column(j).size()));
-      EXPECT_FLOAT_EQ(careful.graph().overlap(i, j), static_cast<float>(least_share(share, size, 2))) << i << ' ' << j;
+      EXPECT_FLOAT_EQ(careful.graph().overlap(i, j), static_cast<float>(least_share(share, size, 1))) << i << ' ' << j;
       EXPECT_EQ(careful.graph().overlap(i, j), careful.graph().overlap(j, i));
     }
   EXPECT_GT(linked, 100);
