@@ -165,9 +165,8 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
   if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
   std::vector<std::vector<Vec3>> paths(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
-    paths[k] = impl_->ways.path(stops[round[k]], stops[round[(k + 1) % n]]);
-  });
+  tbb::parallel_for(std::size_t{0}, n,
+                    [&](std::size_t k) { paths[k] = impl_->ways.path(stops[round[k]], stops[round[(k + 1) % n]]); });
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t a = round[k], b = round[(k + 1) % n];
     visit.legs_m.push_back(metres[a][b]);

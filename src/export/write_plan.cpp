@@ -63,9 +63,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   tbb::task_group files;
   files.run([&] {
     const std::vector<PlanPage> pages = plan_view_pictures(view);
-    tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
-      save("plan" + pages[k].suffix, *pages[k].canvas);
-    });
+    tbb::parallel_for(std::size_t{0}, pages.size(),
+                      [&](std::size_t k) { save("plan" + pages[k].suffix, *pages[k].canvas); });
   });
   if (field) files.run([&] { write_coverage_ply(folder / "coverage.ply", simulator, *field); });
   if (field && entry.registration) {

@@ -104,9 +104,8 @@ void CandidateTable::lower_overlaps(std::size_t first) {
       if (j >= i) break;
       if (known_.contains({j, i})) continue;
       const std::size_t fewer = std::min(around_.column(i).size(), around_.column(j).size());
-      graph_.set_overlap(i, j,
-                         static_cast<float>(least_share(static_cast<double>(other.share), static_cast<double>(fewer),
-                                                        errors)));
+      graph_.set_overlap(
+          i, j, static_cast<float>(least_share(static_cast<double>(other.share), static_cast<double>(fewer), errors)));
     }
 }
 

@@ -71,9 +71,9 @@ class CandidateTable {
 
   StationSpacing spacing_;
   double unsampled_, errors_ = 0;
-  StationGraph sampled_;  // as the sample shows it; empty while errors_ is 0
+  StationGraph sampled_;                                 // as the sample shows it; empty while errors_ is 0
   std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that every ray showed, the lower one first
-  std::vector<double> least_m_;  // by station
+  std::vector<double> least_m_;                          // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;
   StationGraph graph_;

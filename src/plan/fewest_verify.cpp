@@ -14,7 +14,7 @@ namespace {
 // Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
 // Standard errors of a sampled overlap by which each repair takes links for weaker than they seem, and at most.
-constexpr double kLinkErrors = 1, kMostLinkErrors = 2;
+constexpr double kRepairErrors = 1, kMostErrors = 2;
 
 // What an entry is short of the least values that are required of it.
 Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<const Requirement> requirements) {
@@ -172,7 +172,7 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::s
   // The last one verified is the chosen one.
   const double known = choice.network.violation;
   if (last.exact && missing.link > 0 && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
-    choice.link_errors = std::min(choice.link_errors + kLinkErrors, kMostLinkErrors);
+    choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostErrors);
     choice.table.take_least_overlaps(choice.link_errors);
     choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
     choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));

@@ -42,8 +42,10 @@ std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most)
   const auto add = [&](std::size_t number) {
     if (number >= 1 && number <= most && (numbers.empty() || number > numbers.back())) numbers.push_back(number);
   };
-  const std::size_t parts = chosen > kHundreds ? 4 : chosen > kManyStations ? 2 : 1, below = kPointsBelow / parts,
-                    points = kPointsBeyond / parts;
+  const std::size_t parts = chosen > kHundreds       ? 4
+                            : chosen > kManyStations ? 2
+                                                     : 1,
+                    below = kPointsBelow / parts, points = kPointsBeyond / parts;
   for (std::size_t k = 0; k < below; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(below);
     add(1 + static_cast<std::size_t>(share * static_cast<double>(chosen - 1)));

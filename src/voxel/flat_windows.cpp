@@ -354,7 +354,8 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
   for (std::size_t begin = 0; begin < voxel_indices.size(); begin += voxels_at_once) {
     if (stop.stop_requested()) return {};
     keys.resize(std::min(voxels_at_once, voxel_indices.size() - begin));
-    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = grid.key(voxel_indices[begin + i]); });
+    tbb::parallel_for(std::size_t{0}, keys.size(),
+                      [&](std::size_t i) { keys[i] = grid.key(voxel_indices[begin + i]); });
     const Runs cells(keys, wide.shift);
     const VoxelTriangles lists =
         triangle_lists(LargeFinder(scene, triangles.large(), wide, cells, window_m / 2), cells.cells.size());

@@ -91,7 +91,8 @@ TEST(LeastShare, IsRarelyAboveTheTruth) {
 
 TEST(CandidateTable, TakesOverlapsForTheLeastThatTheirSampleAdmits) {
   const auto candidates = floor_candidates(6);
-  CandidateTable plain(floor_columns(), floor_columns(7, 4), {}), careful(floor_columns(), floor_columns(7, 4), {}, 0.25);
+  CandidateTable plain(floor_columns(), floor_columns(7, 4), {}),
+      careful(floor_columns(), floor_columns(7, 4), {}, 0.25);
   const std::size_t half = candidates.size() / 2;
   for (CandidateTable* table : {&plain, &careful}) {
     table->add(std::span(candidates).first(half), {});

@@ -120,7 +120,8 @@ class FloorEvaluator final : public NetworkEvaluator {
   StationGraph links_of(const PlacedNetwork& network, bool exact) const {
     StationGraph graph(floor_columns(1, 4)(network, {}), network.size());
     for (std::size_t i = 0; i < network.size() && exact && exact_overlap; ++i)
-      for (std::size_t j = 0; j < i; ++j) graph.set_overlap(i, j, exact_overlap(network[i], network[j], graph.overlap(i, j)));
+      for (std::size_t j = 0; j < i; ++j)
+        graph.set_overlap(i, j, exact_overlap(network[i], network[j], graph.overlap(i, j)));
     return graph;
   }
   std::vector<double> values_of(const PlacedNetwork& network, std::size_t count, double off, bool exact = false) const {
