@@ -86,6 +86,7 @@ class Growth {
   std::optional<std::size_t> best_anywhere() const;
   Path best_path() const;
   Path path_between_components() const;
+  Path path_from(const Components& parts, std::size_t part) const;
 
   const CoverProblem& problem_;
   std::size_t none_;
@@ -195,13 +196,20 @@ Path Growth::best_path() const {
   return best;
 }
 
-// The candidates between the first component and the one with the shortest path to it; empty if links lead to none.
+// The candidates between the first component that has a path to another one, and that one; empty if none has.
 Path Growth::path_between_components() const {
   const Components parts = components_of(problem_, network_, problem_.link);
+  for (std::size_t part = 0; part < parts.count; ++part)
+    if (Path path = path_from(parts, part); !path.empty()) return path;
+  return {};
+}
+
+// The shortest path from a component to another one.
+Path Growth::path_from(const Components& parts, std::size_t part) const {
   std::vector<std::size_t> from(none_, none_), open;
   std::vector<char> seen(none_, 0), other(none_, 0);
   for (std::size_t i = 0; i < network_.size(); ++i) {
-    if (parts.of[i] == 0)
+    if (parts.of[i] == part)
       seen[network_[i]] = 1, open.push_back(network_[i]);
     else
       other[network_[i]] = 1;

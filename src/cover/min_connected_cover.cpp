@@ -12,6 +12,8 @@ namespace {
 
 // Number of starting networks of one candidate fewer: those that lose least.
 constexpr std::size_t kBeginnings = 3;
+// Largest network that is grown one by one: each station added takes swaps of all.
+constexpr std::size_t kOneByOne = 128;
 // Step by which the required weakest link grows.
 constexpr double kLinkStep = 0.02;
 
@@ -41,7 +43,7 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
 // where candidates keep a distance from each other, a chosen one may block the only way to the rest.
 CoverSolution grow_one_by_one(CoverProblem problem, const std::stop_token& stop) {
   const std::size_t fewest = problem.fewest,
-                    most = std::min(problem.most, problem.matrix.candidates() - problem.existing.size());
+                    most = std::min({problem.most, problem.matrix.candidates() - problem.existing.size(), kOneByOne});
   CoverSolution best = evaluate_cover(problem, problem.existing);
   for (std::size_t placed = 1; placed <= most && !stop.stop_requested(); ++placed) {
     problem.most = placed, problem.fewest = std::min(fewest, placed);
@@ -72,7 +74,7 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
     best = evaluate_cover(problem, grow_connected(problem, std::move(best.chosen)));
     swap();
   }
-  if (best.violation > 0 && problem.graph && !stop.stop_requested()) {
+  if (best.violation > 0 && problem.graph && best.chosen.size() <= kOneByOne && !stop.stop_requested()) {
     CoverSolution other = grow_one_by_one(problem, stop);
     if (other.violation < best.violation) best = std::move(other);
   }

@@ -79,18 +79,22 @@ std::vector<std::size_t> free_candidates(const CoverProblem& problem) {
 }
 
 NetworkLinks::NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link)
-    : all_(link <= 0), network_(network.begin(), network.end()), offsets_(problem.matrix.candidates() + 1, 0) {
+    : all_(link <= 0), graph_(problem.graph), link_(link), network_(network.begin(), network.end()) {
   if (all_) return;
-  const auto for_links = [&](const auto& with) {
-    for (std::uint32_t at = 0; at < network_.size(); ++at)
-      for (const StationGraph::Overlap& other : problem.graph->overlaps(network_[at]))
-        if (static_cast<double>(other.share) >= link) with(other.candidate, at);
-  };
-  for_links([&](std::uint32_t candidate, std::uint32_t) { ++offsets_[candidate + 1]; });
-  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-  places_.resize(offsets_.back());
-  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-  for_links([&](std::uint32_t candidate, std::uint32_t at) { places_[next[candidate]++] = at; });
+  places_.resize(problem.matrix.candidates());
+  for (std::uint32_t at = 0; at < network_.size(); ++at)
+    for_linked(network_[at], [&](std::uint32_t candidate) { places_[candidate].push_back(at); });
+}
+
+void NetworkLinks::replace(std::size_t at, std::size_t joining) {
+  const std::size_t leaving = std::exchange(network_[at], joining);
+  if (all_) return;
+  const auto place = static_cast<std::uint32_t>(at);
+  for_linked(leaving, [&](std::uint32_t candidate) { std::erase(places_[candidate], place); });
+  for_linked(joining, [&](std::uint32_t candidate) {
+    std::vector<std::uint32_t>& places = places_[candidate];
+    places.insert(std::ranges::lower_bound(places, place), place);
+  });
 }
 
 Components NetworkLinks::components_without(std::size_t at) const {

@@ -26,11 +26,14 @@ Components components_of(const CoverProblem& problem, std::span<const std::size_
 // without one of them. All are linked if `link` is 0.
 class NetworkLinks {
  public:
+  // Borrows the problem's graph.
   NetworkLinks(const CoverProblem& problem, std::span<const std::size_t> network, double link);
+  // Another candidate takes the place of a member.
+  void replace(std::size_t at, std::size_t joining);
 
   // Places of the members that a candidate is linked to, rising; none if all are linked.
   std::span<const std::uint32_t> of(std::size_t candidate) const {
-    return std::span(places_).subspan(offsets_[candidate], offsets_[candidate + 1] - offsets_[candidate]);
+    return all_ ? std::span<const std::uint32_t>() : std::span(places_[candidate]);
   }
   // Components of the network, of all members but one, and by member their number without it (Hopcroft, Tarjan:
   // Efficient Algorithms for Graph Manipulation, 1973).
@@ -45,10 +48,18 @@ class NetworkLinks {
   }
 
  private:
+  // Calls with(candidate) for those that a candidate is linked to.
+  template <class With>
+  void for_linked(std::size_t candidate, const With& with) const {
+    for (const StationGraph::Overlap& other : graph_->overlaps(candidate))
+      if (static_cast<double>(other.share) >= link_) with(other.candidate);
+  }
+
   bool all_;  // linked
+  const StationGraph* graph_;
+  double link_;
   std::vector<std::size_t> network_;
-  std::vector<std::size_t> offsets_;  // by candidate
-  std::vector<std::uint32_t> places_;
+  std::vector<std::vector<std::uint32_t>> places_;  // by candidate
 };
 
 // Which candidates may join a network, kept as members come and go.

@@ -30,6 +30,7 @@ class SwapSearch {
         bound_(in_.size()),
         known_(in_.size()) {
     for (const std::size_t k : chosen_) in_[k] = 1;
+    if (problem.link > 0) links_.emplace(problem, chosen_, problem.link);
     tbb::parallel_for(std::size_t{0}, bound_.size(), [&](std::size_t k) { bound_[k] = cover_.gain(k); });
   }
 
@@ -53,7 +54,7 @@ class SwapSearch {
     cover_.remove(out);
     joinable_.remove(out);
     const std::vector<std::size_t> order = by_bound();
-    std::optional<OtherLinks> others;  // made when first needed
+    std::optional<Components> others;  // of the network without the leaving one; made when first needed
     std::size_t best = out, looked_at = 0;
     double most = lost + kLeastGain;
     // F(S − out + k) − F(S − out) is at most F(S + k) − F(S − out): the gain of k and the loss of `out`.
@@ -70,6 +71,7 @@ class SwapSearch {
     if (best != out) {
       in_[out] = 0, in_[best] = 1;
       chosen_[at] = best;
+      if (links_) links_->replace(at, best);
       for (double& one : bound_) one += lost;
       bound_[out] = lost;
     }
@@ -78,21 +80,11 @@ class SwapSearch {
     return best != out;
   }
 
-  // Links among the chosen ones without the leaving one.
-  struct OtherLinks {
-    NetworkLinks links;
-    Components components;
-  };
-  bool may_join(std::size_t k, std::size_t leaving_at, std::optional<OtherLinks>& others) const {
+  bool may_join(std::size_t k, std::size_t leaving_at, std::optional<Components>& others) const {
     if (!joinable_.may_stand(k)) return false;
-    if (problem_.link <= 0) return true;
-    if (!others) {
-      NetworkLinks links(problem_, chosen_, problem_.link);
-      Components components = links.components_without(leaving_at);
-      others = {std::move(links), std::move(components)};
-    }
-    const std::size_t joined = others->links.joined(others->components, k, leaving_at);
-    return others->components.count + 1 - joined == 1;
+    if (!links_) return true;
+    if (!others) others = links_->components_without(leaving_at);
+    return others->count + 1 - links_->joined(*others, k, leaving_at) == 1;
   }
 
   std::vector<std::size_t> by_bound() const {
@@ -108,6 +100,7 @@ class SwapSearch {
   std::vector<std::size_t> chosen_;
   PartialCover cover_;
   Joinable joinable_;
+  std::optional<NetworkLinks> links_;  // none where the network need not be connected
   std::vector<char> in_;
   std::vector<double> bound_, known_;  // of each candidate's gain: an upper bound, and the last computed value
 };

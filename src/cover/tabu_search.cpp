@@ -23,6 +23,7 @@ struct TabuSearch::State {
   double link;
   CoverGains gains;
   Joinable joinable;
+  NetworkLinks links;
   Swap best;                            // quality of the best network found
   std::vector<std::size_t> tabu_until;  // by candidate: may neither leave nor return before that swap
   std::size_t swap = 1;
@@ -71,7 +72,7 @@ class TabuSearch::Ranking {
 // The present network as all places of a swap see it.
 struct TabuSearch::Round {
   double coverage;
-  NetworkLinks links;
+  const NetworkLinks& links;
   Components components = {};
   std::vector<std::size_t> components_without = {};  // their number, by place
   std::vector<Ranking> rankings = {};                // by the number of components that a candidate is linked to
@@ -160,7 +161,7 @@ TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round
 
 TabuSearch::Swap TabuSearch::best_swap(const State& state) const {
   const std::size_t first = problem_.existing.size();
-  Round round{.coverage = state.gains.cover().value(), .links = {problem_, state.chosen, state.link}};
+  Round round{.coverage = state.gains.cover().value(), .links = state.links};
   round.components = round.links.components();
   round.components_without = round.links.counts_without();
   for (const std::size_t k : free_) {
@@ -188,10 +189,11 @@ std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double 
               .link = link,
               .gains = {problem_.matrix, *columns_, best},
               .joinable = {problem_, best},
+              .links = {problem_, best, link},
               .best = {},
               .tabu_until = std::vector<std::size_t>(problem_.matrix.candidates(), 0)};
   state.best.coverage = state.gains.cover().value();
-  state.best.violation = violation(problem_, state.best.coverage, components_of(problem_, best, link).count);
+  state.best.violation = violation(problem_, state.best.coverage, state.links.components().count);
   for (std::size_t idle = 0; state.best.violation > 0 && idle < kPatience && !stop_.stop_requested();
        ++state.swap, ++idle) {
     const Swap swap = best_swap(state);
@@ -199,6 +201,7 @@ std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double 
     const std::size_t leaving = std::exchange(state.chosen[swap.at], swap.in);
     state.gains.replace(leaving, swap.in);
     state.joinable.remove(leaving), state.joinable.add(swap.in);
+    state.links.replace(swap.at, swap.in);
     state.tabu_until[leaving] = state.swap + kTabu + 1, state.tabu_until[swap.in] = state.swap + kTabu / 2 + 1;
     if (!swap.better_than(state.best)) continue;
     if (swap.violation < state.best.violation) idle = 0;

@@ -27,15 +27,25 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
                   .voxels = measured.voxels,
                   .goal_density = measured.goal_density,
                   .counts = counts};
-  for (const Objective& measure : measures) made.values[measure.name] = estimate(measure, measured);
+  if (registration)
+    made.registration = registration_error(counts, measured.voxels, *registration, measured.surroundings,
+                                           measured.surroundings_voxels, targets);
+  // The measure of the same name is this error where it has no targets, and no error of a sample.
+  const bool whole =
+      made.exact && (!measured.surroundings || measured.surroundings->voxels >= measured.surroundings_voxels);
+  ObjectiveSettings settings;
+  settings.registration = registration.value_or(RegistrationOptions{});
+  const Objective same = make_objective("registration", settings);
+  for (const Objective& measure : measures) {
+    const bool known =
+        registration && targets.empty() && whole && measure.name == same.name && measure.parameters == same.parameters;
+    made.values[measure.name] = known ? Estimate{1000 * made.registration->rms_m, 0} : estimate(measure, measured);
+  }
   if (!counts.seen.empty()) {
     made.overlap_matrix = measured.overlap.size() > 0 ? measured.overlap : overlap_matrix(counts);
     if (!counts.groups.empty()) made.overlap_errors = overlap_standard_errors(counts, measured.voxels);
   }
   if (measured.surroundings) made.scan_overlap_matrix = scan_overlap_matrix(*measured.surroundings);
-  if (registration)
-    made.registration = registration_error(counts, measured.voxels, *registration, measured.surroundings,
-                                           measured.surroundings_voxels, targets);
   made.counts.groups.clear();
   made.counts.registration = {};
   return made;

@@ -3,6 +3,8 @@
 // and Or-opt (Or: Traveling Salesman-Type Combinatorial Problems, 1976).
 #include "vantage/on_site.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -149,10 +151,11 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   const std::size_t n = stops.size();
   std::vector<std::vector<double>> metres(n, std::vector<double>(n, 0));
   std::vector<std::vector<bool>> connected(n, std::vector<bool>(n, true));
+  const auto ways = impl_->ways.between_all(stops);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       const Vec3 apart = stops[j] - stops[i];
-      const auto way = way_m(stops[i], stops[j]);
+      const std::optional<double>& way = ways[i][j];
       metres[i][j] = metres[j][i] = way ? *way : options.detour * std::sqrt(dot(apart, apart));
       connected[i][j] = connected[j][i] = way.has_value();
     }
@@ -161,10 +164,13 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   const std::size_t first = options.entrance ? 1 : 0;
   for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
   if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
+  std::vector<std::vector<Vec3>> paths(n);
+  tbb::parallel_for(std::size_t{0}, n,
+                    [&](std::size_t k) { paths[k] = impl_->ways.path(stops[round[k]], stops[round[(k + 1) % n]]); });
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t a = round[k], b = round[(k + 1) % n];
     visit.legs_m.push_back(metres[a][b]);
-    visit.paths.push_back(impl_->ways.path(stops[a], stops[b]));
+    visit.paths.push_back(std::move(paths[k]));
     visit.walk_m += metres[a][b];
     if (!connected[a][b]) ++visit.unconnected;
   }

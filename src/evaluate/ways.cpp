@@ -264,7 +264,30 @@ std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t pla
 }
 
 std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
-  const auto a = nearest(from), b = nearest(to);
+  return between(from, to, nearest(from), nearest(to));
+}
+
+std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<const Vec3> points) const {
+  std::vector<std::optional<std::uint32_t>> places(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) { places[k] = nearest(points[k]); });
+  // Each place of the graph is a source once, before the pairs ask for it.
+  std::vector<std::uint32_t> sources;
+  for (const auto& place : places)
+    if (place) sources.push_back(*place);
+  std::ranges::sort(sources);
+  sources.erase(std::ranges::unique(sources).begin(), sources.end());
+  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t k) { distances_from(sources[k]); });
+  std::vector<std::vector<std::optional<double>>> metres(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    metres[i].resize(points.size());
+    for (std::size_t j = i + 1; j < points.size(); ++j)
+      metres[i][j] = between(points[i], points[j], places[i], places[j]);
+  });
+  return metres;
+}
+
+std::optional<double> Ways::between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,
+                                    std::optional<std::uint32_t> b) const {
   if (!a || !b) return std::nullopt;
   const auto length = [](const Vec3& v) { return std::sqrt(dot(v, v)); };
   if (*a == *b) return length(to - from);

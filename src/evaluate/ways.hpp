@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ class Ways {
 
   // Metres along the graph; empty if it does not connect them, or has no place near one of them.
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
+  // The same for all pairs of points, in parallel: of points i < j the element [i][j].
+  std::vector<std::vector<std::optional<double>>> between_all(std::span<const Vec3> points) const;
   // The ground that such a way leads over, from `from` to `to`, without points on straight stretches; the straight line
   // where there is none.
   std::vector<Vec3> path(const Vec3& from, const Vec3& to) const;
@@ -34,6 +37,8 @@ class Ways {
     float metres;
   };
   std::optional<std::uint32_t> nearest(const Vec3& ground) const;
+  std::optional<double> between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,
+                                std::optional<std::uint32_t> b) const;  // by the places nearest to them
   std::shared_ptr<const std::vector<float>> distances_from(std::uint32_t place) const;
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> gaps(

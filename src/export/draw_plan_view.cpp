@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pages of a plan view: the maps, what their marks mean, and a scale bar.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -226,11 +228,12 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
                                             std::to_string(view.errors.size()) + " errors");
   const Box window = plan_window(view);
   const std::vector<PlanLevel> levels = cut_levels(view.scene, view.area.mesh(), view.stations);
-  std::vector<PlanPage> pages;
-  pages.push_back({"", draw_page(view, window, levels, 0, levels.size())});
-  if (levels.size() > 1)
-    for (std::size_t k = 0; k < levels.size(); ++k)
-      pages.push_back({"-level-" + std::to_string(k + 1), draw_page(view, window, levels, k, 1)});
+  // One of all levels; of several each on its own, too.
+  std::vector<PlanPage> pages(levels.size() > 1 ? levels.size() + 1 : 1);
+  tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
+    pages[k] = k == 0 ? PlanPage{"", draw_page(view, window, levels, 0, levels.size())}
+                      : PlanPage{"-level-" + std::to_string(k), draw_page(view, window, levels, k - 1, 1)};
+  });
   return pages;
 }
 

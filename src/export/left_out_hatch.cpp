@@ -2,6 +2,7 @@
 #include "export/left_out_hatch.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace vantage {
@@ -16,24 +17,26 @@ bool hatch_left_out(std::vector<std::uint32_t>& pixels, const HeightBuffer& heig
                     std::span<const LeftOut> left_out, const PlanLevel* level, const SearchMesh& ground) {
   const MapWindow& window = heights.window;
   std::vector<std::uint8_t> shows(pixels.size(), 0);
-  const auto mark = [&](const auto& mesh, std::uint8_t as) {
-    for (const auto& t : mesh.triangles) {
-      const double middle = (mesh.positions[t[0]].z + mesh.positions[t[1]].z + mesh.positions[t[2]].z) / 3;
-      if (level && !level->holds(middle)) continue;
-      for_each_pixel(window, mesh, t, -origin_z, [&](std::size_t pixel, double z) {
+  std::atomic<bool> any = false;
+  for_row_bands(window, [&](const RowBand& band) {
+    const auto mark = [&](const auto& mesh, std::uint8_t as) {
+      const auto put = [&](std::size_t pixel, double z) {
         if (std::abs(double{heights.z[pixel]} - z) <= kHidden_m) shows[pixel] = as;
-      });
+      };
+      for (const auto& t : mesh.triangles) {
+        const double middle = (mesh.positions[t[0]].z + mesh.positions[t[1]].z + mesh.positions[t[2]].z) / 3;
+        if (!level || level->holds(middle)) for_each_pixel(window, mesh, t, -origin_z, put, band);
+      }
+    };
+    for (const LeftOut& part : left_out) mark(part, 1);
+    mark(ground, 0);
+    for (std::size_t k = band.first * window.columns; k < band.end * window.columns; ++k) {
+      if (!shows[k]) continue;
+      any = true;
+      if ((k % window.columns + k / window.columns) % kPeriod < kStripe)
+        pixels[k] = laid_over(pixels[k], kLeftOutTint, kLeftOutOpacity);
     }
-  };
-  for (const LeftOut& part : left_out) mark(part, 1);
-  mark(ground, 0);
-  bool any = false;
-  for (std::size_t k = 0; k < pixels.size(); ++k) {
-    if (!shows[k]) continue;
-    any = true;
-    if ((k % window.columns + k / window.columns) % kPeriod < kStripe)
-      pixels[k] = laid_over(pixels[k], kLeftOutTint, kLeftOutOpacity);
-  }
+  });
   return any;
 }
 

@@ -16,17 +16,27 @@ constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 // Steeper surfaces have no area in plan view; they are drawn as lines, so that walls without thickness do not vanish.
 constexpr double kSteep = 0.1;
 // Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
-double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); }
+constexpr double kWidest = 14;
+double line_width(double length) { return std::clamp(0.15 * length, 3.0, kWidest); }
 
 class Painter {
  public:
-  Painter(HeightBuffer& target, double z_cut, std::span<const float> cuts)
-      : target_(target), z_cut_(z_cut), cuts_(cuts) {}
+  Painter(HeightBuffer& target, double z_cut, std::span<const float> cuts, const RowBand& band)
+      : target_(target), z_cut_(z_cut), cuts_(cuts), band_(band) {}
+
+  // Whether anything of a triangle, or of the widest line along it, may lie in the band.
+  bool reaches(const std::array<MapPoint, 3>& c) const {
+    const auto [low, high] = std::minmax({c[0].y, c[1].y, c[2].y});
+    return high + kWidest >= static_cast<double>(band_.first) && low - kWidest <= static_cast<double>(band_.end);
+  }
 
   void triangle(const std::array<MapPoint, 3>& c, const std::array<double, 3>& z, std::uint32_t id) {
-    for_each_pixel(target_.window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-      put(pixel, weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2], id);
-    });
+    for_each_pixel(
+        target_.window, c,
+        [&](std::size_t pixel, const std::array<double, 3>& weights) {
+          put(pixel, weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2], id);
+        },
+        band_);
   }
 
   void line(const MapPoint& a, const MapPoint& b, double z_a, double z_b, std::uint32_t id) {
@@ -37,7 +47,7 @@ class Painter {
       const double t = static_cast<double>(s) / steps, x = a.x + t * dx, y = a.y + t * dy;
       const auto [x0, x1] = pixels_between(x - half, x + half, target_.window.columns);
       const auto [y0, y1] = pixels_between(y - half, y + half, target_.window.rows);
-      for (std::size_t j = y0; j < y1; ++j)
+      for (std::size_t j = std::max(y0, band_.first); j < std::min(y1, band_.end); ++j)
         for (std::size_t i = x0; i < x1; ++i) put(j * target_.window.columns + i, z_a + t * (z_b - z_a), id);
     }
   }
@@ -52,6 +62,7 @@ class Painter {
   HeightBuffer& target_;
   double z_cut_;  // local frame
   std::span<const float> cuts_;
+  RowBand band_;
 };
 
 std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
@@ -102,22 +113,25 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   HeightBuffer heights{window, {}, {}};
   heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
   heights.triangle.assign(window.columns * window.rows, kNothing);
-  Painter painter(heights, z_cut - scene.origin.z, cuts);
-  // The search goes on below a glass roof.
-  for (std::uint32_t t = 0; t < scene.opaque_triangles().size(); ++t) {
-    std::array<MapPoint, 3> c;
-    std::array<double, 3> z;
-    const auto p = corners_of(scene, t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
-      z[k] = p[k].z;
+  for_row_bands(window, [&](const RowBand& band) {
+    Painter painter(heights, z_cut - scene.origin.z, cuts, band);
+    // The search goes on below a glass roof.
+    for (std::uint32_t t = 0; t < scene.opaque_triangles().size(); ++t) {
+      std::array<MapPoint, 3> c;
+      std::array<double, 3> z;
+      const auto p = corners_of(scene, t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
+        z[k] = p[k].z;
+      }
+      if (!painter.reaches(c)) continue;
+      painter.triangle(c, z, t);
+      // Parts in the cutting plane are drawn as its section.
+      const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
+      if (below && normal_of(scene, t)[2] < kSteep)
+        for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
     }
-    painter.triangle(c, z, t);
-    // Parts in the cutting plane are drawn as its section.
-    const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
-    if (below && normal_of(scene, t)[2] < kSteep)
-      for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
-  }
+  });
   return heights;
 }
 
@@ -160,7 +174,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns) {
   const std::size_t w = columns / 2, h = pixels.size() / columns / 2;
   std::vector<std::uint32_t> half(w * h);
-  for (std::size_t y = 0; y < h; ++y) {
+  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
     for (std::size_t x = 0; x < w; ++x) {
       std::uint32_t mean = 0;
       for (int shift = 0; shift < 32; shift += 8) {
@@ -172,7 +186,7 @@ std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::
       }
       half[y * w + x] = mean;
     }
-  }
+  });
   return half;
 }
 

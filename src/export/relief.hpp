@@ -2,11 +2,15 @@
 // Shaded relief of a site in plan view.
 #pragma once
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,16 +41,29 @@ inline std::pair<std::size_t, std::size_t> pixels_between(double low, double hig
   return {static_cast<std::size_t>(first), static_cast<std::size_t>(past)};
 }
 
-// Calls put(pixel, weights of the corners) for each pixel of the window whose centre lies in the triangle.
+// Rows of a window from `first` on, without `end`: what one thread paints.
+struct RowBand {
+  std::size_t first = 0, end = std::numeric_limits<std::size_t>::max();
+};
+// Calls paint(band) for bands that share the rows of a window among all threads.
+template <class Paint>
+void for_row_bands(const MapWindow& window, const Paint& paint) {
+  const auto bands = std::min(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), window.rows);
+  tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t k) {
+    paint(RowBand{window.rows * k / bands, window.rows * (k + 1) / bands});
+  });
+}
+
+// Calls put(pixel, weights of the corners) for each pixel of the band whose centre lies in the triangle.
 template <class Put>
-void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, Put&& put) {
+void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, Put&& put, const RowBand& band = {}) {
   const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
   if (area == 0) return;
   const auto [x0, x1] =
       pixels_between(std::min({c[0].x, c[1].x, c[2].x}), std::max({c[0].x, c[1].x, c[2].x}), window.columns);
   const auto [y0, y1] =
       pixels_between(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), window.rows);
-  for (std::size_t y = y0; y < y1; ++y) {
+  for (std::size_t y = std::max(y0, band.first); y < std::min(y1, band.end); ++y) {
     for (std::size_t x = x0; x < x1; ++x) {
       const double px = static_cast<double>(x) + 0.5, py = static_cast<double>(y) + 0.5;
       const double a = ((c[1].x - px) * (c[2].y - py) - (c[2].x - px) * (c[1].y - py)) / area;
@@ -78,18 +95,21 @@ std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacit
 // Halves both sides by averaging two by two pixels. REQUIRES: even numbers of columns and rows.
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns);
 
-// Calls put(pixel, z) for each pixel of the window whose centre lies in triangle `t` of a mesh; z is `from` plus the
+// Calls put(pixel, z) for each pixel of the band whose centre lies in triangle `t` of a mesh; z is `from` plus the
 // triangle's height there.
 template <class Mesh, class Put>
 void for_each_pixel(const MapWindow& window, const Mesh& mesh, const std::array<std::uint32_t, 3>& t, double from,
-                    Put&& put) {
+                    Put&& put, const RowBand& band = {}) {
   std::array<MapPoint, 3> c;
   for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
-  for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
-    double z = from;
-    for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
-    put(pixel, z);
-  });
+  for_each_pixel(
+      window, c,
+      [&](std::size_t pixel, const std::array<double, 3>& weights) {
+        double z = from;
+        for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+        put(pixel, z);
+      },
+      band);
 }
 
 }  // namespace vantage

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/search_tint.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,11 +20,13 @@ enum Cover : std::uint8_t { none, hidden, shown };
 std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z, const SearchMesh& mesh) {
   const MapWindow& window = heights.window;
   std::vector<std::uint8_t> cover(window.columns * window.rows, none);
-  for (const auto& t : mesh.triangles)
-    for_each_pixel(window, mesh, t, -origin_z, [&](std::size_t pixel, double z) {
+  for_row_bands(window, [&](const RowBand& band) {
+    const auto put = [&](std::size_t pixel, double z) {
       const bool shows = !(double{heights.z[pixel]} > z + kHidden_m);
       cover[pixel] = std::max<std::uint8_t>(cover[pixel], shows ? shown : hidden);
-    });
+    };
+    for (const auto& t : mesh.triangles) for_each_pixel(window, mesh, t, -origin_z, put, band);
+  });
   return cover;
 }
 
@@ -29,7 +34,7 @@ std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z,
 template <class Wanted>
 void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r,
                   Wanted&& wanted, std::vector<std::uint8_t>& near) {
-  for (std::size_t line = 0; line < lines; ++line) {
+  tbb::parallel_for(std::size_t{0}, lines, [&](std::size_t line) {
     for (const bool forth : {true, false}) {
       std::size_t since = 0;
       for (std::size_t i = 0; i < length; ++i) {
@@ -38,7 +43,7 @@ void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, 
         if (since < r) near[k] = 1;
       }
     }
-  }
+  });
 }
 
 // Pixels of the set that are less than `r` columns and rows from a pixel outside of it, or from the map's border.
@@ -59,12 +64,14 @@ void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& he
                       const SearchMesh& mesh) {
   const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh),
                                   rim = rim_of(cover, heights.window.columns, kRim);
-  for (std::size_t k = 0; k < pixels.size(); ++k) {
-    if (rim[k])
-      pixels[k] = laid_over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);
-    else if (cover[k] == shown)
-      pixels[k] = laid_over(pixels[k], kSearchTint, kSearchOpacity);
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k != range.end(); ++k) {
+      if (rim[k])
+        pixels[k] = laid_over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);
+      else if (cover[k] == shown)
+        pixels[k] = laid_over(pixels[k], kSearchTint, kSearchOpacity);
+    }
+  });
 }
 
 }  // namespace vantage

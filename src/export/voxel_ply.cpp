@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/voxel_ply.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
 #include "core/atomic_file.hpp"
 
 namespace vantage {
@@ -8,23 +12,29 @@ namespace vantage {
 void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulator,
                      const std::vector<PlyProperty>& more, std::uint64_t voxels,
                      const std::function<VoxelVertex(std::uint64_t k, std::string& bytes)>& vertex) {
-  constexpr std::size_t kChunk = 1u << 20;
+  constexpr std::uint64_t kChunk = 1u << 14, kChunksAtOnce = 64;  // vertices; chunks that are made side by side
   std::vector<PlyProperty> properties{{"double", "x"},  {"double", "y"},    {"double", "z"},
                                       {"uchar", "red"}, {"uchar", "green"}, {"uchar", "blue"}};
   properties.insert(properties.end(), more.begin(), more.end());
   AtomicFile out(file);
   out.write(PlyHeader(properties).text(voxels));
-  std::string bytes, own;
-  for (std::uint64_t k = 0; k < voxels; ++k) {
-    own.clear();
-    const auto [rank, colour] = vertex(k, own);
-    const Vec3 centre = simulator.voxel_centre(rank);
-    append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
-    for (const std::uint8_t channel : to_bytes(colour)) append(bytes, channel);
-    bytes += own;
-    if (bytes.size() > kChunk) out.write(bytes), bytes.clear();
+  std::vector<std::string> chunks(kChunksAtOnce);
+  for (std::uint64_t first = 0; first < voxels; first += kChunk * kChunksAtOnce) {
+    tbb::parallel_for(std::uint64_t{0}, kChunksAtOnce, [&](std::uint64_t c) {
+      std::string &bytes = chunks[c], own;
+      bytes.clear();
+      const std::uint64_t begin = first + c * kChunk;
+      for (std::uint64_t k = begin; k < std::min(begin + kChunk, voxels); ++k) {
+        own.clear();
+        const auto [rank, colour] = vertex(k, own);
+        const Vec3 centre = simulator.voxel_centre(rank);
+        append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
+        for (const std::uint8_t channel : to_bytes(colour)) append(bytes, channel);
+        bytes += own;
+      }
+    });
+    for (const std::string& bytes : chunks) out.write(bytes);
   }
-  out.write(bytes);
   out.commit();
 }
 

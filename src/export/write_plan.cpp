@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
+
 #include <cmath>
 #include <system_error>
 
@@ -48,33 +51,44 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   write_fronts_csv(folder / "fronts.csv", result);
   write_stations_csv(folder / "stations.csv", entry.stations, simulator.scanners());
   if (entry.exact) write_overlap_csv(folder / "overlap.csv", entry.overlap_matrix);
-  if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 
-  if (field && entry.registration)
-    write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration);
   const auto save = [&](const std::string& name, const Canvas& picture) {
     for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
   };
-  save("front", *front_picture(result));
-  save("hypervolume", *hypervolume_picture(result));
-  if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
-  if (field && entry.registration)
-    for (const char* extension : {".png", ".svg"})
-      draw_registration(folder / (std::string("registration") + extension), site, *field, *entry.registration,
-                        entry.stations, "Registration error on the surface (predicted)");
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
   const auto names = station_names(entry.stations, entry.names);
   const StationLinks links = entry.links().value_or(StationLinks{.least = entry.link_overlap});
-  for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
-                              .area = site.area(),
-                              .stations = entry.stations,
-                              .names = names,
-                              .links = links,
-                              .title = title_of(entry),
-                              .errors = errors,
-                              .targets = entry.targets}))
-    save("plan" + page.suffix, *page.canvas);
+  const PlanView view{.scene = simulator.scene(),
+                      .area = site.area(),
+                      .stations = entry.stations,
+                      .names = names,
+                      .links = links,
+                      .title = title_of(entry),
+                      .errors = errors,
+                      .targets = entry.targets};
+  // Clouds and pictures are made side by side. Both files of a picture are made by one thread, since they share it.
+  tbb::task_group files;
+  files.run([&] {
+    const std::vector<PlanPage> pages = plan_view_pictures(view);
+    tbb::parallel_for(std::size_t{0}, pages.size(),
+                      [&](std::size_t k) { save("plan" + pages[k].suffix, *pages[k].canvas); });
+  });
+  if (field) files.run([&] { write_coverage_ply(folder / "coverage.ply", simulator, *field); });
+  if (field && entry.registration) {
+    files.run([&] { write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration); });
+    for (const char* extension : {".png", ".svg"})
+      files.run([&, extension] {
+        draw_registration(folder / (std::string("registration") + extension), site, *field, *entry.registration,
+                          entry.stations, "Registration error on the surface (predicted)");
+      });
+  }
+  files.run([&] {
+    save("front", *front_picture(result));
+    save("hypervolume", *hypervolume_picture(result));
+    if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
+  });
+  files.wait();
   if (!entry.targets.empty()) write_targets_csv(folder / "targets.csv", entry.targets, names);
   write_station_files(folder, {entry.stations, names, entry.targets}, links, site);
   return chosen;

@@ -1,69 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "objective/sparse_covariance.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/SparseCholesky>
-#include <algorithm>
-#include <cassert>
 
 namespace vantage {
 namespace {
 
-// Inverse of P A Pᵀ = L D Lᵀ on the pattern of L, column by column from the last.
-class InverseOnPattern {
- public:
-  template <class Factor>
-  explicit InverseOnPattern(const Factor& factor) : lower_(factor.matrixL().nestedExpression()) {
-    const Eigen::VectorXd pivots = factor.vectorD();
-    values_.resize(static_cast<std::size_t>(lower_.nonZeros()));
-    diagonal_.resize(pivots.size());
-    std::vector<Eigen::Index> place(static_cast<std::size_t>(lower_.rows()), -1);  // of each row in the column at hand
-    std::vector<double> sums;
-    for (Eigen::Index j = lower_.cols(); j-- > 0;) {
-      const Eigen::Index first = begin(j), count = end(j) - first;
-      for (Eigen::Index a = 0; a < count; ++a) place[at(row(first + a))] = a;
-      sums.assign(at(count), 0);
-      // Column k of the inverse holds what rows below k share with it.
-      for (Eigen::Index b = 0; b < count; ++b) {
-        const Eigen::Index k = row(first + b);
-        const double factor_kj = lower_.valuePtr()[first + b];
-        sums[at(b)] += diagonal_[k] * factor_kj;
-        for (Eigen::Index e = begin(k); e < end(k); ++e) {
-          const Eigen::Index a = place[at(row(e))];
-          if (a < 0) continue;
-          sums[at(a)] += values_[at(e)] * factor_kj;
-          sums[at(b)] += values_[at(e)] * lower_.valuePtr()[first + a];
-        }
-      }
-      double own = 1 / pivots[j];
-      for (Eigen::Index a = 0; a < count; ++a) {
-        values_[at(first + a)] = -sums[at(a)];
-        own += lower_.valuePtr()[first + a] * sums[at(a)];
-        place[at(row(first + a))] = -1;
-      }
-      diagonal_[j] = own;
-    }
+// The block of the inverse of A = Pᵀ L D Lᵀ P at `rows`, the places of its rows in P A Pᵀ: E A⁻¹ Eᵀ = Y D⁻¹ Yᵀ with
+// Y = E Pᵀ L⁻ᵀ. Column by column of L from the first of the rows on; all columns before it are 0.
+template <int Rows>
+Eigen::MatrixXd inverse_block(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& pivots,
+                              const Eigen::Ref<const Eigen::VectorXi>& rows) {
+  using Columns = Eigen::Matrix<double, Rows, Eigen::Dynamic>;
+  Columns y = Columns::Zero(rows.size(), lower.rows());
+  for (Eigen::Index i = 0; i < rows.size(); ++i) y(i, rows[i]) = 1;
+  Eigen::Matrix<double, Rows, Rows> inverse = Eigen::Matrix<double, Rows, Rows>::Zero(rows.size(), rows.size());
+  for (Eigen::Index j = rows.minCoeff(); j < lower.rows(); ++j) {
+    const Eigen::Matrix<double, Rows, 1> own = y.col(j);
+    if ((own.array() == 0).all()) continue;
+    inverse.noalias() += own * (own / pivots[j]).transpose();
+    for (Eigen::SparseMatrix<double>::InnerIterator below(lower, j); below; ++below)
+      y.col(below.row()) -= below.value() * own;
   }
-
-  // REQUIRES: on the pattern.
-  double operator()(Eigen::Index i, Eigen::Index j) const {
-    if (i == j) return diagonal_[i];
-    if (i < j) std::swap(i, j);
-    const auto* rows = lower_.innerIndexPtr();
-    const auto* found = std::lower_bound(rows + begin(j), rows + end(j), i);
-    assert(found != rows + end(j) && *found == i);
-    return values_[at(found - rows)];
-  }
-
- private:
-  static std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
-  Eigen::Index begin(Eigen::Index column) const { return lower_.outerIndexPtr()[column]; }
-  Eigen::Index end(Eigen::Index column) const { return lower_.outerIndexPtr()[column + 1]; }
-  Eigen::Index row(Eigen::Index entry) const { return lower_.innerIndexPtr()[entry]; }
-
-  Eigen::SparseMatrix<double> lower_;  // L below its diagonal of ones, rows rising
-  std::vector<double> values_;         // of the inverse, by entry of L
-  Eigen::VectorXd diagonal_;
-};
+  return inverse;
+}
 
 }  // namespace
 
@@ -71,13 +33,16 @@ PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::
                                const Eigen::MatrixXd& right) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(lower);
   PartialInverse found{.blocks = {}, .times = factor.solve(right)};
-  const InverseOnPattern inverse(factor);
+  const Eigen::SparseMatrix<double> l = factor.matrixL().nestedExpression();  // below its diagonal of ones
+  const Eigen::VectorXd pivots = factor.vectorD();
   const auto& places = factor.permutationP().indices();
-  for (Eigen::Index first = 0; first < lower.rows(); first += block) {
-    Eigen::MatrixXd& own = found.blocks.emplace_back(block, block);
-    for (Eigen::Index i = 0; i < block; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j) own(i, j) = own(j, i) = inverse(places[first + i], places[first + j]);
-  }
+  found.blocks.resize(static_cast<std::size_t>(lower.rows() / block));
+  tbb::parallel_for(std::size_t{0}, found.blocks.size(), [&](std::size_t k) {
+    const Eigen::VectorXi rows = places.segment(static_cast<Eigen::Index>(k) * block, block);
+    found.blocks[k] = block == 6   ? inverse_block<6>(l, pivots, rows)
+                      : block == 4 ? inverse_block<4>(l, pivots, rows)
+                                   : inverse_block<Eigen::Dynamic>(l, pivots, rows);
+  });
   return found;
 }
 

@@ -12,8 +12,7 @@ struct PartialInverse {
   std::vector<Eigen::MatrixXd> blocks;  // the blocks of `block` rows on its diagonal
   Eigen::MatrixXd times;                // inverse · right
 };
-// `lower`: the matrix's lower triangle, with all entries of its diagonal blocks. Elements of the inverse by the
-// factor's own pattern (Takahashi, Fagan, Chin: Formation of a Sparse Bus Impedance Matrix, 1973). REQUIRES: rows a
+// `lower`: the matrix's lower triangle. Each block by a forward substitution of its own, in parallel. REQUIRES: rows a
 // multiple of `block`.
 PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
                                const Eigen::MatrixXd& right);

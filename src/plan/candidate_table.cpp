@@ -37,10 +37,18 @@ double spacing_by_view(const PlacedStation& station, std::span<const CoverageMat
   return kSpacingShare * *middle;
 }
 
-CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing)
+double least_share(double share, double size, double errors) {
+  const double z2 = errors * errors / size;
+  const double deviation = std::sqrt(z2 * (share * (1 - share) + z2 / 4));
+  return std::max(0.0, (share + z2 / 2 - deviation) / (1 + z2));
+}
+
+CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing,
+                               double unsampled)
     : surveyed_(std::move(surveyed)),
       surroundings_(std::move(surroundings)),
       spacing_(std::move(spacing)),
+      unsampled_(unsampled),
       matrix_(surveyed_({}, {})),
       around_(surroundings_ ? surroundings_({}, {}) : CoverageMatrix()) {}
 
@@ -65,6 +73,10 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
   const std::size_t first = graph_.size();
   graph_.extend(around_, stations_.size());
+  if (errors_ > 0) {
+    sampled_.extend(around_, stations_.size());
+    lower_overlaps(first);
+  }
   std::vector<Vec3> positions;
   for (const PlacedStation& station : stations_) positions.push_back(station.position);
   graph_.exclude_nearer(positions, spacing_.nearest_m, first);
@@ -76,6 +88,35 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
         first);
   }
   return count == stations.size();
+}
+
+void CandidateTable::take_least_overlaps(double errors) {
+  if (errors_ == 0) sampled_ = graph_;
+  errors_ = errors;
+  lower_overlaps(0);
+}
+
+void CandidateTable::lower_overlaps(std::size_t first) {
+  const double errors = errors_ * std::sqrt(unsampled_);
+  for (std::size_t i = first; i < std::min(sampled_.size(), around_.candidates()); ++i)
+    for (const StationGraph::Overlap& other : sampled_.overlaps(i)) {
+      const std::size_t j = other.candidate;
+      if (j >= i) break;
+      if (known_.contains({j, i})) continue;
+      const std::size_t fewer = std::min(around_.column(i).size(), around_.column(j).size());
+      graph_.set_overlap(
+          i, j, static_cast<float>(least_share(static_cast<double>(other.share), static_cast<double>(fewer), errors)));
+    }
+}
+
+void CandidateTable::take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap) {
+  for (std::size_t a = 0; a < chosen.size(); ++a)
+    for (std::size_t b = a + 1; b < chosen.size(); ++b) {
+      const auto share = static_cast<float>(overlap(a, b));
+      if (share == 0 && graph_.overlap(chosen[a], chosen[b]) == 0) continue;
+      graph_.set_overlap(chosen[a], chosen[b], share);
+      known_.insert(std::minmax(chosen[a], chosen[b]));
+    }
 }
 
 bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {

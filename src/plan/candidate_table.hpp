@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "plan/placement_oracle.hpp"
@@ -33,11 +35,15 @@ inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
+// Lower bound of a share of which a sample of `size` shows `share`, by so many standard errors (Wilson: Probable
+// Inference, the Law of Succession, and Statistical Inference, 1927). REQUIRES: size > 0.
+double least_share(double share, double size, double errors);
+
 class CandidateTable {
  public:
   // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each
-  // other.
-  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing);
+  // other. `unsampled`: the share of the surroundings that their sample leaves out.
+  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing, double unsampled = 1);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
   // stations that were traced in full.
@@ -48,15 +54,26 @@ class CandidateTable {
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }
+  // Takes overlaps for the least that their sample admits from now on, by so many standard errors: among thousands of
+  // pairs, those that are chosen as links are those that the sample flatters.
+  void take_least_overlaps(double errors);
+  // Takes in what every ray showed of the overlaps between chosen stations, which stay so. REQUIRES: a matrix of as
+  // many.
+  void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
-  // Made anew by each addition.
+  // Extended by each addition.
   const StationGraph& graph() const { return graph_; }
 
  private:
   TraceColumns surveyed_, surroundings_;
+  void lower_overlaps(std::size_t first);  // of pairs with candidate `first` or a later one
+
   StationSpacing spacing_;
-  std::vector<double> least_m_;  // by station
+  double unsampled_, errors_ = 0;
+  StationGraph sampled_;                                 // as the sample shows it; empty while errors_ is 0
+  std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that every ray showed, the lower one first
+  std::vector<double> least_m_;                          // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;
   StationGraph graph_;

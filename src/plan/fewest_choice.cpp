@@ -85,7 +85,7 @@ CoverProblem cover_problem(const FewestAsked& asked, const CandidateTable& table
           .fewest = asked.fewest,
           .most = asked.most,
           .coverage = asked.coverage + (asked.coverage > 0 ? margins.coverage : 0),
-          .link = asked.link > 0 ? asked.link + margins.link : 0};
+          .link = asked.link};
 }
 
 void look(CandidateTable& table, std::span<const PlacedStation> existing, std::span<const PlacedStation> candidates,

@@ -35,7 +35,8 @@ struct FewestAsked {
 };
 FewestAsked fewest_asked(const SurveyProblem& problem);
 
-// Distances of a choice from its limits, since the sample that chose it favours it.
+// Distances from the limits, since a sample favours what it chose: of the choice and the search by coverage, of the
+// search alone by links.
 struct Margins {
   double coverage = 0, link = 0;
 };
@@ -45,6 +46,7 @@ struct FewestChoice {
   FewestAsked asked;
   CandidateTable table;  // existing stations first
   Margins margins = {};
+  double link_errors = 0;  // standard errors by which the choice takes sampled overlaps for less than they seem
   CoverSolution network = {};
   std::optional<CoverSolution> one_fewer = {};  // the best network of one station fewer, which is not feasible
 

@@ -13,6 +13,8 @@ namespace {
 
 // Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
+// Standard errors of a sampled overlap by which each repair takes links for weaker than they seem, and at most.
+constexpr double kRepairErrors = 1, kMostErrors = 2;
 
 // What an entry is short of the least values that are required of it.
 Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<const Requirement> requirements) {
@@ -39,6 +41,20 @@ std::vector<double> in_order(const DecisionSpace& space, const std::vector<doubl
   std::vector<double> ordered = x;
   for (std::size_t k = 0; k < order.size(); ++k)
     for (std::size_t c = 0; c < blocks[k].size(); ++c) ordered[blocks[k][c]] = x[blocks[order[k]][c]];
+  return ordered;
+}
+
+// The chosen candidates in the order of an evaluation's stations, which are the same in the order of visiting.
+std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, const FewestChoice& choice) {
+  std::vector<std::size_t> left = choice.network.chosen, ordered;
+  for (const PlacedStation& station : stations) {
+    const auto nearest = std::ranges::min_element(left, {}, [&](std::size_t k) {
+      const Vec3 apart = choice.table.stations()[k].position - station.position;
+      return dot(apart, apart);
+    });
+    ordered.push_back(*nearest);
+    left.erase(nearest);
+  }
   return ordered;
 }
 
@@ -149,11 +165,22 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
 }
 
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
-  const PlanEntry* best = verified.best();
-  if (!best || choice.network.violation > 0) return false;
+  const PlanEntry *best = verified.best(), &last = verified.entries().back();
+  if (!best) return false;
   const Margins missing = shortfall(*best, choice.asked, verified.problem().requirements);
   if (missing.coverage == 0 && missing.link == 0) return false;
+  // The last one verified is the chosen one.
+  const double known = choice.network.violation;
+  if (last.exact && missing.link > 0 && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
+    choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostErrors);
+    choice.table.take_least_overlaps(choice.link_errors);
+    choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
+    choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
+  }
+  if (known > 0 && choice.network.violation >= known) return false;  // every ray shows what was known
+  const std::vector<std::size_t> before = choice.network.chosen;
   raise_margins(choice, missing, stop);
+  if (choice.network.violation > 0 && choice.network.chosen == before) return false;
   return true;
 }
 

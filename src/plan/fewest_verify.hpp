@@ -66,7 +66,9 @@ double verify(const FewestChoice& choice, VerifiedNetworks& verified);
 // Chooses anew with margins raised, by somewhat more than what is missing.
 void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop);
 
-// The same by what the best verified network is short of. False where that cannot help.
+// The same by what the best verified network is short of. If links are too weak, the table takes in the overlaps that
+// every ray showed of the chosen stations, and others for the least that their sample admits: links that hold stay, and
+// only the others are mended. False where that cannot help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
 // Uses the sample's error, known once the chosen network is verified. If it is below the margin, a station fewer may

@@ -26,6 +26,11 @@ constexpr std::size_t kRepairs = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 2000, kFewerStations = 500;
 
+// A site with more ground has hundreds of links, of which a sample flatters some. There they are taken for weaker than
+// they seem, by so many standard errors, before every ray shows it. On smaller sites that would cost stations for links
+// that hold.
+constexpr double kGroundOfHundreds_m2 = 8000, kLinkErrors = 2;
+
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
  public:
@@ -50,9 +55,11 @@ class TableMaker {
     const std::uint64_t sample = context.link_voxels();
     surroundings_ =
         seen_columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
+    const auto all = static_cast<double>(context.surroundings().voxel_count()), some = static_cast<double>(sample);
+    unsampled_ = sample > 0 && some < all ? 1 - some / all : 0;
   }
   CandidateTable operator()(std::uint64_t sample_voxels) const {
-    return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_};
+    return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_, unsampled_};
   }
   // Of columns that are known already.
   CoverageMatrix by_goals(CoverageMatrix known) const {
@@ -65,6 +72,7 @@ class TableMaker {
   TraceColumns surroundings_;
   std::vector<double> goals_;  // attainable counts, where the choice goes by them
   StationSpacing spacing_;
+  double unsampled_ = 1;
 };
 
 // Reports the progress of the plan.
@@ -116,6 +124,11 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
+
+  if (choice.asked.link > 0 && ground_area_m2(context.area().mesh()) > kGroundOfHundreds_m2) {
+    choice.link_errors = kLinkErrors;
+    choice.table.take_least_overlaps(choice.link_errors);
+  }
 
   std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.existing, problem.existing_setups);
   for (PlacedStation& station : existing)

@@ -13,8 +13,8 @@ namespace vantage {
 namespace {
 
 // Points below the chosen number, and beyond it: up to half as many stations more. Half as many points if there are
-// many stations.
-constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4, kManyStations = 100;
+// many stations, a quarter if there are hundreds: each takes seconds of swaps and of registration.
+constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4, kManyStations = 100, kHundreds = 300;
 constexpr double kBeyondShare = 0.5;
 
 // Without the station that is missed least, of those without which the rest is connected as before.
@@ -42,8 +42,10 @@ std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most)
   const auto add = [&](std::size_t number) {
     if (number >= 1 && number <= most && (numbers.empty() || number > numbers.back())) numbers.push_back(number);
   };
-  const std::size_t parts = chosen > kManyStations ? 2 : 1, below = kPointsBelow / parts,
-                    points = kPointsBeyond / parts;
+  const std::size_t parts = chosen > kHundreds       ? 4
+                            : chosen > kManyStations ? 2
+                                                     : 1,
+                    below = kPointsBelow / parts, points = kPointsBeyond / parts;
   for (std::size_t k = 0; k < below; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(below);
     add(1 + static_cast<std::size_t>(share * static_cast<double>(chosen - 1)));

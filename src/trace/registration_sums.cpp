@@ -2,6 +2,7 @@
 #include "trace/registration_sums.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -273,8 +274,9 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
   const double face = frame.voxel_m * frame.voxel_m;
   const double floor = model.rho_m * model.rho_m * model.patch_m * model.patch_m;
   made.largest = largest_section * face / floor;
-  made.patches.reserve(surfaces.size());
-  for (const VoxelSurface& surface : surfaces) {
+  made.patches.resize(surfaces.size());
+  tbb::parallel_for(std::size_t{0}, surfaces.size(), [&](std::size_t i) {
+    const VoxelSurface& surface = surfaces[i];
     RegistrationPatch patch{};
     patch.point = {surface.point.x, surface.point.y, surface.point.z};
     patch.normal = {surface.normal.x, surface.normal.y, surface.normal.z};
@@ -294,8 +296,8 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
       patch.jacobian[a] = quantised(q[b] * n[c] - q[c] * n[b]);
       patch.jacobian[3 + a] = quantised(n[a]);
     }
-    made.patches.push_back(patch);
-  }
+    made.patches[i] = patch;
+  });
   return made;
 }
 

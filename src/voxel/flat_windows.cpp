@@ -2,7 +2,9 @@
 #include "voxel/flat_windows.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -28,8 +30,10 @@ using Cell = std::array<std::int64_t, 3>;
 constexpr double other_sheet = 0.25;
 // Triangles up to this share of a window, along any axis, count as a whole, by their middle.
 constexpr double small_share = 1.0 / 4;
-// A window takes more memory than all other data of a voxel.
-constexpr std::size_t windows_at_once = std::size_t{1} << 19;
+// Voxels between two checks of a stop; keys and lists of so many are kept at once.
+constexpr std::size_t voxels_at_once = std::size_t{1} << 22;
+// Windows of a cell that one thread takes. A cell of a fine grid has thousands, and thousands of triangles around it.
+constexpr std::size_t windows_a_task = 128;
 
 dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
 
@@ -79,28 +83,20 @@ Cells cells_of(const VoxelGrid& grid, double wanted_m) {
   return {grid, std::clamp(shift, 0, grid.depth())};
 }
 
-// Voxel indices in the same cell; these are consecutive in Morton order.
+// Voxels in the same cell, or cells in the same block; these are consecutive in Morton order.
 struct Runs {
-  Runs(const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices, int shift) {
-    for (std::size_t i = 0; i < voxel_indices.size(); ++i)
-      if (const std::uint64_t cell = grid.key(voxel_indices[i]) >> 3 * shift; cells.empty() || cell != cells.back()) {
+  // `keys`: Morton keys, rising.
+  Runs(std::span<const std::uint64_t> keys, int shift) {
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (const std::uint64_t cell = keys[i] >> 3 * shift; cells.empty() || cell != cells.back()) {
         cells.push_back(cell);
-        first.push_back(static_cast<std::uint32_t>(i));
+        first.push_back(i);
       }
-    first.push_back(static_cast<std::uint32_t>(voxel_indices.size()));
-  }
-
-  // Calls visit(number of the cell) for each cell, in parallel.
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t c = range.begin(); c != range.end(); ++c) visit(c);
-                      });
+    first.push_back(keys.size());
   }
 
   std::vector<std::uint64_t> cells;  // Morton keys
-  std::vector<std::uint32_t> first;  // cell number c has voxel_indices[first[c]] … voxel_indices[first[c + 1] − 1]
+  std::vector<std::size_t> first;    // cell number c has the keys first[c] … first[c + 1] − 1
 };
 
 using Numbers = std::unordered_map<std::uint64_t, std::uint32_t>;
@@ -147,14 +143,15 @@ void add_clipped(Window& window, const Large& large) {
 // Finds pairs of a cell with a sampled voxel and a large triangle that a window from that cell may reach.
 class LargeFinder {
  public:
-  LargeFinder(const SceneData& scene, const Cells& cells, const Runs& runs, double half_m)
-      : scene_(scene), cells_(cells), margin_(half_m * cells.transform.inverse_size), small_(2 * half_m * small_share) {
+  LargeFinder(const SceneData& scene, std::span<const std::uint32_t> larges, const Cells& cells, const Runs& runs,
+              double half_m)
+      : scene_(scene), larges_(larges), cells_(cells), margin_(half_m * cells.transform.inverse_size) {
     for (std::size_t c = 0; c < runs.cells.size(); ++c) number_.emplace(runs.cells[c], static_cast<std::uint32_t>(c));
   }
   template <class Found>
   void for_each(const Found& found) const {
-    for_each_surveyed(scene_, [&](std::uint32_t t) {
-      if (is_small(corners_of(scene_, t), small_)) return;
+    tbb::parallel_for(std::size_t{0}, larges_.size(), [&](std::size_t k) {
+      const std::uint32_t t = larges_[k];
       TriangleCells(cells_.transform.corners(scene_.positions, scene_.triangles[t]), cells_.a_side, margin_)
           .for_each([&](const Cell& c) {
             if (const auto cell = number_.find(Cells::key(c)); cell != number_.end()) found(cell->second, t);
@@ -164,31 +161,22 @@ class LargeFinder {
 
  private:
   const SceneData& scene_;
+  std::span<const std::uint32_t> larges_;
   const Cells& cells_;
   double margin_;  // in cells
-  double small_;   // metres
   Numbers number_;
 };
 
-void add_large(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
-               std::span<const std::uint32_t> voxel_indices, double window_m) {
-  // Narrower cells would repeat almost the same lists; wider ones would list many triangles that none of their windows
-  // holds.
-  const Cells cells = cells_of(grid, 0.7 * window_m);
-  const Runs runs(grid, voxel_indices, cells.shift);
-  const VoxelTriangles lists = triangle_lists(LargeFinder(scene, cells, runs, window_m / 2), runs.cells.size());
-  runs.for_each([&](std::size_t c) {
-    std::vector<Large> larges;
-    for (std::uint32_t k = lists.offset[c]; k < lists.offset[c + 1]; ++k) {
-      const Corners p = corners_of(scene, lists.triangle[k]);
-      const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
-      const double area = 0.5 * length(twice);
-      if (area > 0)
-        larges.push_back({p, min(p[0], min(p[1], p[2])), max(p[0], max(p[1], p[2])), twice / (2 * area), area});
-    }
-    for (std::uint32_t i = runs.first[c]; i < runs.first[c + 1]; ++i)
-      for (const Large& large : larges) add_clipped(windows[i], large);
-  });
+std::vector<Large> large_triangles(const SceneData& scene, std::span<const std::uint32_t> list) {
+  std::vector<Large> larges;
+  for (const std::uint32_t t : list) {
+    const Corners p = corners_of(scene, t);
+    const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
+    const double area = 0.5 * length(twice);
+    if (area > 0)
+      larges.push_back({p, min(p[0], min(p[1], p[2])), max(p[0], max(p[1], p[2])), twice / (2 * area), area});
+  }
+  return larges;
 }
 
 // Cells of a block, per side, as a power of two. Windows from one block share the cells around it.
@@ -217,46 +205,70 @@ struct Small {
   std::uint32_t cell;  // Morton key within its block
 };
 
-// Finds each small triangle, with the block that holds its middle.
-class SmallFinder {
+// All surveyed triangles: the large ones, and the small ones by the block that holds their middle.
+class SortedTriangles {
  public:
-  SmallFinder(const SceneData& scene, const Cells& cells, const Numbers& number, double small_m)
-      : scene_(scene), cells_(cells), number_(number), small_(small_m) {}
-  template <class Found>
-  void for_each(const Found& found) const {
-    for_each_surveyed(scene_, [&](std::uint32_t t) {
-      const Corners p = corners_of(scene_, t);
-      if (!is_small(p, small_)) return;
-      const auto block = number_.find(Cells::key(cells_.holding((p[0] + p[1] + p[2]) / 3.0)) >> 3 * block_bits);
-      if (block != number_.end()) found(block->second, t);
+  SortedTriangles(const SceneData& scene, const Cells& cells, double small_m) {
+    struct Placed {
+      std::uint64_t cell;  // Morton key
+      std::uint32_t triangle;
+    };
+    struct Own {
+      std::vector<std::uint32_t> large;
+      std::vector<Placed> small;
+    };
+    tbb::enumerable_thread_specific<Own> found;
+    for_each_surveyed(scene, [&](std::uint32_t t) {
+      const Corners p = corners_of(scene, t);
+      if (is_small(p, small_m))
+        found.local().small.push_back({Cells::key(cells.holding((p[0] + p[1] + p[2]) / 3.0)), t});
+      else
+        found.local().large.push_back(t);
+    });
+    std::vector<Placed> placed;
+    for (Own& own : found) {
+      large_.insert(large_.end(), own.large.begin(), own.large.end());
+      placed.insert(placed.end(), own.small.begin(), own.small.end());
+      own = {};
+    }
+    // In ascending order within a block, so that the result does not depend on the threads.
+    tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+      const std::uint64_t of_a = a.cell >> 3 * block_bits, of_b = b.cell >> 3 * block_bits;
+      return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
+    });
+    for (std::size_t k = 0; k < placed.size(); ++k)
+      if (const std::uint64_t block = placed[k].cell >> 3 * block_bits; blocks_.empty() || block != blocks_.back())
+        blocks_.push_back(block), first_.push_back(k);
+    first_.push_back(placed.size());
+    small_.resize(placed.size());
+    tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
+      const Corners p = corners_of(scene, placed[k].triangle);
+      const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
+      const double area = 0.5 * length(twice);
+      small_[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area),
+                   static_cast<std::uint32_t>(placed[k].cell & ((1u << 3 * block_bits) - 1))};
     });
   }
 
- private:
-  const SceneData& scene_;
-  const Cells& cells_;
-  const Numbers& number_;
-  double small_;
-};
+  std::span<const std::uint32_t> large() const { return large_; }
+  bool any_small() const { return !small_.empty(); }
+  // Of a block, by its Morton key.
+  std::span<const Small> small_in(std::uint64_t block) const {
+    const auto found = std::ranges::lower_bound(blocks_, block);
+    if (found == blocks_.end() || *found != block) return {};
+    const auto k = static_cast<std::size_t>(found - blocks_.begin());
+    return std::span(small_).subspan(first_[k], first_[k + 1] - first_[k]);
+  }
 
-std::vector<Small> small_triangles(const SceneData& scene, const Cells& cells, std::span<const std::uint32_t> list) {
-  std::vector<Small> smalls(list.size());
-  const auto rounded = [](const dvec3& p) {
-    return Float3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-  };
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, smalls.size()), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          const Corners p = corners_of(scene, list[k]);
-          const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
-          const double area = 0.5 * length(twice);
-          const std::uint64_t cell = Cells::key(cells.holding(middle));
-          smalls[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area),
-                       static_cast<std::uint32_t>(cell & ((1u << 3 * block_bits) - 1))};
-        }
-      });
-  return smalls;
-}
+ private:
+  static Float3 rounded(const dvec3& p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  }
+  std::vector<std::uint32_t> large_;
+  std::vector<std::uint64_t> blocks_;  // that hold some, rising
+  std::vector<std::size_t> first_;     // of each block, then the end
+  std::vector<Small> small_;
+};
 
 // The small triangles in and around one block, by cell.
 class SmallsAround {
@@ -308,49 +320,22 @@ class SmallsAround {
   std::vector<const Small*> sorted_;
 };
 
-void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
-               std::span<const std::uint32_t> voxel_indices, double window_m) {
-  const Cells cells = cells_of(grid, window_m / 4);
-  const Runs blocks(grid, voxel_indices, cells.shift + block_bits);
-  const auto reach = std::min(static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size)),
-                              cells.a_side - 1);  // in cells
-  const auto near = [&](std::size_t run, const auto& visit) {
-    for_each_near(cell_of_key(blocks.cells[run]), (reach + block_side - 1) / block_side,
-                  (cells.a_side + block_side - 1) / block_side, visit);
-  };
-  Numbers number;
-  for (std::size_t run = 0; run < blocks.cells.size(); ++run)
-    near(run, [&](const Cell& block) { number.emplace(Cells::key(block), static_cast<std::uint32_t>(number.size())); });
-  const VoxelTriangles lists = triangle_lists(SmallFinder(scene, cells, number, window_m * small_share), number.size());
-  const std::vector<Small> smalls = small_triangles(scene, cells, lists.triangle);
-  blocks.for_each([&](std::size_t run) {
-    SmallsAround around(cell_of_key(blocks.cells[run]), reach);
-    near(run, [&](const Cell& block) {
-      const std::uint32_t n = number.at(Cells::key(block));
-      around.add(block, std::span(smalls).subspan(lists.offset[n], lists.offset[n + 1] - lists.offset[n]));
-    });
-    if (around.empty()) return;
-    around.sort();
-    for (std::uint32_t i = blocks.first[run]; i < blocks.first[run + 1]; ++i) {
-      Window& window = windows[i];
-      const Cell own = cell_of_key(grid.key(voxel_indices[i]) >> 3 * cells.shift);
-      const dvec3 low = cells.place(window.point - window.half), high = cells.place(window.point + window.half);
-      Cell from, to;
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto within = [&](double at) {
-          return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)), own[axis] - reach,
-                                          own[axis] + reach);
-        };
-        from[axis] = within(low[axis]), to[axis] = within(high[axis]);
-      }
-      for (std::int64_t a = from[0]; a <= to[0]; ++a)
-        for (std::int64_t b = from[1]; b <= to[1]; ++b)
-          for (std::int64_t c = from[2]; c <= to[2]; ++c)
-            for (const Small* small : around.in({a, b, c}))
-              if (const dvec3 middle = point_of(small->middle); window.holds(middle))
-                window.add(middle, point_of(small->along), static_cast<double>(small->area));
-    }
-  });
+// Adds the small triangles around a block to the window of a voxel of it. `own`: the cell of the voxel.
+void add_small(Window& window, const SmallsAround& around, const Cells& cells, const Cell& own, std::int64_t reach) {
+  const dvec3 low = cells.place(window.point - window.half), high = cells.place(window.point + window.half);
+  Cell from, to;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto within = [&](double at) {
+      return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)), own[axis] - reach, own[axis] + reach);
+    };
+    from[axis] = within(low[axis]), to[axis] = within(high[axis]);
+  }
+  for (std::int64_t a = from[0]; a <= to[0]; ++a)
+    for (std::int64_t b = from[1]; b <= to[1]; ++b)
+      for (std::int64_t c = from[2]; c <= to[2]; ++c)
+        for (const Small* small : around.in({a, b, c}))
+          if (const dvec3 middle = point_of(small->middle); window.holds(middle))
+            window.add(middle, point_of(small->along), static_cast<double>(small->area));
 }
 
 }  // namespace
@@ -358,19 +343,55 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
 std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
                                std::span<const std::uint32_t> voxel_indices, std::span<const VoxelSurface> surfaces,
                                double window_m, const std::stop_token& stop) {
-  std::vector<float> shares;
-  shares.reserve(voxel_indices.size());
-  std::vector<Window> windows;
-  for (std::size_t first = 0; first < voxel_indices.size() && !stop.stop_requested(); first += windows_at_once) {
-    const std::size_t some = std::min(windows_at_once, voxel_indices.size() - first);
-    const std::span<const std::uint32_t> here = voxel_indices.subspan(first, some);
-    windows.clear();
-    for (const VoxelSurface& surface : surfaces.subspan(first, some))
-      windows.push_back({point_of(surface.point), point_of(surface.normal), window_m / 2});
-    add_large(windows, scene, grid, here, window_m);
-    add_small(windows, scene, grid, here, window_m);
-    for (std::size_t i = 0; i < some; ++i) shares.push_back(surfaces[first + i].area > 0 ? windows[i].share() : 1);
+  // Narrower cells would repeat almost the same lists of large triangles; wider ones would list many that none of their
+  // windows holds. A block holds whole cells of both kinds.
+  const Cells wide = cells_of(grid, 0.7 * window_m), narrow = cells_of(grid, window_m / 4);
+  const SortedTriangles triangles(scene, narrow, window_m * small_share);
+  const auto reach = std::min(static_cast<std::int64_t>(std::ceil(window_m / 2 * narrow.transform.inverse_size)),
+                              narrow.a_side - 1);  // in narrow cells
+  std::vector<float> shares(voxel_indices.size(), 1);
+  std::vector<std::uint64_t> keys;
+  for (std::size_t begin = 0; begin < voxel_indices.size(); begin += voxels_at_once) {
+    if (stop.stop_requested()) return {};
+    keys.resize(std::min(voxels_at_once, voxel_indices.size() - begin));
+    tbb::parallel_for(std::size_t{0}, keys.size(),
+                      [&](std::size_t i) { keys[i] = grid.key(voxel_indices[begin + i]); });
+    const Runs cells(keys, wide.shift);
+    const VoxelTriangles lists =
+        triangle_lists(LargeFinder(scene, triangles.large(), wide, cells, window_m / 2), cells.cells.size());
+    const auto larges_of = [&](std::size_t cell) {
+      return large_triangles(
+          scene, std::span(lists.triangle).subspan(lists.offset[cell], lists.offset[cell + 1] - lists.offset[cell]));
+    };
+    // Windows of one cell, with the small triangles around its block.
+    const auto measure = [&](std::size_t cell, const SmallsAround& around) {
+      const std::vector<Large> larges = larges_of(cell);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(cells.first[cell], cells.first[cell + 1], windows_a_task),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                            const VoxelSurface& surface = surfaces[begin + i];
+                            if (!(surface.area > 0)) continue;
+                            Window window{point_of(surface.point), point_of(surface.normal), window_m / 2};
+                            for (const Large& large : larges) add_clipped(window, large);
+                            if (!around.empty())
+                              add_small(window, around, narrow, cell_of_key(keys[i] >> 3 * narrow.shift), reach);
+                            shares[begin + i] = window.share();
+                          }
+                        });
+    };
+    const Runs blocks(cells.cells, narrow.shift + block_bits - wide.shift);
+    tbb::parallel_for(std::size_t{0}, blocks.cells.size(), [&](std::size_t run) {
+      if (stop.stop_requested()) return;
+      const Cell block = cell_of_key(blocks.cells[run]);
+      SmallsAround around(block, reach);
+      if (triangles.any_small())
+        for_each_near(block, (reach + block_side - 1) / block_side, (narrow.a_side + block_side - 1) / block_side,
+                      [&](const Cell& near) { around.add(near, triangles.small_in(Cells::key(near))); });
+      if (!around.empty()) around.sort();
+      tbb::parallel_for(blocks.first[run], blocks.first[run + 1], [&](std::size_t cell) { measure(cell, around); });
+    });
   }
+  if (stop.stop_requested()) shares.clear();
   return shares;
 }
 

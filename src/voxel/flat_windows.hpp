@@ -20,9 +20,9 @@ struct VoxelSurface;
 // Triangles much smaller than the window count as a whole, by their middle; others are clipped.
 //
 // Parallel; a voxel's share depends neither on the other voxels nor on the number of threads. Besides the lists it
-// takes 32 bytes per small triangle. A stop ends it early, with fewer shares than voxels. REQUIRES: surfaces are those
-// of the voxel_indices, which ascend, without duplicates, below grid.size(); window_m > 0. Throws Error out_of_memory
-// as `triangles_touching` does.
+// takes 48 bytes per small triangle. A stop ends it early, without shares. REQUIRES: surfaces are those of the
+// voxel_indices, which ascend, without duplicates, below grid.size(); window_m > 0. Throws Error out_of_memory as
+// `triangles_touching` does.
 std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
                                std::span<const std::uint32_t> voxel_indices, std::span<const VoxelSurface> surfaces,
                                double window_m, const std::stop_token& stop = {});

@@ -183,6 +183,19 @@ TEST(ImproveWeakestLink, IsNeverWorse) {
   EXPECT_GT(stronger, 0u);
 }
 
+// Nothing leads to the first component; a path between the others is found all the same.
+TEST(MinConnectedCover, JoinsComponentsThoughOneIsOutOfReach) {
+  const RandomSite site = random_site(6, 2);
+  StationGraph graph(6);
+  graph.set_overlap(1, 2, 0.5F), graph.set_overlap(2, 3, 0.5F);
+  const CoverProblem problem{.matrix = site.matrix, .graph = &graph, .existing = {0, 1, 3}, .most = 3, .link = 0.4};
+  CoverProblem covered = problem;
+  covered.coverage = 0.1, covered.fewest = 0;
+  const CoverSolution best = min_connected_cover(covered).best;
+  EXPECT_EQ(best.chosen, (Chosen{0, 1, 3, 2}));
+  EXPECT_NEAR(best.violation, 0.2, 1e-12) << "one link is missing";
+}
+
 TEST(EvaluateCover, CountsWhatIsShortAndEachMissingLink) {
   const RandomSite site = random_site(13, 2);
   StationGraph apart(13);

@@ -47,6 +47,22 @@ TEST(Ways, AreAsLongAsTheyAre) {
   }
 }
 
+TEST(Ways, AreTheSameForAllPairsAtOnce) {
+  SearchMesh apart;  // two squares that nothing connects, and points on both and off them
+  add_rectangle(apart, 0, 10, 0, 10, 0);
+  add_rectangle(apart, 20, 30, 0, 10, 0);
+  const Ways ways(apart, everywhere);
+  const std::vector<Vec3> points{{1, 1, 0}, {9, 8, 0}, {21, 1, 0}, {1, 1, 0}, {100, 100, 0}, {5, 9, 0}};
+  const auto all = ways.between_all(points);
+  int connected = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      EXPECT_EQ(all[i][j], ways.between(points[i], points[j])) << i << ' ' << j;
+      connected += all[i][j].has_value();
+    }
+  EXPECT_EQ(connected, 6) << "of the four on the first square";
+}
+
 TEST(Ways, GoRoundCornersAndWalls) {
   SearchMesh corner;  // an L of two arms, 10 m long and 2 m wide
   add_rectangle(corner, 0, 10, 0, 2, 0);

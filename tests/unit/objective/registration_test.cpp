@@ -589,10 +589,13 @@ TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
   }
 }
 
-TEST(PartialInverse, HasTheBlocksOfTheInverse) {
+class PartialInverseTest : public testing::TestWithParam<Eigen::Index> {};
+INSTANTIATE_TEST_SUITE_P(Blocks, PartialInverseTest, testing::Values(3, 4, 6));
+
+TEST_P(PartialInverseTest, HasTheBlocksOfTheInverse) {
   std::mt19937 random(3);
   const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
-  constexpr Eigen::Index block = 4, size = 40 * block;
+  const Eigen::Index block = GetParam(), size = 40 * block;
   Eigen::MatrixXd full = Eigen::MatrixXd::Identity(size, size);
   for (Eigen::Index i = 0; i < size; i += block)
     for (Eigen::Index j = 0; j < size; j += block) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "unit/plan/floor_survey.hpp"
 
 namespace vantage {
@@ -68,6 +70,56 @@ TEST(Look, TakesExistingStationsFirstAndSomeCandidatesWhereTimeIsOver) {
   EXPECT_GE(looked_at(stop.get_token(), {}).stations().size(), 97u) << "as many as two seconds allow, but some";
   abort.request_stop();
   EXPECT_EQ(looked_at(stop.get_token(), abort.get_token()).stations().size(), 0u);
+}
+
+// A share of so much, of which samples show more or less: the bound is above it in a share of the samples that the
+// normal distribution gives for as many standard errors.
+TEST(LeastShare, IsRarelyAboveTheTruth) {
+  std::mt19937 rng(3);
+  for (const int size : {20, 100, 1000}) {
+    int above = 0;
+    constexpr int kSamples = 20'000;
+    std::binomial_distribution<int> drawn(size, 0.3);
+    for (int k = 0; k < kSamples; ++k) above += least_share(static_cast<double>(drawn(rng)) / size, size, 2) > 0.3;
+    EXPECT_LT(above, 0.035 * kSamples) << size;
+    EXPECT_GT(above, 0.008 * kSamples) << size;
+  }
+  EXPECT_EQ(least_share(0, 10, 2), 0);
+  EXPECT_DOUBLE_EQ(least_share(0.4, 10, 0), 0.4) << "all was counted";
+  EXPECT_NEAR(least_share(1, 12, 2), 0.75, 1e-12) << "few voxels prove little, even if all agree";
+}
+
+TEST(CandidateTable, TakesOverlapsForTheLeastThatTheirSampleAdmits) {
+  const auto candidates = floor_candidates(6);
+  CandidateTable plain(floor_columns(), floor_columns(7, 4), {}),
+      careful(floor_columns(), floor_columns(7, 4), {}, 0.25);
+  const std::size_t half = candidates.size() / 2;
+  for (CandidateTable* table : {&plain, &careful}) {
+    table->add(std::span(candidates).first(half), {});
+    if (table == &careful) careful.take_least_overlaps(1);
+    table->add(std::span(candidates).subspan(half), {});
+  }
+  ScanOverlapMatrix exact(3);
+  exact.set(0, 1, 0.25), exact.set(0, 2, 0), exact.set(1, 2, 0.75);
+  const std::vector<std::size_t> chosen{4, 2, 7};
+  careful.take_in(chosen, exact);
+  careful.take_least_overlaps(2);
+  EXPECT_EQ(careful.graph().overlap(4, 2), 0.25F);
+  EXPECT_EQ(careful.graph().overlap(4, 7), 0);
+  EXPECT_EQ(careful.graph().overlap(7, 2), 0.75F);
+  const CoverageMatrix seen = floor_columns(7, 4)(candidates, {});
+  int linked = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t j = 0; j < candidates.size(); ++j) {
+      if (i == j || plain.graph().overlap(i, j) == 0) continue;
+      if (std::ranges::count(chosen, i) + std::ranges::count(chosen, j) == 2) continue;
+      ++linked;
+      const auto share = static_cast<double>(plain.graph().overlap(i, j));
+      const auto size = static_cast<double>(std::min(seen.column(i).size(), seen.column(j).size()));
+      EXPECT_FLOAT_EQ(careful.graph().overlap(i, j), static_cast<float>(least_share(share, size, 1))) << i << ' ' << j;
+      EXPECT_EQ(careful.graph().overlap(i, j), careful.graph().overlap(j, i));
+    }
+  EXPECT_GT(linked, 100);
 }
 
 TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {

@@ -67,6 +67,50 @@ TEST_F(FewestVerify, RepairsWhatEveryRayShowsToBeShort) {
   EXPECT_FALSE(repair(choice, verified, {})) << "nothing is short";
 }
 
+// Every ray shows the weakest links of the chosen stations to be too weak, and all others as the sample does.
+TEST_F(FewestVerify, MendsLinksThatEveryRayShowsToBeTooWeak) {
+  const auto weakest = static_cast<float>(choice.network.link);
+  const auto chosen = choice.network.chosen;
+  const auto is_chosen = [&, stations = choice.placed_of(choice.network)](const PlacedStation& one) {
+    return std::ranges::any_of(
+        stations, [&](const PlacedStation& other) { return test::apart_m(one.position, other.position) < 1e-6; });
+  };
+  evaluator.exact_overlap = [&](const PlacedStation& a, const PlacedStation& b, float sampled) {
+    return sampled <= weakest && is_chosen(a) && is_chosen(b) ? 0.05F : sampled;
+  };
+  VerifiedNetworks verified = networks();
+  verify(choice, verified);
+  ASSERT_GT(verified.best()->violation, 0);
+  const StationGraph before = choice.table.graph();
+  ASSERT_TRUE(repair(choice, verified, {}));
+  int taken_in = 0;
+  for (const std::size_t i : chosen)
+    for (const std::size_t j : chosen) {
+      if (i >= j) continue;
+      const bool weak = before.overlap(i, j) <= weakest;
+      EXPECT_EQ(choice.table.graph().overlap(i, j), weak ? 0.05F : before.overlap(i, j)) << i << ' ' << j;
+      taken_in += weak;
+    }
+  EXPECT_GT(taken_in, 0);
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_EQ(choice.network.chosen.size(), chosen.size()) << "no station more";
+  verify(choice, verified);
+  EXPECT_EQ(verified.best()->violation, 0);
+  EXPECT_FALSE(repair(choice, verified, {})) << "nothing is short";
+}
+
+TEST_F(FewestVerify, LeavesAloneWhatEveryRayShowsAsItWasKnown) {
+  choice.asked.coverage = 1;
+  choice.asked.most = 3;
+  choose(choice, {}, {});
+  ASSERT_GT(choice.network.violation, 0);
+  VerifiedNetworks verified = networks();
+  verify(choice, verified);
+  const auto chosen = choice.network.chosen;
+  EXPECT_FALSE(repair(choice, verified, {}));
+  EXPECT_EQ(choice.network.chosen, chosen);
+}
+
 TEST_F(FewestVerify, TakesAStationFewerWhereTheSampleIsKnownToBeRight) {
   // Chosen with a margin of a tenth, which is a station too many.
   const std::size_t enough = choice.placed();

@@ -70,6 +70,8 @@ class FloorEvaluator final : public NetworkEvaluator {
   explicit FloorEvaluator(const Measures& measures) : measures_(measures) {}
 
   double overstated = 0;
+  // What every ray shows of the overlap of two stations, by the sampled one.
+  std::function<float(const PlacedStation&, const PlacedStation&, float)> exact_overlap = {};
   std::function<double(const PlacedNetwork&)> penalty = {};  // that only every ray shows, of coverage
 
   static double coverage_of(const PlacedNetwork& network) {
@@ -101,8 +103,13 @@ class FloorEvaluator final : public NetworkEvaluator {
       Evaluation& exact = all[k].emplace();
       exact.stations = networks[k], exact.exact = true;
       exact.overlap_matrix = OverlapMatrix(networks[k].size());
+      const StationGraph links = links_of(networks[k], true);
+      exact.scan_overlap_matrix = ScanOverlapMatrix(networks[k].size());
+      for (std::size_t i = 0; i < networks[k].size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          exact.scan_overlap_matrix.set(i, j, static_cast<double>(links.overlap(i, j)));
       const std::vector<double> values =
-          values_of(networks[k], measures_.all.size(), penalty ? -penalty(networks[k]) : 0);
+          values_of(networks[k], measures_.all.size(), penalty ? -penalty(networks[k]) : 0, true);
       for (std::size_t m = 0; m < values.size(); ++m) exact.values[measures_.all[m].name] = {values[m], 0};
     }
     return all;
@@ -110,11 +117,18 @@ class FloorEvaluator final : public NetworkEvaluator {
   double trace_seconds() const override { return 0; }
 
  private:
-  std::vector<double> values_of(const PlacedNetwork& network, std::size_t count, double off) const {
+  StationGraph links_of(const PlacedNetwork& network, bool exact) const {
+    StationGraph graph(floor_columns(1, 4)(network, {}), network.size());
+    for (std::size_t i = 0; i < network.size() && exact && exact_overlap; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        graph.set_overlap(i, j, exact_overlap(network[i], network[j], graph.overlap(i, j)));
+    return graph;
+  }
+  std::vector<double> values_of(const PlacedNetwork& network, std::size_t count, double off, bool exact = false) const {
     std::vector<std::size_t> all(network.size());
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
     const CoverageMatrix around = floor_columns(1, 4)(network, {});
-    const StationGraph graph(around, network.size());
+    const StationGraph graph = links_of(network, exact);
     const double link = evaluate_cover({.matrix = around, .graph = &graph}, all).link;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < network.size(); ++i)

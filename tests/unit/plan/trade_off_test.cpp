@@ -18,6 +18,7 @@ TEST(TradeOff, NumbersLeadFromOneToBeyondTheChosen) {
   EXPECT_EQ(std::ranges::count(many, 80u), 1);
   EXPECT_LE(many.size(), 15u);
   EXPECT_TRUE(std::ranges::is_sorted(many));
+  EXPECT_EQ(around(500), (std::vector<std::size_t>{1, 250, 500, 750})) << "hundreds take long";
   EXPECT_EQ(trade_off_numbers(6, 7).back(), 7u) << "no more than there may be";
 }
 
