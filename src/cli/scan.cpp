@@ -9,6 +9,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/setting_table.hpp"
 
 namespace vantage::cli {
 namespace {
