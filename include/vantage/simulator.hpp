@@ -90,9 +90,9 @@ Returns returns_from_string(const std::string& text);
 /// A beam as wide as the scanner's, by its divergence and exit diameter: sub-rays over the footprint. Echoes from
 /// surfaces nearer together than half a pulse's length merge into one return between them, a mixed point.
 struct BeamOptions {
-  std::uint32_t sub_rays = 7;             ///< 7 or 19.
-  Returns returns = Returns::strongest;   ///< `all`: up to 15 a ray.
-  double pulse_m = 1;                     ///< Length of a pulse, above 0: the speed of light times its duration.
+  std::uint32_t sub_rays = 7;            ///< 7 or 19.
+  Returns returns = Returns::strongest;  ///< `all`: up to 15 a ray.
+  double pulse_m = 1;                    ///< Length of a pulse, above 0: the speed of light times its duration.
 };
 
 /// How `Simulator::scan` works.

@@ -161,7 +161,8 @@ std::string scans_text(const Scans& scans, const ScanCommandOptions& options, co
   text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", scans.sum.rays, scans.sum.points,
                       scans.sum.points_on_surveyed);
   if (scans.sum.ghosts > 0)
-    text += fmt::format("{} of the points are ghosts, seen in mirrors: they stand where nothing is\n", scans.sum.ghosts);
+    text +=
+        fmt::format("{} of the points are ghosts, seen in mirrors: they stand where nothing is\n", scans.sum.ghosts);
   if (options.beam)
     text += fmt::format("{} of the points are mixed, between surfaces; {} of them count in a voxel\n", scans.sum.mixed,
                         scans.sum.mixed_counted);

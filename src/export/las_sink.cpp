@@ -65,12 +65,12 @@ class LasSink final : public PointSink {
       const std::uint8_t of = chunk.returns.empty() ? std::uint8_t{1} : chunk.returns[k];
       append(bytes_, static_cast<std::uint8_t>(number | of << 4));
       ++points_by_return_[number - 1U];
-      append(bytes_, std::uint8_t{0});     // flags
+      append(bytes_, std::uint8_t{0});                                                         // flags
       append(bytes_, !chunk.ghost.empty() && chunk.ghost[k] != 0 ? kNoise : std::uint8_t{0});  // class
-      append(bytes_, std::uint8_t{0});     // user data
-      append(bytes_, std::int16_t{0});     // scan angle: airborne only
-      append(bytes_, station);             // point source id
-      append(bytes_, double{0});           // GPS time
+      append(bytes_, std::uint8_t{0});                                                         // user data
+      append(bytes_, std::int16_t{0});  // scan angle: airborne only
+      append(bytes_, station);          // point source id
+      append(bytes_, double{0});        // GPS time
       for (int shift = 0; shift < 24; shift += 8) {
         const std::uint32_t channel = outputs_ & scan_colour ? (chunk.colour[k] >> shift) & 255u : 0;
         append(bytes_, static_cast<std::uint16_t>(channel * 257));

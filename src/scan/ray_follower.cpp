@@ -90,7 +90,7 @@ double RayFollower::distance_from_plane(std::uint32_t triangle, const Vec3& poin
 }
 
 void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& station, std::uint64_t first_ray,
-                          Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const {
+                              Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const {
   const RangeNoise noise(scanner.noise);
   const bool limited = scanner.limits && scanner.limits->enabled();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ghost.size(), 4096), [&](const auto& range) {
@@ -99,10 +99,9 @@ void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& s
       const std::uint64_t ray = first_ray + k;
       const Float3 d = direction_of(*scanner.pattern, station, ray);
       const Seen found = follow(station.origin, d, scanner.pattern->min_range, scanner.pattern->max_range);
-      const float reach =
-          limited && found.triangle != RayBundle::no_hit
-              ? scanner.limits->meshes[mesh(found.triangle)].largest_reach_square
-              : 0;
+      const float reach = limited && found.triangle != RayBundle::no_hit
+                              ? scanner.limits->meshes[mesh(found.triangle)].largest_reach_square
+                              : 0;
       const bool point = found.triangle != RayBundle::no_hit &&
                          (reach == 0 || PointJudge::detected(static_cast<double>(reach), found.cosine, found.t));
       float t = std::numeric_limits<float>::infinity();

@@ -87,8 +87,8 @@ std::uint32_t raw_outputs(const ScanOptions& options) {
 }
 
 void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost,
-                const std::vector<std::uint8_t>& returns, const ScanOptions& options, const SceneData& scene, const Scanner& scanner,
-                ScanSummary& summary) {
+                const std::vector<std::uint8_t>& returns, const ScanOptions& options, const SceneData& scene,
+                const Scanner& scanner, ScanSummary& summary) {
   const std::uint32_t outputs = options.outputs;
   const auto count = static_cast<std::size_t>(chunk.ray_count);
   const Sums sums = sum_rays(raw, ghost, count, scene);

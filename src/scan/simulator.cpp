@@ -17,9 +17,9 @@
 #include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
-#include "scan/ray_follower.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
+#include "scan/ray_follower.hpp"
 #include "scan/scan_chunk.hpp"
 #include "scan/voxel_sample.hpp"
 #include "scan/wide_beam.hpp"
@@ -40,8 +40,8 @@ std::uint32_t stop_at(CountTo count_to, double goal) {
 }
 
 constexpr std::uint32_t sample_groups = 20;
-constexpr std::uint32_t known_outputs =
-    scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel | scan_ghost | scan_returns;
+constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
+                                        scan_colour | scan_voxel | scan_ghost | scan_returns;
 
 // Six digits, rounded up: as a user size, the text still gives the voxel size that it states.
 std::string rounded_up(double metres) {
@@ -125,8 +125,7 @@ class AsCaller {
 
 void check_beam(const BeamOptions& beam, const Scanner& scanner) {
   if (beam.sub_rays != 7 && beam.sub_rays != 19)
-    throw Error(Errc::invalid_argument,
-                "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
+    throw Error(Errc::invalid_argument, "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
   if (!(beam.pulse_m > 0 && std::isfinite(beam.pulse_m)))
     throw Error(Errc::invalid_argument,
                 "the length of a pulse is " + std::to_string(beam.pulse_m) + " m, but must be above 0");

@@ -83,9 +83,8 @@ std::vector<WideBeam::Return> WideBeam::returns_of(const Scanner& scanner, const
   const double wide = std::max(scanner.beam_divergence.in_radians(), scanner.exit_diameter_m / kFarthestApex_m);
   const double behind = scanner.exit_diameter_m / wide;
   // Each footprint is turned by chance, so that no edge meets the same places everywhere.
-  const std::uint32_t chance =
-      philox4x32(seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station.place,
-                        kTwistStream})[0];
+  const std::uint32_t chance = philox4x32(
+      seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station.place, kTwistStream})[0];
   const double twist = 2 * pi * chance / 4294967296.0, c = std::cos(twist), s = std::sin(twist);
   RayBundle rays;
   rays.origin = narrow(widen(station.origin) - d * behind);
@@ -119,8 +118,7 @@ std::vector<WideBeam::Return> WideBeam::returns_of(const Scanner& scanner, const
     const Float3 way{rays.x[k], rays.y[k], rays.z[k]};
     Echo echo{0, 0, 0, rays.primitive[k], false, {}};
     double gleam = 1;
-    if (behind_glass && passed[k].pane != RayBundle::no_hit &&
-        passed[k].t >= rays.start) {
+    if (behind_glass && passed[k].pane != RayBundle::no_hit && passed[k].t >= rays.start) {
       echo.triangle = passed[k].pane;
       echo.t = static_cast<double>(passed[k].t);
       echo.seen = rays_.seen(rays.origin, way, passed[k].t, echo.triangle);
@@ -198,8 +196,7 @@ std::vector<WideBeam::Return> WideBeam::returns(const Scanner& scanner, const Tr
   std::vector<std::vector<Return>> parts((ray_count + kPart - 1) / kPart);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
     for (std::uint64_t ray = first_ray + p * kPart; ray < first_ray + std::min(ray_count, (p + 1) * kPart); ++ray) {
-      const std::vector<Return> own =
-          returns_of(scanner, station, options, *traced.pattern, ray, traced.noise->seed);
+      const std::vector<Return> own = returns_of(scanner, station, options, *traced.pattern, ray, traced.noise->seed);
       parts[p].insert(parts[p].end(), own.begin(), own.end());
     }
   });

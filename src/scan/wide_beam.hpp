@@ -26,7 +26,7 @@ class WideBeam {
     std::uint64_t ray;
     std::uint8_t number, of;  // from 1
     bool ghost, mixed;
-    float t, reflectivity;  // t without noise
+    float t, reflectivity;   // t without noise
     std::uint32_t triangle;  // of the strongest echo in it
     double cosine;
     Float3 direction, normal;

@@ -196,7 +196,8 @@ TEST(WideBeam, AScreenLetsThroughTheShareOfItsHoles) {
   const std::vector<Return> returns = scanned(scene, {.returns = Returns::all});
   double front = 0, back = 0;
   for (const Return& one : returns) (one.x < 11 ? front : back) += one.part;
-  const double rays = static_cast<double>(narrow_scanner().rays()), share = static_cast<double>(holes) / (cells * cells);
+  const double rays = static_cast<double>(narrow_scanner().rays()),
+               share = static_cast<double>(holes) / (cells * cells);
   EXPECT_NEAR(front + back, rays, 1e-3 * rays);
   EXPECT_NEAR(back / rays, share, 4 * std::sqrt(0.3 * 0.7 / 690));
   EXPECT_NEAR(back / rays, 0.3, 0.08);
@@ -209,7 +210,8 @@ TEST(WideBeam, AWallWithoutEdgesHasThePointsOfThinRays) {
   const ScanOptions options{.outputs = scan_position | scan_voxel};
   ScanOptions wide = options;
   wide.beam = BeamOptions{};
-  const ScanPoints thin = simulator.scan_points({{0, 0, 0}}, options), points = simulator.scan_points({{0, 0, 0}}, wide);
+  const ScanPoints thin = simulator.scan_points({{0, 0, 0}}, options),
+                   points = simulator.scan_points({{0, 0, 0}}, wide);
   ASSERT_EQ(points.ray, thin.ray);
   EXPECT_EQ(points.voxel, thin.voxel);
   for (std::size_t k = 0; k < thin.position.size(); ++k) {

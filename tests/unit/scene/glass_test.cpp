@@ -158,8 +158,9 @@ TEST(Mirror, BlocksAndIsTold) {
   EXPECT_EQ(mesh(scene, "pane").role, Role::blocking);
   EXPECT_EQ(mesh(scene, "wall").role, Role::surveyed);
   EXPECT_TRUE(std::ranges::any_of(scene.notes(), [](const std::string& note) {
-    return note == "0.5 m² are mirrors, of which scans show ghosts and no points: \"pane\"; the word none for the "
-                   "setting mirror makes them matt";
+    return note ==
+           "0.5 m² are mirrors, of which scans show ghosts and no points: \"pane\"; the word none for the "
+           "setting mirror makes them matt";
   }));
 }
 
