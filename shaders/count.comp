@@ -46,7 +46,8 @@ void main() {
       if (with_look) look = look_of(hit, direction);
       const vec3 point = point_of(hit, look, push.origin, direction, ray_number(row, column), push.place);
       const uint voxel_index = index_of(point);
-      if (voxel_index != no_voxel_index) misses = misses_of(hit, look, direction);
+      if (voxel_index != no_voxel_index)
+        misses = misses_of(hit, look, direction, pass_glass(push.origin, direction, hit.t).share);
       if (voxel_index != no_voxel_index && misses == 0u) {
         counted = true;
         atomicAdd(push.counts.at[voxel_index], 1u);

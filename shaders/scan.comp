@@ -19,8 +19,10 @@ void main() {
   const uint k = (row - push.first_row) * parameters.columns + column;
 
   const vec3 direction = ray_direction(row, column, push.turn);
-  const Hit hit = trace(push.origin, direction, parameters.min_range,
-                        parameters.max_range, want_nearest, from_the_root);
+  Hit hit = trace(push.origin, direction, parameters.min_range, parameters.max_range, want_nearest, from_the_root);
+  const Passed passed = pass_glass(push.origin, direction, hit.t);
+  const bool on_pane = passed.pane.id != no_primitive && passed.pane.t >= parameters.min_range;
+  if (on_pane) hit = passed.pane;
   bool is_point = hit.id != no_primitive;
   uint misses = 0u;
   float t = uintBitsToFloat(0x7F800000u);
@@ -29,7 +31,7 @@ void main() {
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
     if (with_look || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
-    misses = misses_of(hit, look, direction);
+    if (!on_pane) misses = misses_of(hit, look, direction, passed.share);
     if ((misses & misses_echo) != 0u) {
       is_point = false;
       look = unseen;

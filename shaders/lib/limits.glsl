@@ -7,7 +7,7 @@
 #include "lib/parameters.glsl"
 #include "lib/shade.glsl"
 
-uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 direction, float t) {
+uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 direction, float t, float passed) {
   const PointLimits limits = parameters.limits.at[parameters.limits_of.at[triangle]];
   const float cosine = exact_dot(normal, direction);
   precise float square = cosine * cosine;
@@ -22,7 +22,8 @@ uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 directio
   if (limits.largest_sigma > 0.0 && sigma_at(t, reflectivity) > limits.largest_sigma) misses |= misses_noise;
   if (limits.largest_reach_square > 0.0) {
     precise float distance_square = t * t;
-    precise float reached = limits.largest_reach_square * abs(cosine);
+    precise float open = limits.largest_reach_square * abs(cosine);
+    precise float reached = open * passed;
     if (distance_square > reached) misses |= misses_echo;
   }
   return misses;

@@ -2,6 +2,7 @@
 // Turns a hit into the point that the scanner reports.
 #ifndef VANTAGE_LIB_POINT
 #define VANTAGE_LIB_POINT
+#include "lib/glass.glsl"
 #include "lib/limits.glsl"
 #include "lib/pattern.glsl"
 #include "lib/shade.glsl"
@@ -34,9 +35,10 @@ vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uin
 }
 
 // Limits missed by a hit, one bit each; its point counts if there are none and the mesh is surveyed. `look` is read if
-// there are limits.
-uint misses_of(Hit hit, Look look, vec3 direction) {
-  return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t) : 0u;
+// there are limits. `passed`: share of the echo's strength that passes glass.
+uint misses_of(Hit hit, Look look, vec3 direction, float passed) {
+  return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t, passed)
+                     : 0u;
 }
 
 #endif

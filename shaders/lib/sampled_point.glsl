@@ -22,7 +22,8 @@ bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 directi
   if (with_look) look = look_of(hit, direction);
   const vec3 point = point_of(hit, look, station.origin, direction, uint64_t(ray), station.place);
   uvec3 cell;
-  return cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u;
+  if (!cell_of(point, cell) || cell != uvec3(voxel.x, voxel.y, voxel.z)) return false;
+  return misses_of(hit, look, direction, pass_glass(station.origin, direction, hit.t).share) == 0u;
 }
 
 // Returns the voxel's number of points after that, or a few more.

@@ -14,6 +14,18 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
   return n;
 }
 
+// Unit normal of the triangle's plane.
+vec3 flat_normal(uint triangle) {
+  const vec3 p = parameters.positions.at[parameters.triangles.at[3u * triangle]];
+  precise vec3 e = parameters.positions.at[parameters.triangles.at[3u * triangle + 1u]] - p;
+  precise vec3 f = parameters.positions.at[parameters.triangles.at[3u * triangle + 2u]] - p;
+  // Scaled first, so that tiny triangles do not underflow.
+  precise float largest = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
+  precise vec3 es = e * exact_reciprocal(largest);
+  precise vec3 fs = f * exact_reciprocal(largest);
+  return unit_or(exact_cross(es, fs), vec3(0, 0, 1));
+}
+
 // Interpolated vertex normal, or the triangle's own if the file has none; turned towards the scanner.
 vec3 oriented_normal(uint triangle, vec2 barycentric, vec3 direction) {
   const uint i = parameters.triangles.at[3u * triangle], j = parameters.triangles.at[3u * triangle + 1u],
@@ -29,16 +41,7 @@ vec3 oriented_normal(uint triangle, vec2 barycentric, vec3 direction) {
     precise vec3 abc = ab + c;
     n = unit_or(abc, vec3(0));
   }
-  if (n == vec3(0)) {
-    const vec3 p = parameters.positions.at[i];
-    precise vec3 e = parameters.positions.at[j] - p;
-    precise vec3 f = parameters.positions.at[k] - p;
-    // Scaled first, so that tiny triangles do not underflow.
-    precise float largest = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
-    precise vec3 es = e * exact_reciprocal(largest);
-    precise vec3 fs = f * exact_reciprocal(largest);
-    n = unit_or(exact_cross(es, fs), vec3(0, 0, 1));
-  }
+  if (n == vec3(0)) n = flat_normal(triangle);
   return exact_dot(n, direction) > 0.0 ? -n : n;
 }
 

@@ -32,6 +32,15 @@ VANTAGE_CONST uint tile_groups_y = 32768;  // tiles along y of an indirect dispa
 VANTAGE_CONST uint traversal_arrays = 3;
 
 VANTAGE_CONST uint turned_constant = 4;  // constant_id of `turned` in lib/turn.glsl
+VANTAGE_CONST uint glass_constant = 5;   // of `with_glass` in lib/glass.glsl
+
+// Glass (docs/method.md). A pane returns the beam itself at up to 1° from its normal: the square of that cosine. A beam
+// with a smaller share left is lost. Faces nearer together than the sum of two gaps, one a share of the distance, are
+// one, as are triangles on both sides of an edge; a pane as near to what is behind it does not count.
+VANTAGE_CONST float pane_return_square = 0.9996954f;
+VANTAGE_CONST float least_passed = 1e-6f;
+VANTAGE_CONST float face_gap_share = 3.8146973e-6f;  // 2^-18
+VANTAGE_CONST float face_gap_m = 1e-4f;
 
 // Limits that a point must meet to count; 0: no limit. Each mesh has one entry; equal ones are shared.
 struct PointLimits {
@@ -65,6 +74,10 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: index into `limits`
   VANTAGE_ADDRESS(Limits) limits;
+  // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0:
+  // glass weakens no echo.
+  uint64_t glass_nodes;
+  uint64_t glass_corners;
   uint rows;
   uint columns;
   float min_range;

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "plan/rooms.hpp"
 #include "plan/why_missed.hpp"
+#include "trace/embree/glass_panes.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -45,7 +47,12 @@ class Judge {
         candidates_(candidates),
         steepest_(std::cos(options.flat.in_radians())),
         per_steradian_(
-            1 / (simulator_.scanner().azimuth_step.in_radians() * simulator_.scanner().zenith_step.in_radians())) {}
+            1 / (simulator_.scanner().azimuth_step.in_radians() * simulator_.scanner().zenith_step.in_radians())) {
+    const auto kept = std::make_shared<const Scene>(simulator_.scene());
+    const std::shared_ptr<const SceneData> scene(kept, &kept->data());
+    if (simulator_.scanner().detection_range_m > 0 && scene->opaque_triangles().size() < scene->triangles.size())
+      glass_ = std::make_unique<const GlassPanes>(scene, std::make_shared<Planes>(scene));
+  }
 
   // `captured` is the share of the goal that the network has.
   VoxelStatus status(std::uint32_t rank, const VoxelPatch& patch, double captured) const {
@@ -77,7 +84,8 @@ class Judge {
       const double incidence = range > 0 ? std::abs(dot(way, patch.normal)) / range : 1;
       if (incidence < steepest_) continue;
       steep = true;
-      if (scanner.detection_range_m > 0 && range * range > reach_square * incidence) continue;
+      if (scanner.detection_range_m > 0 && range * range > reach_square * incidence * passed(head, way, range))
+        continue;
       bright = true;
       if (!in_field_of_view(scanner, way, range)) continue;
       const double across = std::sqrt(std::max(way.x * way.x + way.y * way.y, 1e-12)) / range;  // sin zenith
@@ -94,10 +102,17 @@ class Judge {
   }
 
  private:
+  // Share of an echo's strength that passes glass.
+  double passed(const Vec3& head, const Vec3& way, double range) const {
+    if (!glass_ || range == 0) return 1;
+    return glass_->share(narrow(head - simulator_.origin()), narrow(way * (1 / range)), static_cast<float>(range));
+  }
+
   const Simulator& simulator_;
   const ClashChecker& clash_;
   std::span<const PlacedStation> candidates_;
   double steepest_, per_steradian_;
+  std::unique_ptr<const GlassPanes> glass_;  // null: glass weakens no echo
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 // then includes it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -62,6 +63,7 @@ struct LimitModel {
   float exit_diameter = 0;                       // of the beam, metres
   float divergence = 0;                          // full angle, radians
   std::shared_ptr<const NoiseModel> noise = {};  // table for σ, whether noise is applied or not; set if σ is limited
+  bool glass = false;  // glass weakens echoes, and returns the beam near its normal; only if the scene has some
   bool enabled() const { return !meshes.empty(); }
 };
 
@@ -93,6 +95,11 @@ struct TraceScene {
   WholeScans whole_scans = WholeScans::faster;  // another only for tests and measurements
   bool sort_triangles = true;  // for drivers that build on the given order; off only to measure the gain of sorting
 };
+
+// Whether glass weakens the echoes of any scanner.
+inline bool weakens_through_glass(const TraceScene& scene) {
+  return std::ranges::any_of(scene.scanners, [](const TraceScanner& s) { return s.limits && s.limits->glass; });
+}
 
 // A rotation as engines apply it to directions. Rows are rounded once from double and products summed from the left, so
 // every engine turns a direction into the same bits.

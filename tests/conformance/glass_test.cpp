@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every engine traces a site with glass as if the glass were not there.
+// Every engine traces a site with glass as if the glass were not there; if echoes are limited, as Fresnel says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <vector>
 
 #include "conformance/engines_under_test.hpp"
+#include "scan/limit_model.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
+#include "shared/trace_types.h"
 #include "support/expect_counts.hpp"
 #include "support/quad_scene.hpp"
 
@@ -74,6 +78,67 @@ TEST_P(GlassConformance, ChangesNoPointAndNoCount) {
     EXPECT_EQ(chunks[0].voxel, chunks[1].voxel);
     EXPECT_EQ(chunks[0].reflectivity, chunks[1].reflectivity);
   }
+}
+
+// A wall at x = 5 behind a pane at x = 3, both square on: of a ray at α the echo comes from 5 / cos α, is weaker by cos
+// α and by the pane's T². Each ray is decided by these closed forms, and the pane returns those within 1° of its
+// normal.
+TEST_P(GlassConformance, EchoesBehindAPaneFollowFresnel) {
+  QuadScene quads;
+  quads.quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18});
+  quads.quad({3, -9, -9}, {0, 18, 0}, {0, 0, 18}, Role::blocking);
+  quads.data().meshes[1].glass = true;
+  const auto scene = std::make_shared<const SceneData>(quads.data());
+  Scanner scanner = coarse_scanner(0.5);
+  scanner.max_range_m = 20;
+  scanner.detection_range_m = 9;
+  scanner.detection_reflectivity = 0.5;
+  const TraceScene traced{
+      .scene = scene,
+      .grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 0.25)),
+      .scanners = {{std::make_shared<const RayPattern>(make_pattern(scanner)), std::make_shared<const NoiseModel>(),
+                    std::make_shared<const LimitModel>(make_limit_model(*scene, scanner, {}))}}};
+  const auto tracer = GetParam().make(traced);
+  tracer->set_goal_density(goal_density);
+  Tracer::RawChunk chunk;
+  tracer->scan({{0, 0, 0}, 0}, 0, scanner.rays(), Tracer::range | Tracer::primitive | Tracer::voxel, chunk);
+  const NetworkCounts counts = tracer->count(std::vector<TraceStation>{{{0, 0, 0}, 0}}, 1, {true, true, nullptr}, {});
+  std::size_t counted = 0, on_pane = 0, lost = 0, lost_to_glass = 0;
+  for (std::uint64_t ray = 0; ray < scanner.rays(); ++ray) {
+    const RayAngles angles = scanner.angles(ray);
+    const double sine = std::sin(angles.zenith.in_radians());
+    const double x = sine * std::cos(angles.azimuth.in_radians()), y = sine * std::sin(angles.azimuth.in_radians()),
+                 z = std::cos(angles.zenith.in_radians());
+    if (x <= 0 || std::abs(5 * y / x) > 8.9 || std::abs(5 * z / x) > 8.9) continue;
+    const double s = std::sqrt(1.25 + x * x), t = 2 * x * s;
+    const double across = t / (x * x + s * s), along = t / (x * x * 2.25 + s * s / 2.25);
+    const double pane = std::pow((across + along) / 2, 2);
+    const double reach = 81 * x * pane / (25 / (x * x));  // above 1: detected
+    if (std::abs(reach - 1) < 1e-5) continue;
+    const float at_wall = static_cast<float>(5 / x), at_pane = static_cast<float>(3 / x);
+    if (std::acos(x) < 0.01745) {
+      EXPECT_NEAR(chunk.range[ray], at_pane, 1e-5);
+      EXPECT_EQ(chunk.voxel[ray], no_voxel);
+      EXPECT_EQ(scene->mesh_of(chunk.primitive[ray]), 1u);
+      ++on_pane;
+    } else if (reach > 1) {
+      EXPECT_NEAR(chunk.range[ray], at_wall, 1e-5) << std::acos(x);
+      EXPECT_NE(chunk.voxel[ray], no_voxel);
+      ++counted;
+    } else {
+      EXPECT_EQ(chunk.primitive[ray], no_primitive) << std::acos(x);
+      ++lost;
+      lost_to_glass += reach > pane ? 1 : 0;
+    }
+  }
+  EXPECT_GT(on_pane, 5u);
+  EXPECT_GT(lost_to_glass, 500u);
+  EXPECT_GT(lost, lost_to_glass);
+  EXPECT_NEAR(static_cast<double>(counts.points_on_surveyed[0]), static_cast<double>(counted), 40) << "beyond 8.9 m";
+  EXPECT_GE(counts.dropped[0].echo, lost + on_pane);
+  const auto voxels = chunk.voxel;
+  EXPECT_EQ(counts.points_on_surveyed[0],
+            static_cast<std::uint64_t>(std::ranges::count_if(voxels, [](auto v) { return v != no_voxel; })));
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, GlassConformance, testing::ValuesIn(engines_under_test()),

@@ -63,6 +63,14 @@ class Builder {
     add(name, role, diffuse, p, t, n);
   }
 
+  // Makes the last mesh one of glass.
+  void make_glass() { raw_.meshes.back().glass = true; }
+  template <class At>
+  void glass(const std::string& name, const At& at) {
+    sheet(name, Role::blocking, 0.5, 1, 1, at);
+    make_glass();
+  }
+
   std::shared_ptr<const SceneData> finish() { return finish_scene(std::move(raw_), "the boiler house"); }
 
  private:
@@ -70,7 +78,7 @@ class Builder {
 };
 
 // A tank that needs fewer points, a boiler, a tilted pipe and a cabinet of the largest weight, on uneven ground, behind
-// a blocking fence.
+// a blocking fence; before them two panes of glass, one slanted, and a solid one.
 std::shared_ptr<const SceneData> boiler_house() {
   Builder b;
   b.sheet("ground", Role::blocking, 0.3, 24, 24, [](double u, double v) {
@@ -91,6 +99,10 @@ std::shared_ptr<const SceneData> boiler_house() {
   });
   b.box("cabinet", Role::surveyed, {-0.63, -2.71, 0.02}, {0.42, -2.04, 1.57}, 255);
   b.box("fence", Role::blocking, {3.2, -3.1, 0}, {3.25, 3.3, 1.1});
+  b.glass("pane", [](double u, double v) { return std::pair(Vec3{4.1, 4 * u - 1.7, 3 * v}, Vec3{}); });
+  b.glass("slanted pane", [](double u, double v) { return std::pair(Vec3{u - 1.3, 1.1 * u - 0.3, 2.8 * v}, Vec3{}); });
+  b.box("block", Role::blocking, {-3.62, -3.4, 0.2}, {-3.6, -1.2, 2.6});
+  b.make_glass();
   return b.finish();
 }
 

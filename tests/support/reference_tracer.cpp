@@ -15,6 +15,7 @@ namespace vantage::test {
 namespace {
 
 constexpr std::uint32_t block_side = 8;
+constexpr double pi = 3.14159265358979323846;
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 Vec3 unit(const Vec3& v) { return v * (1 / length(v)); }
@@ -139,6 +140,37 @@ class RayTest {
     if (hit.dropped.points > 0) hit.voxel = no_voxel;
   }
 
+  // Share of the echo that passes the glass before a hit, there and back, from the reflectances of a face in both
+  // polarisations; 0 if a pane returns the beam. Triangles of the mesh "block" are faces, all others panes.
+  double passed(ReferenceHit& hit) const {
+    constexpr double index = 1.5, largest_return = pi / 180;
+    const SceneData& scene = *s_.scene;
+    const Vec3 d = direction_of(hit);
+    double share = 1;
+    std::vector<double> faces;
+    for (auto t = static_cast<std::uint32_t>(scene.opaque_triangles().size()); t < scene.triangles.size(); ++t) {
+      const std::array<Vec3, 3> corner = corners(t);
+      const Crossing c = cross_plane(corner, origin_, d);
+      if (c.t < 0 || c.t > hit.t + 1e-3) continue;
+      hit.edge_distance = std::min({hit.edge_distance, c.boundary, std::abs(hit.t - 1e-4 - c.t)});
+      if (!c.inside || c.t > hit.t - 1e-4) continue;
+      // Both triangles at an edge are one face.
+      if (std::ranges::any_of(faces, [&](double other) { return std::abs(other - c.t) < 1e-4; })) continue;
+      faces.push_back(c.t);
+      const double angle =
+          std::acos(std::min(std::abs(dot(unit(cross(corner[1] - corner[0], corner[2] - corner[0])), d)), 1.0));
+      hit.limit_distance = std::min(hit.limit_distance, std::abs(angle - largest_return) / largest_return);
+      if (angle <= largest_return) share = 0;
+      const double inner = std::asin(std::sin(angle) / index);
+      const double across = (std::cos(angle) - index * std::cos(inner)) / (std::cos(angle) + index * std::cos(inner)),
+                   along = (index * std::cos(angle) - std::cos(inner)) / (index * std::cos(angle) + std::cos(inner));
+      double of_pane = 0;  // (1 - R)² (1 + R² + R⁴ + …)
+      for (const double r : {across * across, along * along}) of_pane += (1 - r) / (1 + r) / 2;
+      share *= scene.meshes[scene.mesh_of(t)].name == "block" ? of_pane : of_pane * of_pane;
+    }
+    return share;
+  }
+
   // Uses angle, length and standard deviation themselves.
   void hold_to_limits(ReferenceHit& hit) const {
     const LimitModel& model = *scanner_.limits;
@@ -156,7 +188,8 @@ class RayTest {
     if (limits.largest_sigma > 0)
       hit.dropped.noise = hold(model_sigma(*model.noise, hit.t, hit.reflectivity), limits.largest_sigma);
     if (limits.largest_reach_square > 0)
-      hit.dropped.echo = hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine));
+      hit.dropped.echo = hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine *
+                                               (model.glass ? passed(hit) : 1)));
     hit.dropped.points =
         hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise + hit.dropped.echo > 0 ? 1 : 0;
   }

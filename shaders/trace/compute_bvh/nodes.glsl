@@ -12,6 +12,4 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TileStarts {
 #define bvh_nodes NodeQuarters(parameters.traversal[bvh_nodes_array])
 #define bvh_corners TriangleCorners(parameters.traversal[bvh_triangles_array])
 
-float node_widening(uint node) { return uintBitsToFloat(bvh_nodes.at[4u * node + 2u].w); }
-
 #endif

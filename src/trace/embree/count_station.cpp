@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -22,12 +23,14 @@ namespace {
 [[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin, const Hits& hits,
                                                 VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift,
                                                 StationTotals& totals) {
-  if (station_rays.limited() && !station_rays.all_count(hits)) {
+  std::array<Passed, RayBundle::capacity> passed;
+  const bool behind_glass = station_rays.glass() && station_rays.glass()->follow(origin, hits, passed);
+  if (station_rays.limited() && (behind_glass || !station_rays.all_count(hits))) {
     voxels.clear();
     for (std::uint32_t k = 0; k < hits.size; ++k) {
       const Float3 point = hits.point(origin, k);
-      const DroppedPoints dropped =
-          station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k], hits.primitive[k]);
+      const DroppedPoints dropped = station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k],
+                                                         hits.primitive[k], behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
         voxels.add(point);
       } else if (station_rays.grid().index_of(point) != no_voxel) {

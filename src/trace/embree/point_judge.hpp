@@ -36,8 +36,8 @@ class PointJudge {
   }
 
   // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either
-  // sign; `t` the distance without noise. REQUIRES: enabled().
-  DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity) const {
+  // sign; `t` the distance without noise; `passed` the share of the echo that passes glass. REQUIRES: enabled().
+  DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity, double passed) const {
     const LimitModel::Limits& limits = model_->meshes[mesh];
     const double square = cosine * cosine;
     const double diameter =
@@ -47,7 +47,7 @@ class PointJudge {
     dropped.footprint = limits.largest_footprint_square > 0 &&
                         diameter * diameter > static_cast<double>(limits.largest_footprint_square) * square;
     dropped.noise = limits.largest_sigma > 0 && noise_.sigma(t, reflectivity) > limits.largest_sigma;
-    dropped.echo = limits.largest_reach_square > 0 && !detected(reach_square(mesh), cosine, t);
+    dropped.echo = limits.largest_reach_square > 0 && !detected(reach_square(mesh) * passed, cosine, t);
     dropped.points = dropped.incidence + dropped.footprint + dropped.noise + dropped.echo > 0;
     return dropped;
   }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/target_clones.hpp"
@@ -26,6 +27,8 @@ struct Context {
   float start;
   float* t;  // by the ray's id; initially the ray's end
   std::uint32_t* primitive;
+  std::uint32_t first = 0;  // triangle of the tree
+  std::vector<RayCaster::Crossing>* all = nullptr;
 };
 
 // Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle. A ray goes on
@@ -40,8 +43,9 @@ template <unsigned n, class Take>
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    if (RTCHitN_primID(args->hit, all, i) != primitive) {  // mostly, all rays of a packet meet the same triangle
-      primitive = RTCHitN_primID(args->hit, all, i);
+    const unsigned proposed = context.first + RTCHitN_primID(args->hit, all, i);
+    if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
+      primitive = proposed;
       context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin,
                                   &RTCRayN_dir_x(args->ray, all, first), &RTCRayN_dir_y(args->ray, all, first),
                                   &RTCRayN_dir_z(args->ray, all, first), t);
@@ -87,10 +91,24 @@ void note(const RTCFilterFunctionNArguments* args) {
   });
 }
 
+// Notes every hit, and lets the rays go on.
+VANTAGE_TARGET_CLONES
+void note_all(const RTCFilterFunctionNArguments* args) {
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
+  judge(args, [&](unsigned ray, unsigned primitive, float t) {
+    if (t > context.start && t <= context.t[ray]) context.all->push_back({ray, t, primitive});
+    return false;
+  });
+}
+
 }  // namespace
 
-RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes)
+RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of)
     : scene_(std::move(scene)), planes_(std::move(planes)), device_(embree::new_device()) {
+  const std::span<const Triangle> opaque = scene_->opaque_triangles();
+  const std::span<const Triangle> triangles =
+      of == Of::opaque ? opaque : std::span(scene_->triangles).subspan(opaque.size());
+  first_ = of == Of::opaque ? 0 : static_cast<std::uint32_t>(opaque.size());
   RTCDevice device = device_.get();
   tree_.reset(rtcNewScene(device));
   rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);
@@ -102,15 +120,15 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<con
                                              sizeof(Float3), scene_->positions.size());
     embree::check(device, "taking the scene's vertices");
     std::memcpy(vertices, scene_->positions.data(), scene_->positions.size() * sizeof(Float3));
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(), 0,
-                               sizeof(Triangle), scene_->opaque_triangles().size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(Triangle), triangles.size());
   }
-  rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_least);
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), of == Of::opaque ? keep_least : note_all);
   rtcSetGeometryOccludedFilterFunction(geometry.get(), note);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(tree_.get(), geometry.get());
   rtcCommitScene(tree_.get());
-  embree::check(device, "building the tree over " + std::to_string(scene_->opaque_triangles().size()) + " triangles");
+  embree::check(device, "building the tree over " + std::to_string(triangles.size()) + " triangles");
 }
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
@@ -137,7 +155,7 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
                  0};
     }
     hit.fill(RayBundle::no_hit);
-    Context context{{}, *planes_, origin, start, end.data(), hit.data()};
+    Context context{{}, *planes_, origin, start, end.data(), hit.data(), first_};
 #if VANTAGE_EMBREE_MAJOR >= 4
     rtcInitRayQueryContext(&context.rtc);
     RTCOccludedArguments arguments;
@@ -152,7 +170,16 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
   }
 }
 
-void RayCaster::cast(RayBundle& rays) const {
+void RayCaster::cast(RayBundle& rays) const { cast(rays, nullptr); }
+
+std::vector<RayCaster::Crossing> RayCaster::crossings(RayBundle& rays) const {
+  std::vector<Crossing> all;
+  cast(rays, &all);
+  std::ranges::sort(all, {}, [](const Crossing& c) { return std::tuple(c.ray, c.t, c.triangle); });
+  return all;
+}
+
+void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
   if (rays.size == 0) return;
   alignas(64) RTCRayHit8 hits[packets];
   const std::uint32_t used = (rays.size + packet - 1) / packet;
@@ -183,7 +210,7 @@ void RayCaster::cast(RayBundle& rays) const {
   std::copy_n(rays.end, used * packet, rays.t);
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context{{}, *planes_, rays.origin, rays.start, rays.t, rays.primitive};
+  Context context{{}, *planes_, rays.origin, rays.start, rays.t, rays.primitive, first_, all};
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCIntersectArguments arguments;

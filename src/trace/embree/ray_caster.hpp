@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/embree.hpp"
 #include "scene/scene_data.hpp"
@@ -38,8 +39,9 @@ struct Probe {
 // Triangles of a scene in Embree's tree. Safe to use from any thread.
 class RayCaster {
  public:
+  enum class Of : std::uint8_t { opaque, glass };
   // Shares ownership of `scene` and its planes. Throws Error: out_of_memory, device_failure.
-  RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
+  RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of = Of::opaque);
 
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
   // finds the ray to pass through, and that it comes near (Planes::beside), whatever the other rays of the bundle.
@@ -47,6 +49,16 @@ class RayCaster {
   // visits; neither is used. Its tree is searched by `doubt` past the nearest hit and past both ends.
   static constexpr float doubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
+
+  // A triangle that a ray passes through.
+  struct Crossing {
+    std::uint32_t ray;  // of the bundle
+    float t;
+    std::uint32_t triangle;
+  };
+  // All of them, in order of ray, t and triangle; leaves t and primitive of the bundle unspecified. REQUIRES:
+  // Of::glass.
+  std::vector<Crossing> crossings(RayBundle& rays) const;
 
   // A direction's component as Embree is given it. Embree replaces one below 1e-18 by +1e-18 but keeps its sign; such a
   // ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by less
@@ -58,10 +70,13 @@ class RayCaster {
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;
 
  private:
+  void cast(RayBundle& rays, std::vector<Crossing>* all) const;
+
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   embree::Device device_;
   embree::Scene tree_;
+  std::uint32_t first_;  // triangle of the tree
 };
 
 }  // namespace vantage

@@ -4,6 +4,8 @@
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
+
 namespace vantage {
 namespace {
 
@@ -13,6 +15,15 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
   RayBundle rays;
   station_rays.gather(station, tile, station_rays.pattern().max_range, rays);
   station_rays.caster().cast(rays);
+  std::array<Passed, RayBundle::capacity> passed;
+  bool behind_glass = false;
+  if (station_rays.glass()) {
+    RayBundle beams = rays;
+    beams.start = 0;
+    for (std::uint32_t slot = 0; slot < rays.size; ++slot)
+      if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
+    behind_glass = station_rays.glass()->follow(beams, passed);
+  }
   const Surface& surface = station_rays.surface();
   const RangeNoise& noise = station_rays.noise();
   const bool need_normal = (outputs & (Tracer::normal | Tracer::reflectivity)) != 0 || noise.enabled();
@@ -22,8 +33,14 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
     const std::uint64_t k = ray - first_ray;
     std::uint32_t triangle = rays.primitive[slot];
-    const DroppedPoints dropped =
-        triangle != RayBundle::no_hit && station_rays.limited() ? station_rays.dropped(rays, slot) : DroppedPoints();
+    DroppedPoints dropped;
+    if (const Passed way = behind_glass ? passed[slot] : Passed{1, RayBundle::no_hit, 0};
+        way.pane != RayBundle::no_hit && way.t >= station_rays.pattern().min_range) {
+      triangle = way.pane;
+      rays.t[slot] = way.t;
+    } else if (triangle != RayBundle::no_hit && station_rays.limited()) {
+      dropped = station_rays.dropped(rays, slot, way.share);
+    }
     if (dropped.echo > 0) triangle = RayBundle::no_hit;
     const bool hit = triangle != RayBundle::no_hit;
     float range = std::numeric_limits<float>::infinity(), reflectivity = 0;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "trace/embree/glass_panes.hpp"
 #include "trace/embree/hits.hpp"
 #include "trace/embree/point_judge.hpp"
 #include "trace/embree/range_noise.hpp"
@@ -36,6 +37,7 @@ struct EmbreeScene {
         caster(scene, planes),
         surface(scene, planes),
         prefixes(*grid),
+        glass(weakens_through_glass(traced) ? std::make_unique<const GlassPanes>(scene, planes) : nullptr),
         whole_scans(traced.whole_scans) {}
 
   std::shared_ptr<const SceneData> scene;
@@ -45,6 +47,7 @@ struct EmbreeScene {
   RayCaster caster;
   Surface surface;
   BrickPrefixes prefixes;
+  std::unique_ptr<const GlassPanes> glass;  // null: glass weakens no echo
   WholeScans whole_scans;
 };
 
@@ -66,6 +69,7 @@ class StationRays {
         pattern_(scanner.pattern),
         noise_(scanner.noise),
         judge_(scanner.limits),
+        glass_(scanner.limits && scanner.limits->glass ? scene_->glass.get() : nullptr),
         echo_alone_(judge_.judges_echo_alone() && scene_->scene->normals.empty()) {}
 
   const SceneData& scene() const { return *scene_->scene; }
@@ -111,7 +115,9 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
-  // Whether all hits count. False where it takes dropped() to know.
+  // Glass that weakens echoes of this scanner; null if there is none.
+  const GlassPanes* glass() const { return glass_; }
+  // Whether all hits count if no glass is before them. False where it takes dropped() to know.
   [[gnu::always_inline]] bool all_count(const Hits& hits) const {
     if (!echo_alone_) return false;
     for (std::uint32_t k = 0; k < hits.size;) {
@@ -129,15 +135,17 @@ class StationRays {
     }
     return true;
   }
-  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit.
-  DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
-    return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot]);
+  // Limits for which a point is dropped; none if it counts. `passed`: share of its echo that passes glass. REQUIRES:
+  // limited(); rays.primitive[slot] is a hit.
+  DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot, double passed) const {
+    return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot], passed);
   }
-  DroppedPoints dropped(const Float3& origin, const Float3& d, float t, std::uint32_t triangle) const {
-    if (echo_alone_) return judge_.missed(surface().mesh(triangle), dot(planes().normal(triangle), widen(d)), t, 0);
+  DroppedPoints dropped(const Float3& origin, const Float3& d, float t, std::uint32_t triangle, double passed) const {
+    if (echo_alone_)
+      return judge_.missed(surface().mesh(triangle), dot(planes().normal(triangle), widen(d)), t, 0, passed);
     const Facet facet = surface().facet(triangle);
     const Vec3 normal = facet.smooth ? facet.smooth_normal(d, facet.weights(origin, d, t)) : facet.flat_normal(d);
-    return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal));
+    return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal), passed);
   }
 
  private:
@@ -145,6 +153,7 @@ class StationRays {
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;
   PointJudge judge_;
+  const GlassPanes* glass_;
   bool echo_alone_;  // echoes alone are limited, and the normals of planes decide
 };
 

@@ -436,10 +436,12 @@ void SampledVoxelCounter::finish() {
     hits_.add(bundle_, slot, rays_->ray(ray.row, ray.column));
   }
   rays_->find_ranges(*station_, hits_);
+  std::array<Passed, RayBundle::capacity> passed;
+  const bool behind_glass = rays_->glass() && rays_->glass()->follow(bundle_.origin, hits_, passed);
   for (std::uint32_t k = 0; k < hits_.size; ++k) {
     const std::uint32_t slot = hits_.slot[k], i = cast_voxel_[slot];
     if (!lies_in(rays_->grid(), hits_.point(bundle_.origin, k), voxels_.cell(first_ + i))) continue;
-    if (rays_->limited() && rays_->dropped(bundle_, slot).points > 0) continue;
+    if (rays_->limited() && rays_->dropped(bundle_, slot, behind_glass ? passed[k].share : 1).points > 0) continue;
     if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
     if (!masks_.empty()) masks_[i] |= bit;
   }

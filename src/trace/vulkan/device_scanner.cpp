@@ -82,6 +82,7 @@ void DeviceScanner::write(Commands& commands, const TraceParameters& shared) con
     p.exit_diameter = scanner_.limits->exit_diameter;
     p.divergence = scanner_.limits->divergence;
   }
+  if (!glass()) p.glass_nodes = p.glass_corners = 0;
   if (const NoiseModel* const looked_up = sigma_model()) {
     p.sigma = sigma_.address();
     p.noise_min_range = looked_up->min_range;

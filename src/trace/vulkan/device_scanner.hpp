@@ -20,6 +20,7 @@ class DeviceScanner {
   const RayPattern& pattern() const { return *scanner_.pattern; }
   bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
+  bool glass() const { return limits() && scanner_.limits->glass; }
   const TraceSet& set() const { return set_; }
 
   // Writes the block: the part about scene and voxels that all scanners share, and this scanner's own.

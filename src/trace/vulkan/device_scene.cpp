@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/normal_table.hpp"
+#include "trace/glass_faces.hpp"
 #include "trace/triangle_neighbours.hpp"
+#include "trace/vulkan/compute_bvh/bvh.hpp"
 
 namespace vantage::vulkan {
 
@@ -33,6 +35,7 @@ DeviceScene::DeviceScene(Device& device, Commands& commands, const TraceScene& s
   p.bounds_min = {static_cast<float>(bounds.min.x), static_cast<float>(bounds.min.y), static_cast<float>(bounds.min.z)};
   p.bounds_max = {static_cast<float>(bounds.max.x), static_cast<float>(bounds.max.y), static_cast<float>(bounds.max.z)};
   p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
+  if (weakens_through_glass(scene_)) upload_glass();
   const auto noisy = [](const DeviceScanner& scanner) { return scanner.noise(); };
   const auto limited = [](const DeviceScanner& scanner) { return scanner.limits(); };
   if (std::ranges::any_of(scanners_, noisy)) {
@@ -48,6 +51,21 @@ DeviceScene::DeviceScene(Device& device, Commands& commands, const TraceScene& s
 
 void DeviceScene::write_parameters() {
   for (const DeviceScanner& scanner : scanners_) scanner.write(commands_, parameters_);
+}
+
+// For all engines alike, since it is small.
+void DeviceScene::upload_glass() {
+  const SceneData& scene = *scene_.scene;
+  const std::size_t first = scene.opaque_triangles().size();
+  const std::vector<bool> of_solid = faces_of_solids(scene);
+  std::vector<std::uint32_t> ids(of_solid.size());
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    ids[k] = static_cast<std::uint32_t>(first + k) | (of_solid[k] ? surveyed_bit : 0);
+  const Bvh bvh = build_bvh(scene.positions, std::span(scene.triangles).subspan(first), ids);
+  glass_nodes_ = make_device_buffer<BvhNode>(device_, commands_, bvh.nodes, "nodes of glass");
+  glass_corners_ = make_device_buffer<BvhTriangle>(device_, commands_, bvh.triangles, "triangles of glass");
+  parameters_.glass_nodes = glass_nodes_.address();
+  parameters_.glass_corners = glass_corners_.address();
 }
 
 void DeviceScene::upload_triangles() {

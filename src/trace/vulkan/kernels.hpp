@@ -31,9 +31,10 @@ enum class Kernel {
 
 class Kernels {
  public:
-  // `set`: for kernels that work with any scanner's set. All arguments must outlive it.
-  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set)
-      : device_(device), traversal_(traversal), set_(set) {}
+  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. All other arguments
+  // must outlive it.
+  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass)
+      : device_(device), traversal_(traversal), set_(set), glass_(glass) {}
 
   // `constants`: the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass, an
   // engine that has one.
@@ -45,6 +46,7 @@ class Kernels {
   const Device& device_;
   const Traversal& traversal_;
   const TraceSet& set_;
+  bool glass_;
   std::map<std::tuple<Kernel, std::array<bool, 4>, bool>, ComputePipeline> pipelines_;
 };
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nearest hits over our own binary BVH: of the engine compute_bvh, and of glass on every engine.
+#ifndef VANTAGE_TRACE_COMPUTE_BVH_WALK
+#define VANTAGE_TRACE_COMPUTE_BVH_WALK
+#include "lib/triangle_hit.glsl"
+#include "trace/compute_bvh/nodes.glsl"
+#include "trace/hit.glsl"
+
+// A ray for tests against nodes' boxes, where a last bit does no harm: contraction is welcome.
+struct NodeRay {
+  vec3 inverse;
+  vec3 moved;  // origin · inverse
+  vec3 size;  // size of the inverse, times the widening of boxes
+};
+
+// `built_widening`: of the boxes as built.
+NodeRay node_ray(vec3 origin, vec3 inverse, float widening, float built_widening) {
+  const float larger = max(2.0 * widening / built_widening, 1.0);
+  return NodeRay(inverse, origin * inverse, abs(inverse) * larger);
+}
+
+// Interval of the ray inside a box, from x to y, up to t_max. Non-negative floats are ordered as their bits, and a GPU
+// takes the maximum of three integers at once. A negative value becomes any negative number, which begins before t_min,
+// or ends before it.
+ivec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size, int t_min, int t_max) {
+  const vec3 middle = centre * ray.inverse - ray.moved;
+  const ivec3 near = floatBitsToInt(middle - half_size * ray.size), far = floatBitsToInt(middle + half_size * ray.size);
+  return ivec2(max(max(max(near.x, near.y), near.z), t_min), min(min(min(far.x, far.y), far.z), t_max));
+}
+
+// Node at which the ray continues once its start node is finished.
+uint next_start(Starts starts, inout uint started, inout uint depth, float nearest) {
+  if (starts.list == 0ul || started == tile_starts) return bvh_end;
+  const TileStart start = TileStarts(starts.list).at[starts.tile * tile_starts + started];
+  if (start.near > nearest) return bvh_end;
+  ++started;
+  depth = 1u;
+  return start.node;
+}
+
+// As trace(), over the tree in these arrays.
+Hit walk(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 direction, float t_min, float t_max,
+         float enough, Starts starts) {
+  Hit best = Hit(t_max, no_primitive, vec2(0));
+  const Shear shear = shear_along(direction);
+  const float widening = widening_of(origin);
+  const vec3 inverse = inverse_of(direction);
+  const NodeRay ray = node_ray(origin, inverse, widening, uintBitsToFloat(nodes.at[2].w));
+
+  uint stack[bvh_stack_size];  // nodes still to visit, above an end mark
+  stack[0] = bvh_end;
+  uint depth = 1u;
+  uint current = 0u;  // the root is always a node
+  uint started = 1u;
+  if (starts.list != 0ul) current = TileStarts(starts.list).at[starts.tile * tile_starts].node;
+  // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves instead of
+  // alternating between nodes and triangles. The time goes into the instructions of the loop over nodes.
+  for (;;) {
+    while ((current & bvh_leaf_bit) == 0u) {
+      const uvec4 word0 = nodes.at[4u * current], word1 = nodes.at[4u * current + 1u],
+                  word2 = nodes.at[4u * current + 2u], word3 = nodes.at[4u * current + 3u];
+      const uint child0 = word0.w, child1 = word1.w;
+      const int first_t = floatBitsToInt(t_min), last_t = floatBitsToInt(best.t);
+      const ivec2 way0 = passage_of(ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz), first_t, last_t),
+                  way1 = passage_of(ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz), first_t, last_t);
+      const bool hit0 = way0.x <= way0.y, hit1 = way1.x <= way1.y;
+      const bool first0 = hit0 && (!hit1 || way0.x <= way1.x);
+      stack[depth] = first0 ? child1 : child0;  // kept if both are hit
+      current = first0 ? child0 : child1;
+      if (hit0 && hit1) ++depth;
+      if (!hit0 && !hit1) {
+        current = stack[--depth];
+        if (current == bvh_end) current = next_start(starts, started, depth, best.t);
+      }
+    }
+    if (current == bvh_end) return best;
+    const uint first = current & bvh_leaf_first_mask;
+    const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
+    for (uint i = first; i <= end; ++i) {
+      const uvec4 word_a = corners.at[3u * i], word_b = corners.at[3u * i + 1u],
+                  word_c = corners.at[3u * i + 2u];
+      const vec3 corner_a = uintBitsToFloat(word_a.xyz), corner_b = uintBitsToFloat(word_b.xyz),
+                 corner_c = uintBitsToFloat(word_c.xyz);
+      meet_triangle(best, t_min, shear, origin, inverse, widening, corner_a, corner_b, corner_c, word_a.w);
+    }
+    if (best.t < enough) return best;
+    current = stack[--depth];
+    if (current == bvh_end) current = next_start(starts, started, depth, best.t);
+  }
+}
+
+#endif
