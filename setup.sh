@@ -17,7 +17,7 @@ readonly packages=(
   libpng-dev libturbojpeg0-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
   libassimp-dev libdraco-dev libdxflib-dev libexpat1-dev libgeos-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
 )
-readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin poppler-utils gdal-bin dpkg-dev file
+readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin poppler-utils gdal-bin dpkg-dev file mmdebstrap
   pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib python3-jsonschema libopenmpi-dev openmpi-bin)
 readonly packaging_packages=(dpkg-dev file patchelf pybind11-dev python3-dev python3-pip python3-numpy python3-wheel)
 
