@@ -100,7 +100,15 @@ std::string in_words(const Requirement& requirement) {
 std::string advice(const Requirement& requirement, double measured, bool ended_early) {
   const std::string what = "not met: " + in_words(requirement) + ", ";
   if (std::isnan(measured)) return what + "not measured before the time was over; allow more time";
-  return what + "it has " + value_text(requirement.objective, measured) + "; " +
+  // As many digits as it takes to differ from the limit.
+  std::string has = value_text(requirement.objective, measured);
+  if (requirement.objective.percent && has == value_text(requirement.objective, requirement.limit))
+    for (int digits = 2; digits < 7; ++digits)
+      if (std::string finer = fixed(100 * measured, digits); finer != fixed(100 * requirement.limit, digits)) {
+        has = finer + " %";
+        break;
+      }
+  return what + "it has " + has + "; " +
          (ended_early ? "the time was over first: allow more time" : requirement.objective.advice) +
          ", or ask for less";
 }

@@ -235,6 +235,13 @@ TEST(Requirement, ReadsWhatIsAsked) {
     EXPECT_THROW(make_requirement(wrong), Error) << wrong;
 }
 
+TEST(Requirement, AdviceTellsAMissedValueFromItsLimit) {
+  const Requirement capture = make_requirement("capture>=0.9");
+  EXPECT_NE(advice(capture, 0.85).find(", it has 85.0 %;"), std::string::npos) << advice(capture, 0.85);
+  EXPECT_NE(advice(capture, 0.89981).find(", it has 89.98 %;"), std::string::npos) << advice(capture, 0.89981);
+  EXPECT_NE(advice(capture, 0.899999).find(", it has 89.9999 %;"), std::string::npos) << advice(capture, 0.899999);
+}
+
 TEST(Objective, NamesAreListedWhereOneIsUnknown) {
   for (const std::string& name : objective_names()) EXPECT_EQ(make_objective(name).name, name);
   try {
