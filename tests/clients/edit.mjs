@@ -339,7 +339,7 @@ assert.ok(!fs.existsSync(opened), 'the page goes with the editor');
 // Scans appear as they come into a folder: the planned station that one is of becomes a taken one, where it was really taken.
 fs.mkdirSync(at('day'));
 fs.writeFileSync(at('plan.csv'), 'name,x,y,z\nA,8,0,1.5\nB,0,8,1.5\n');
-({ editor, url } = await start('--stations', 'plan.csv', '--scans', 'day', '-o', 'edited-day'));
+({ editor, url } = await start('--stations', 'plan.csv', '--scans', 'day'));
 const site = await watchedPage(browser, { width: 1280, height: 900 });
 await site.goto(url);
 await site.waitForSelector('html[data-ready]');
