@@ -38,8 +38,8 @@ inline auto members(Evaluation& e) {
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {
-  return std::tie(m.name, m.role, m.diffuse, m.triangle_count, m.weight, m.door, m.station_area, m.glass, m.detail_m,
-                  m.accuracy_m);
+  return std::tie(m.name, m.role, m.diffuse, m.triangle_count, m.weight, m.door, m.station_area, m.glass, m.mirror,
+                  m.detail_m, m.accuracy_m);
 }
 inline auto members(MissedShare& s) { return std::tie(s.node, s.voxels, s.shares); }
 inline auto members(RoomShare& r) { return std::tie(r.share, r.ground_m2, r.left_out); }

@@ -24,6 +24,7 @@ Options<SceneOptions> scene_options() {
       .add("doors", &SceneOptions::doors, "Closed door leaves: open for people, closed for rays.")
       .add("station_area", &SceneOptions::station_area, "Nodes that stations may stand on.")
       .add("glass", &SceneOptions::glass, "Nodes of glass, besides what the file says; 'opaque': none is.")
+      .add("mirror", &SceneOptions::mirror, "Nodes that mirror rays, besides what the file says; 'none': none does.")
       .add("scene_index", &SceneOptions::scene_index, "Which glTF scene; None: the file's own.")
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
@@ -76,6 +77,7 @@ void add_mesh_info(py::module_& m) {
       .def_readonly("door", &MeshInfo::door, "A closed door leaf: open for people, closed for rays.")
       .def_readonly("station_area", &MeshInfo::station_area, "Stations may stand on it.")
       .def_readonly("glass", &MeshInfo::glass, "Rays pass it; people and stations do not.")
+      .def_readonly("mirror", &MeshInfo::mirror, "Rays are reflected: it has no points of its own.")
       .def_readonly("detail_m", &MeshInfo::detail_m, "Widest beam footprint of points that count, metres; 0: any.")
       .def_readonly("accuracy_m", &MeshInfo::accuracy_m,
                     "Largest range noise (sigma) of points that count, metres; 0: any.")

@@ -39,6 +39,7 @@ struct MeshInfo {
   bool door = false;          ///< A closed door leaf: people walk through it, rays do not.
   bool station_area = false;  ///< Stations may stand on it, whatever its role.
   bool glass = false;         ///< Rays pass it; people and stations do not. Such a mesh is `blocking`.
+  bool mirror = false;        ///< Rays are reflected: it has no points of its own. Such a mesh is `blocking`.
   double detail_m = 0;        ///< Widest beam footprint of a point that counts, in metres; 0: any.
   double accuracy_m = 0;  ///< Largest range noise (one standard deviation) of a point that counts, in metres; 0: any.
 };
@@ -93,6 +94,8 @@ struct SceneOptions {
   /// Nodes of glass (`MeshInfo::glass`), besides meshes whose material or extras say so. A role pattern that names a
   /// node itself, and not one above it, makes its glass opaque. The word `opaque` here does so for all nodes.
   std::vector<std::string> glass = {};
+  /// Mirrors (`MeshInfo::mirror`), by the rules of glass. The word `none` here makes all surfaces matt.
+  std::vector<std::string> mirror = {};
   /// Node patterns with the wanted detail and accuracy, in millimetres (`MeshInfo`). Precedence as with roles.
   std::vector<std::pair<std::string, double>> details_mm = {}, accuracies_mm = {};
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.

@@ -78,6 +78,21 @@ enum ScanOutput : std::uint32_t {
   scan_ids = 16,          ///< mesh and primitive
   scan_colour = 32,       ///< RGBA of `ScanOptions::colour` if given, else of the material.
   scan_voxel = 64,        ///< surveyed voxel in which the point counts
+  scan_ghost = 128,       ///< whether the point was seen in a mirror
+  scan_returns = 256,     ///< how many returns the ray has
+};
+
+/// Which returns of a beam become points.
+enum class Returns : std::uint8_t { first, strongest, last, all };
+/// Throws Error invalid_argument and lists them.
+Returns returns_from_string(const std::string& text);
+
+/// A beam as wide as the scanner's, by its divergence and exit diameter: sub-rays over the footprint. Echoes from
+/// surfaces nearer together than half a pulse's length merge into one return between them, a mixed point.
+struct BeamOptions {
+  std::uint32_t sub_rays = 7;            ///< 7 or 19.
+  Returns returns = Returns::strongest;  ///< `all`: up to 15 a ray.
+  double pulse_m = 1;                    ///< Length of a pulse, above 0: the speed of light times its duration.
 };
 
 /// How `Simulator::scan` works.
@@ -87,10 +102,14 @@ struct ScanOptions {
   /// Colour of a point, 0xAABBGGRR, by its ray's direction in the scanner's frame, e.g. from a picture
   /// (`Panorama::colour`). Called from several threads at once. Empty: the colour of the material.
   std::function<std::uint32_t(Angle zenith, Angle azimuth)> colour = {};
+  /// Gives the beam a width, at the cost of its sub-rays, which are traced on the processor. Empty: a ray without one.
+  std::optional<BeamOptions> beam = std::nullopt;
 };
 
-/// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays not asked for are empty.
+/// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays not asked for are empty. If a
+/// beam has several returns, there is a chunk of the same rays for each number of a return.
 struct ScanChunk {
+  std::uint32_t return_number = 1;
   std::uint64_t first_ray = 0;
   std::uint64_t ray_count = 0;
   std::vector<float> range_m;
@@ -103,6 +122,9 @@ struct ScanChunk {
   std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB; 0 without a hit.
   /// Index of the surveyed voxel in Morton order; 2³²−1 if the point does not count.
   std::vector<std::uint32_t> voxel;
+  /// 1: a ghost. The ray was reflected, and its point lies behind the mirror; mesh and colour are those of what it met.
+  std::vector<std::uint8_t> ghost;
+  std::vector<std::uint8_t> returns;  ///< Returns of the ray; 0 without a hit.
 };
 
 /// Sums over one scan.
@@ -110,6 +132,10 @@ struct ScanSummary {
   std::uint64_t rays = 0, points = 0;
   std::uint64_t points_on_surveyed = 0;  ///< Points that count: on a surveyed mesh and inside a surveyed voxel.
   std::uint64_t hits_on_surveyed = 0;    ///< Hits on a surveyed mesh, wherever noise then moved the point.
+  std::uint64_t ghosts = 0;              ///< Points seen in a mirror (`MeshInfo::mirror`), which never count.
+  /// Points of a beam that lie on none of the surfaces they were made of, by more than 5 mm; and those of them that
+  /// count nevertheless, in a voxel that they do not belong to.
+  std::uint64_t mixed = 0, mixed_counted = 0;
   double trace_seconds = 0;
   bool cancelled = false;
 };
@@ -125,6 +151,7 @@ struct ScanPoints {
   std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order).
   std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB.
   std::vector<std::uint32_t> voxel;      ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
+  std::vector<std::uint8_t> ghost;       ///< 1: seen in a mirror.
   ScanSummary summary;
 };
 

@@ -53,6 +53,8 @@ class MeshInfo:
     @property
     def glass(self) -> bool: ...
     @property
+    def mirror(self) -> bool: ...
+    @property
     def detail_m(self) -> float: ...
     @property
     def accuracy_m(self) -> float: ...
@@ -72,6 +74,7 @@ class Scene:
         doors: Sequence[str] = [],
         station_area: Sequence[str] = [],
         glass: Sequence[str] = [],
+        mirror: Sequence[str] = [],
         scene_index: Optional[int] = None,
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
@@ -159,6 +162,7 @@ def load_gltf(
     doors: Sequence[str] = [],
     station_area: Sequence[str] = [],
     glass: Sequence[str] = [],
+    mirror: Sequence[str] = [],
     scene_index: Optional[int] = None,
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
@@ -729,6 +733,7 @@ class Site:
         search: Setting = None,
         ignore: Setting = None,
         glass: Setting = None,
+        mirror: Setting = None,
         weight: Setting = None,
         detail: Setting = None,
         accuracy: Setting = None,

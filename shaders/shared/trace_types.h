@@ -74,8 +74,8 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: index into `limits`
   VANTAGE_ADDRESS(Limits) limits;
-  // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0: glass
-  // weakens no echo.
+  // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0:
+  // glass weakens no echo.
   uint64_t glass_nodes;
   uint64_t glass_corners;
   uint rows;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <map>
 
 #include "cli/command.hpp"
@@ -8,6 +9,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/setting_table.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -30,8 +32,10 @@ struct ScanCommandOptions {
   std::optional<std::string> output;
   std::vector<Panorama> panoramas;
   std::uint32_t outputs = scan_position | scan_reflectivity | scan_colour;
+  std::optional<BeamOptions> beam;
   bool json = false;
 
+  BeamOptions& beam_options() { return beam ? *beam : beam.emplace(); }
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
@@ -53,6 +57,20 @@ struct ScanCommandOptions {
         "Panoramic photograph that colours a station's points, with the azimuth of its middle; the k-th is the k-th "
         "station's",
         [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
+    add_value(command, "--returns", "WHICH",
+              "Give the beam its width, and take the first, strongest or last return of each ray, or all",
+              [this](const std::string& text, const std::string& what) {
+                beam_options().returns = named(what, [&] { return returns_from_string(text); });
+              });
+    add_value(command, "--sub-rays", "N", "Sub-rays of a beam with a width: 7 or 19; 7 otherwise",
+              [this](const std::string& text, const std::string& what) {
+                beam_options().sub_rays = static_cast<std::uint32_t>(parse_count(text, what, 7, 19));
+              });
+    add_value(command, "--pulse", "M",
+              "Length of a pulse: surfaces nearer together than half of it share a return; 1 otherwise",
+              [this](const std::string& text, const std::string& what) {
+                beam_options().pulse_m = parse_number(text, what, positive);
+              });
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -74,6 +92,7 @@ Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std:
             [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
         .stop = program.stop};
     ScanOptions what{.outputs = writer ? options.outputs : 0, .place = static_cast<std::uint32_t>(k)};
+    what.beam = options.beam;
     if (k < options.panoramas.size())
       what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
         return panorama.colour(zenith, azimuth);
@@ -97,11 +116,16 @@ Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std:
     all.sum.rays += one.rays;
     all.sum.points += one.points;
     all.sum.points_on_surveyed += one.points_on_surveyed;
+    all.sum.ghosts += one.ghosts;
+    all.sum.mixed += one.mixed;
+    all.sum.mixed_counted += one.mixed_counted;
     all.sum.trace_seconds += one.trace_seconds;
     auto row = to_json(stations[k], names[k], site.scanners());
     row["points"] = one.points;
     row["points_on_surveyed"] = one.points_on_surveyed;
     row["hits_on_surveyed"] = one.hits_on_surveyed;
+    if (one.ghosts > 0) row["ghosts"] = one.ghosts;
+    if (options.beam) row["mixed"] = one.mixed, row["mixed_counted"] = one.mixed_counted;
     all.rows.push_back(std::move(row));
   }
   return all;
@@ -119,6 +143,8 @@ nlohmann::json scans_json(Scans scans, const ScanCommandOptions& options, Site& 
                       {"seed", site.simulator_config().seed},
                       {"options", options_of(site.settings())},
                       {"version", version()}};
+  if (scans.sum.ghosts > 0) json["ghosts"] = scans.sum.ghosts;
+  if (options.beam) json["mixed"] = scans.sum.mixed, json["mixed_counted"] = scans.sum.mixed_counted;
   if (options.output) json["file"] = *options.output;
   return json;
 }
@@ -134,6 +160,12 @@ std::string scans_text(const Scans& scans, const ScanCommandOptions& options, co
   }
   text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", scans.sum.rays, scans.sum.points,
                       scans.sum.points_on_surveyed);
+  if (scans.sum.ghosts > 0)
+    text +=
+        fmt::format("{} of the points are ghosts, seen in mirrors: they stand where nothing is\n", scans.sum.ghosts);
+  if (options.beam)
+    text += fmt::format("{} of the points are mixed, between surfaces; {} of them count in a voxel\n", scans.sum.mixed,
+                        scans.sum.mixed_counted);
   if (options.output) text += "written to " + *options.output + "\n";
   return text;
 }
@@ -163,6 +195,8 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   std::optional<PointCloudWriter> writer;
   if (options.output) {
     options.outputs = point_cloud_outputs(*options.output, options.outputs);
+    if (std::ranges::any_of(simulator.scene().meshes(), &MeshInfo::mirror)) options.outputs |= scan_ghost;
+    if (options.beam) options.outputs |= scan_returns;
     writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
   }
   Scans scans = scan_each(stations, names, options, site, writer ? &*writer : nullptr, program);

@@ -17,7 +17,9 @@ namespace {
 
 // Singles round coordinates of up to so much by at most 8 micrometres.
 constexpr double kSinglesReach_m = 256;
-constexpr std::uint32_t kHeld = scan_position | scan_normal | scan_reflectivity | scan_colour;
+// Ghosts are points as any, since the format has no mark for them.
+constexpr std::uint32_t kHeld =
+    scan_position | scan_normal | scan_reflectivity | scan_colour | scan_ghost | scan_returns;
 
 std::vector<E57Field> fields_of(std::uint32_t outputs, const Scanner& scanner) {
   using Type = E57Field::Type;
@@ -27,6 +29,8 @@ std::vector<E57Field> fields_of(std::uint32_t outputs, const Scanner& scanner) {
     fields.push_back({name, fine ? Type::double_precision : Type::single_precision, fine ? 8u : 4u});
   for (const auto& [name, count] : {std::pair{"rowIndex", scanner.rows()}, {"columnIndex", scanner.columns()}})
     fields.push_back({name, Type::integer, count > 65'536 ? 4u : 2u});
+  if (outputs & scan_returns)
+    for (const char* name : {"returnIndex", "returnCount"}) fields.push_back({name, Type::integer, 1});
   if (outputs & scan_reflectivity) fields.push_back({"intensity", Type::single_precision, 4, true});
   if (outputs & scan_colour)
     for (const char* name : {"colorRed", "colorGreen", "colorBlue"}) fields.push_back({name, Type::integer, 1});
@@ -112,6 +116,10 @@ class E57Sink final : public PointSink {
       put_index(field, static_cast<std::uint32_t>(ray / columns_), fields[field].bytes), ++field;
       put_index(field, static_cast<std::uint32_t>(ray % columns_), fields[field].bytes), ++field;
       extend_indices(static_cast<std::uint32_t>(ray / columns_), static_cast<std::uint32_t>(ray % columns_));
+      if (outputs_ & scan_returns) {
+        points_->put(field++, static_cast<std::uint8_t>(chunk.return_number - 1));
+        points_->put(field++, chunk.returns[k]);
+      }
       if (outputs_ & scan_reflectivity) points_->put(field++, chunk.reflectivity[k]);
       if (outputs_ & scan_colour)
         for (int shift = 0; shift < 24; shift += 8)

@@ -25,8 +25,10 @@ constexpr const char* kLocalSystem =
     "LOCAL_CS[\"survey frame\",LOCAL_DATUM[\"survey "
     "frame\",32767],UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
 
+constexpr std::uint8_t kNoise = 7;  // class of ghosts; all other points are never classified
+
 // What a record of format 7 has a place for.
-constexpr std::uint32_t kHeld = scan_position | scan_reflectivity | scan_colour;
+constexpr std::uint32_t kHeld = scan_position | scan_reflectivity | scan_colour | scan_ghost | scan_returns;
 
 std::string names_of(std::uint32_t outputs) {
   std::string names;
@@ -59,13 +61,16 @@ class LasSink final : public PointSink {
       }
       const double reflectivity = outputs_ & scan_reflectivity ? double{chunk.reflectivity[k]} : 0;
       append(bytes_, static_cast<std::uint16_t>(std::lround(std::clamp(reflectivity, 0.0, 1.0) * 65535)));  // intensity
-      append(bytes_, std::uint8_t{0x11});  // return 1 of 1
-      append(bytes_, std::uint8_t{0});     // flags
-      append(bytes_, std::uint8_t{0});     // class: never classified
-      append(bytes_, std::uint8_t{0});     // user data
-      append(bytes_, std::int16_t{0});     // scan angle: airborne only
-      append(bytes_, station);             // point source id
-      append(bytes_, double{0});           // GPS time
+      const auto number = static_cast<std::uint8_t>(chunk.return_number);
+      const std::uint8_t of = chunk.returns.empty() ? std::uint8_t{1} : chunk.returns[k];
+      append(bytes_, static_cast<std::uint8_t>(number | of << 4));
+      ++points_by_return_[number - 1U];
+      append(bytes_, std::uint8_t{0});                                                         // flags
+      append(bytes_, !chunk.ghost.empty() && chunk.ghost[k] != 0 ? kNoise : std::uint8_t{0});  // class
+      append(bytes_, std::uint8_t{0});                                                         // user data
+      append(bytes_, std::int16_t{0});  // scan angle: airborne only
+      append(bytes_, station);          // point source id
+      append(bytes_, double{0});        // GPS time
       for (int shift = 0; shift < 24; shift += 8) {
         const std::uint32_t channel = outputs_ & scan_colour ? (chunk.colour[k] >> shift) & 255u : 0;
         append(bytes_, static_cast<std::uint16_t>(channel * 257));
@@ -121,8 +126,8 @@ class LasSink final : public PointSink {
     }
     append(h, std::uint64_t{0});                               // waveforms
     append(h, std::uint64_t{0}), append(h, std::uint32_t{0});  // extended records
-    append(h, points_), append(h, points_);                    // in all, and of first returns
-    text("", 14 * 8);
+    append(h, points_);
+    for (const std::uint64_t points : points_by_return_) append(h, points);
     append(h, std::uint16_t{0});
     text("LASF_Projection", 16);
     append(h, kWktRecord), append(h, static_cast<std::uint16_t>(crs_.size() + 1));
@@ -138,6 +143,7 @@ class LasSink final : public PointSink {
   std::string crs_;
   std::array<std::int32_t, 3> low_{}, high_{};
   std::uint64_t points_ = 0;
+  std::array<std::uint64_t, 15> points_by_return_{};
   std::string bytes_;
 };
 

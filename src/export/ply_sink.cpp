@@ -15,6 +15,8 @@ std::vector<PlyProperty> properties(std::uint32_t outputs) {
   if (outputs & scan_range) p.push_back({"float", "range"});
   if (outputs & scan_ids) p.insert(p.end(), {{"int", "mesh"}, {"uint", "primitive"}});
   if (outputs & scan_voxel) p.push_back({"uint", "voxel"});
+  if (outputs & scan_ghost) p.push_back({"uchar", "ghost"});
+  if (outputs & scan_returns) p.insert(p.end(), {{"uchar", "return"}, {"uchar", "returns"}});
   p.push_back({"ushort", "station"});
   return p;
 }
@@ -41,6 +43,9 @@ class PlySink final : public PointSink {
       if (outputs_ & scan_range) append(bytes_, chunk.range_m[k]);
       if (outputs_ & scan_ids) append(bytes_, chunk.mesh[k]), append(bytes_, chunk.primitive[k]);
       if (outputs_ & scan_voxel) append(bytes_, chunk.voxel[k]);
+      if (outputs_ & scan_ghost) append(bytes_, chunk.ghost[k]);
+      if (outputs_ & scan_returns)
+        append(bytes_, static_cast<std::uint8_t>(chunk.return_number)), append(bytes_, chunk.returns[k]);
       append(bytes_, station);
       ++points_;
     }

@@ -56,7 +56,8 @@ void PointCloudWriter::write(const ScanChunk& chunk, std::uint16_t station) {
       has(scan_normal, chunk.normal.size());
   has(scan_reflectivity, chunk.reflectivity.size()), has(scan_ids, chunk.mesh.size()),
       has(scan_ids, chunk.primitive.size());
-  has(scan_colour, chunk.colour.size()), has(scan_voxel, chunk.voxel.size());
+  has(scan_colour, chunk.colour.size()), has(scan_voxel, chunk.voxel.size()), has(scan_ghost, chunk.ghost.size()),
+      has(scan_returns, chunk.returns.size());
   impl_->sink->write(chunk, station);
 }
 

@@ -64,7 +64,8 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
   model.divergence = static_cast<float>(scanner.beam_divergence.in_radians());
   model.glass = scanner.detection_range_m > 0 && scene.opaque_triangles().size() < scene.triangles.size();
   for (const MeshInfo& mesh : scene.meshes) {
-    model.meshes.push_back({.largest_reach_square = reach_square(scanner, mesh.diffuse)});
+    // A mirror has no echo of its own to be too weak.
+    model.meshes.push_back({.largest_reach_square = mesh.mirror ? 0 : reach_square(scanner, mesh.diffuse)});
     if (mesh.role != Role::surveyed) continue;
     model.meshes.back() = {least, static_cast<float>(mesh.detail_m * mesh.detail_m),
                            static_cast<float>(mesh.accuracy_m), model.meshes.back().largest_reach_square};

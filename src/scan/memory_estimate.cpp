@@ -26,13 +26,13 @@ constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebi
                  kVoxel = 6, kMaskWord = 8;
 constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
 
-struct Surface {
+struct SurfaceExtent {
   double cells_m2 = 0;  // an infinite plane with normal n meets |nx| + |ny| + |nz| cells per face of a cell
   double extent_m = 0;
 };
 
-Surface surface_of(const SceneData& scene) {
-  Surface surface;
+SurfaceExtent surface_of(const SceneData& scene) {
+  SurfaceExtent surface;
   glm::dvec3 low(INFINITY), high(-INFINITY);
   for (const auto& mesh : surveyed_triangles(scene))
     for (const Triangle& t : mesh) {
@@ -209,7 +209,7 @@ class Estimator {
 
  private:
   const SceneData& scene_;
-  Surface surface_;
+  SurfaceExtent surface_;
   std::size_t stations_;
   double demands_;  // bytes per voxel, for point weights
   vulkan::DeviceLoad load_;

@@ -33,13 +33,14 @@ class MeshLookup {
 };
 
 struct Sums {
-  std::uint64_t points = 0, counted = 0, surveyed = 0;
+  std::uint64_t points = 0, counted = 0, surveyed = 0, ghosts = 0;
   friend Sums operator+(const Sums& a, const Sums& b) {
-    return {a.points + b.points, a.counted + b.counted, a.surveyed + b.surveyed};
+    return {a.points + b.points, a.counted + b.counted, a.surveyed + b.surveyed, a.ghosts + b.ghosts};
   }
 };
 
-Sums sum_rays(const Tracer::RawChunk& raw, std::size_t count, const SceneData& scene) {
+Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost, std::size_t count,
+              const SceneData& scene) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, count, grain), Sums{},
       [&](const tbb::blocked_range<std::size_t>& range, Sums sums) {
@@ -47,6 +48,10 @@ Sums sum_rays(const Tracer::RawChunk& raw, std::size_t count, const SceneData& s
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
           if (raw.primitive[k] == no_primitive) continue;
           ++sums.points;
+          if (ghost[k] != 0) {
+            ++sums.ghosts;
+            continue;
+          }
           sums.counted += raw.voxel[k] != no_voxel;
           sums.surveyed += scene.meshes[mesh_of(raw.primitive[k])].role == Role::surveyed;
         }
@@ -81,15 +86,19 @@ std::uint32_t raw_outputs(const ScanOptions& options) {
   return raw;
 }
 
-void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost,
+                const std::vector<std::uint8_t>& returns, const ScanOptions& options, const SceneData& scene,
                 const Scanner& scanner, ScanSummary& summary) {
   const std::uint32_t outputs = options.outputs;
   const auto count = static_cast<std::size_t>(chunk.ray_count);
-  const Sums sums = sum_rays(raw, count, scene);
-  summary.rays += chunk.ray_count;
+  const Sums sums = sum_rays(raw, ghost, count, scene);
+  if (chunk.return_number == 1) summary.rays += chunk.ray_count;
   summary.points += sums.points;
   summary.points_on_surveyed += sums.counted;
   summary.hits_on_surveyed += sums.surveyed;
+  summary.ghosts += sums.ghosts;
+  if (outputs & scan_ghost) chunk.ghost = ghost;
+  if (outputs & scan_returns) chunk.returns = returns;
 
   if (outputs & scan_position) {
     fill(chunk.position, count, [&](std::size_t k, std::size_t end) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "scene/scene_data.hpp"
 #include "trace/tracer.hpp"
@@ -14,8 +15,10 @@ namespace vantage {
 std::uint32_t raw_outputs(const ScanOptions& options);
 
 // Turns an engine's rays into the requested outputs, deriving mesh and colour. Adds to `summary`. `scanner` is the
-// station's. `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are overwritten.
-void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
+// station's. `ghost`: per ray, 1 for a ghost; `returns`: how many the ray has. The rays and the number of the return
+// are set in `chunk` already; its arrays are overwritten.
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost,
+                const std::vector<std::uint8_t>& returns, const ScanOptions& options, const SceneData& scene,
                 const Scanner& scanner, ScanSummary& summary);
 
 }  // namespace vantage

@@ -25,6 +25,7 @@ void append_hits(ScanPoints& points, const ScanChunk& chunk, const Vec3& origin,
     take(points.primitive, chunk.primitive, k);
     take(points.colour, chunk.colour, k);
     take(points.voxel, chunk.voxel, k);
+    take(points.ghost, chunk.ghost, k);
   }
 }
 

@@ -19,8 +19,10 @@
 #include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
+#include "scan/ray_follower.hpp"
 #include "scan/scan_chunk.hpp"
 #include "scan/voxel_sample.hpp"
+#include "scan/wide_beam.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
@@ -38,8 +40,8 @@ std::uint32_t stop_at(CountTo count_to, double goal) {
 }
 
 constexpr std::uint32_t sample_groups = 20;
-constexpr std::uint32_t known_outputs =
-    scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
+constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
+                                        scan_colour | scan_voxel | scan_ghost | scan_returns;
 
 // Six digits, rounded up: as a user size, the text still gives the voxel size that it states.
 std::string rounded_up(double metres) {
@@ -121,6 +123,18 @@ class AsCaller {
   std::atomic<std::thread::id>& caller_;
 };
 
+void check_beam(const BeamOptions& beam, const Scanner& scanner) {
+  if (beam.sub_rays != 7 && beam.sub_rays != 19)
+    throw Error(Errc::invalid_argument, "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
+  if (!(beam.pulse_m > 0 && std::isfinite(beam.pulse_m)))
+    throw Error(Errc::invalid_argument,
+                "the length of a pulse is " + std::to_string(beam.pulse_m) + " m, but must be above 0");
+  if (scanner.beam_divergence.in_radians() == 0 && scanner.exit_diameter_m == 0)
+    throw Error(Errc::invalid_argument, "the beam of the scanner \"" + scanner.name +
+                                            "\" is not known: choose a scanner that states it, or give its divergence "
+                                            "and exit diameter");
+}
+
 void check_registration(const std::optional<RegistrationModel>& registration, bool overlap) {
   if (registration && !overlap)
     throw Error(Errc::invalid_argument, "registration is summed from station masks, and so needs overlap");
@@ -145,8 +159,7 @@ struct Simulator::Impl {
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner, some_echo_is_lost));
     registered = scanners;
     // Shares ownership of the scene's storage for as long as the engine needs it.
-    const auto kept = std::make_shared<const Scene>(scene);
-    const std::shared_ptr<const SceneData> shared_scene(kept, &kept->data());
+    const std::shared_ptr<const SceneData> shared_scene = share_scene();
     const TraceScene shared{.scene = shared_scene,
                             .grid = grid,
                             .scanners = traced,
@@ -171,6 +184,10 @@ struct Simulator::Impl {
   bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }
+  std::shared_ptr<const SceneData> share_scene() const {
+    const auto kept = std::make_shared<const Scene>(scene);
+    return {kept, &kept->data()};
+  }
 
   TraceStation trace_station(const Station& station, std::size_t place) const {
     // Beyond this, floats are too coarse, and the margins for rounding would exceed the scene.
@@ -303,10 +320,21 @@ struct Simulator::Impl {
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
+  std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
+  std::optional<WideBeam> wide_beam;   // for the first scan with one
   std::unique_ptr<Tracer> tracer;
   std::mutex running;
   std::atomic<std::thread::id> caller;  // holds `running`
 };
+
+Returns returns_from_string(const std::string& text) {
+  for (const auto& [name, returns] : {std::pair{"first", Returns::first},
+                                      {"strongest", Returns::strongest},
+                                      {"last", Returns::last},
+                                      {"all", Returns::all}})
+    if (text == name) return returns;
+  throw Error(Errc::invalid_argument, "'" + text + "' is none of first, strongest, last, all");
+}
 
 Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
     : impl_(std::make_unique<Impl>(scene, std::span(&scanner, 1), config, Progress{})) {}
@@ -401,8 +429,15 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
   const Scanner& scanner = scanners[from.scanner];
   const std::uint64_t columns = scanner.columns(), rays = scanner.rays();
   const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, tracer->preferred_scan_rays(from.scanner) / columns);
+  if (options.beam) {
+    check_beam(*options.beam, scanner);
+    if (!wide_beam) wide_beam.emplace(share_scene(), grid);
+  } else if (!mirrors && std::ranges::any_of(data().meshes, &MeshInfo::mirror)) {
+    mirrors.emplace(share_scene());
+  }
   Tracer::RawChunk raw;
   ScanChunk chunk;
+  std::vector<std::uint8_t> ghost, returns;
   for (std::uint64_t first = 0; first < rays; first += chunk.ray_count) {
     if (progress.stopped()) {
       summary.cancelled = true;
@@ -411,10 +446,30 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
     chunk.first_ray = first;
     chunk.ray_count = std::min(rows_at_once * columns, rays - first);
     const auto start = std::chrono::steady_clock::now();
-    tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
-    summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, options, data(), scanner, summary);
-    if (sink) sink(chunk);
+    if (options.beam) {
+      const TraceScanner& own = traced[from.scanner];
+      const auto all = wide_beam->returns(scanner, own, from, *options.beam, first, chunk.ray_count);
+      summary.trace_seconds += seconds_since(start);
+      std::uint8_t most = 1;
+      for (const WideBeam::Return& one : all) most = std::max(most, one.of);
+      for (std::uint8_t number = 1; number <= most; ++number) {
+        chunk.return_number = number;
+        wide_beam->fill(own, from, all, number, first, chunk.ray_count, raw, ghost, returns, summary);
+        fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
+        if (sink) sink(chunk);
+      }
+    } else {
+      tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
+      ghost.assign(chunk.ray_count, 0);
+      if (mirrors) mirrors->show_ghosts(traced[from.scanner], from, first, raw, ghost);
+      summary.trace_seconds += seconds_since(start);
+      returns.resize(chunk.ray_count);
+      std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
+        return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
+      });
+      fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
+      if (sink) sink(chunk);
+    }
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }
   return summary;

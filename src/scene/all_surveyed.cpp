@@ -15,7 +15,7 @@ Scene all_surveyed(const Scene& scene) {
   data->meshes = given.meshes;
   for (MeshRange& range : data->ranges) range.material = 0;
   for (MeshInfo& mesh : data->meshes) {
-    if (mesh.glass) continue;
+    if (mesh.glass || mesh.mirror) continue;
     mesh.role = Role::surveyed, mesh.weight = 1;
     mesh.detail_m = mesh.accuracy_m = 0;
   }

@@ -19,7 +19,8 @@ std::uint64_t Scene::fingerprint() const noexcept {
     hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse), hash.add(mesh.weight), hash.add(mesh.detail_m),
         hash.add(mesh.accuracy_m);
     if (mesh.door || mesh.station_area) hash.add(mesh.door), hash.add(mesh.station_area);
-    if (mesh.glass) hash.add(mesh.glass);
+    if (mesh.glass || mesh.mirror) hash.add(mesh.glass);
+    if (mesh.mirror) hash.add(mesh.mirror);
   }
   for (const Material& material : scene.materials) {
     for (const float channel : material.base_colour) hash.add(channel);

@@ -22,6 +22,7 @@ Settings settings(const SceneOptions& options) {
       .add("doors", options.doors, {"doors", false})
       .add("station_area", options.station_area, {"station-area", false})
       .add("glass", options.glass, {"glass", false})
+      .add("mirror", options.mirror, {"mirror", false})
       .add("scene_index", options.scene_index, {"scene-index", false})
       .add("default_diffuse", options.default_diffuse, {"diffuse", false})
       .add("unit", options.unit ? std::optional<std::string>(to_string(*options.unit)) : std::nullopt, {"unit", false})

@@ -38,6 +38,10 @@ void add_scene(Rows& rows) {
           "glass", "PATTERN",
           "Nodes of glass, besides those whose material is: rays pass it, people do not; opaque: none is",
           [](SiteOptions & o) -> auto& { return o.scene.glass; })
+      .texts(
+          "mirror", "PATTERN",
+          "Nodes that mirror rays, besides those whose material does: their points are ghosts; none: none does",
+          [](SiteOptions & o) -> auto& { return o.scene.mirror; })
       .repeated(
           "weight", "PATTERN=W",
           "Weight of a voxel of these nodes in coverage, 1 to 255; others have 1; may be repeated",

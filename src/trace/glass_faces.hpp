@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-// For each triangle of glass, whether it belongs to a closed surface. A beam passes two faces of such a solid; any other
-// triangle stands for a whole pane.
+// For each triangle of glass, whether it belongs to a closed surface. A beam passes two faces of such a solid; any
+// other triangle stands for a whole pane.
 std::vector<bool> faces_of_solids(const SceneData& scene);
 
 }  // namespace vantage

@@ -6,7 +6,9 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <utility>
 
+#include "scan/limit_model.hpp"
 #include "vantage/objective.hpp"
 
 namespace vantage::bench {
@@ -32,10 +34,14 @@ void RatesOptions::add(CLI::App& command) {
   command.add_option("--first", first, "Only the first stations; 0: all")->capture_default_str();
   command.add_flag("--unsorted", unsorted,
                    "Also ray_query over triangles in the file's order, where that is not the default");
+  command.add_option("--glass", glass, "Nodes of glass");
+  command.add_option("--detection", detection_m,
+                     "Also with echoes limited to this range at normal incidence on R = 0.5, in metres, and, if the "
+                     "scene has glass, weakened by it");
 }
 
 void run_rates(const RatesOptions& options) {
-  const Scene scene = Scene::load(options.site.scene);
+  const Scene scene = Scene::load(options.site.scene, {.glass = options.glass});
   Network network = options.site.stations();
   if (options.first > 0 && options.first < network.size()) network.resize(options.first);
   TracedSite site = options.site.traced(scene, network);
@@ -60,6 +66,19 @@ void run_rates(const RatesOptions& options) {
         add(info, suffix);
       }
       site.scene.whole_scans = WholeScans::faster;
+    }
+    if (options.detection_m > 0) {
+      Scanner scanner = options.site.scanner();
+      scanner.detection_range_m = options.detection_m;
+      scanner.detection_reflectivity = 0.5;
+      LimitModel limits = make_limit_model(scene.data(), scanner, {});
+      const bool glass = std::exchange(limits.glass, false);
+      site.scene.scanners[0].limits = std::make_shared<const LimitModel>(limits);
+      add(info, "-echo");
+      limits.glass = glass;
+      site.scene.scanners[0].limits = std::make_shared<const LimitModel>(limits);
+      if (glass) add(info, "-glass");
+      site.scene.scanners[0].limits = nullptr;
     }
     if (options.unsorted && info.engine == Engine::ray_query) {
       site.scene.sort_triangles = false;

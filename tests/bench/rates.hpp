@@ -9,6 +9,8 @@ struct RatesOptions {
   SiteOptions site;
   std::uint32_t first = 0;  // only so many stations; 0: all
   bool unsorted = false;    // also the driver's structure over triangles in file order
+  std::vector<std::string> glass;
+  double detection_m = 0;  // on R = 0.5; 0: every echo is detected
 
   void add(CLI::App& command);
 };

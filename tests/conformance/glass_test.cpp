@@ -80,8 +80,9 @@ TEST_P(GlassConformance, ChangesNoPointAndNoCount) {
   }
 }
 
-// A wall at x = 5 behind a pane at x = 3, both square on: of a ray at α the echo comes from 5 / cos α, is weaker by cos α
-// and by the pane's T². Each ray is decided by these closed forms, and the pane returns those within 1° of its normal.
+// A wall at x = 5 behind a pane at x = 3, both square on: of a ray at α the echo comes from 5 / cos α, is weaker by cos
+// α and by the pane's T². Each ray is decided by these closed forms, and the pane returns those within 1° of its
+// normal.
 TEST_P(GlassConformance, EchoesBehindAPaneFollowFresnel) {
   QuadScene quads;
   quads.quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18});
@@ -95,8 +96,7 @@ TEST_P(GlassConformance, EchoesBehindAPaneFollowFresnel) {
   const TraceScene traced{
       .scene = scene,
       .grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 0.25)),
-      .scanners = {{std::make_shared<const RayPattern>(make_pattern(scanner)),
-                    std::make_shared<const NoiseModel>(),
+      .scanners = {{std::make_shared<const RayPattern>(make_pattern(scanner)), std::make_shared<const NoiseModel>(),
                     std::make_shared<const LimitModel>(make_limit_model(*scene, scanner, {}))}}};
   const auto tracer = GetParam().make(traced);
   tracer->set_goal_density(goal_density);

@@ -157,8 +157,8 @@ class RayTest {
       // Both triangles at an edge are one face.
       if (std::ranges::any_of(faces, [&](double other) { return std::abs(other - c.t) < 1e-4; })) continue;
       faces.push_back(c.t);
-      const double angle = std::acos(std::min(
-          std::abs(dot(unit(cross(corner[1] - corner[0], corner[2] - corner[0])), d)), 1.0));
+      const double angle =
+          std::acos(std::min(std::abs(dot(unit(cross(corner[1] - corner[0], corner[2] - corner[0])), d)), 1.0));
       hit.limit_distance = std::min(hit.limit_distance, std::abs(angle - largest_return) / largest_return);
       if (angle <= largest_return) share = 0;
       const double inner = std::asin(std::sin(angle) / index);
@@ -188,8 +188,8 @@ class RayTest {
     if (limits.largest_sigma > 0)
       hit.dropped.noise = hold(model_sigma(*model.noise, hit.t, hit.reflectivity), limits.largest_sigma);
     if (limits.largest_reach_square > 0)
-      hit.dropped.echo =
-          hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine * (model.glass ? passed(hit) : 1)));
+      hit.dropped.echo = hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine *
+                                               (model.glass ? passed(hit) : 1)));
     hit.dropped.points =
         hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise + hit.dropped.echo > 0 ? 1 : 0;
   }

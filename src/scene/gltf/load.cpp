@@ -50,7 +50,7 @@ struct Job {
   std::uint32_t weight = 1;
   double detail_mm = 0, accuracy_mm = 0;  // 0: any
   const MaterialInfo* material = nullptr;
-  bool glass = false;
+  bool glass = false, mirror = false;
 };
 
 // Whether a member of an object is this text. Comparing JSON with text would allocate where nothing may be thrown.
@@ -116,6 +116,7 @@ class Loader {
     settle_axes();
     find_doors();
     note_glass();
+    note_mirrors();
     raw_.materials = std::move(materials_.materials);
     raw_.images = std::move(materials_.images);
     cut_masks(raw_, materials_.cutoffs, budget_);
@@ -199,15 +200,18 @@ class Loader {
         const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
         job.diffuse = first != std::end(given) ? **first : options_.default_diffuse;
         job.glass = is_glass(mesh, mesh_marks, material);
-        some_surveyed = some_surveyed || (job.role == Role::surveyed && !job.glass);
+        job.mirror = !job.glass && is_mirror(mesh, mesh_marks, material);
+        some_surveyed = some_surveyed || (job.role == Role::surveyed && !job.glass && !job.mirror);
         jobs.push_back(job);
       }
     }
     leave_out_doors(jobs);
     for (Job& job : jobs) {
       if (!job.role) job.role = some_surveyed ? Role::blocking : Role::surveyed;
-      job.glass = job.glass && job.role != Role::ignore && job.role != Role::search;
-      if (job.glass) job.role = Role::blocking;
+      const bool present = job.role != Role::ignore && job.role != Role::search;
+      job.glass = job.glass && present;
+      job.mirror = job.mirror && present;
+      if (job.glass || job.mirror) job.role = Role::blocking;
     }
     std::ranges::stable_partition(jobs, [](const Job& job) { return !job.glass; });
     return jobs;
@@ -219,6 +223,14 @@ class Loader {
     for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
       if (marks->glass) return *marks->glass;
     return material.glass;
+  }
+
+  bool is_mirror(const PlacedMesh& mesh, const Marks& mesh_marks, const MaterialInfo& material) const {
+    if (std::ranges::count(options_.mirror, kNoMirror) > 0) return false;
+    if (mesh.mirror || mesh.own_role) return mesh.mirror;
+    for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
+      if (marks->mirror) return *marks->mirror;
+    return material.mirror;
   }
 
   // Allocates room for all meshes, after checking that it is available.
@@ -279,12 +291,15 @@ class Loader {
                          some_of(doors_) + "; the word closed for the setting doors keeps them");
   }
 
-  // REQUIRES: lengths in metres.
-  void note_glass() {
+  // Area and names of meshes, as text; empty: there are none. REQUIRES: lengths in metres.
+  struct Extent {
+    std::string metres, names;
+  };
+  std::optional<Extent> extent_of(bool MeshInfo::*is) const {
     double area = 0;
     std::vector<std::string> names;
     for (std::size_t m = 0; m < raw_.meshes.size(); ++m) {
-      if (!raw_.meshes[m].glass) continue;
+      if (!(raw_.meshes[m].*is)) continue;
       const MeshRange& range = raw_.ranges[m];
       for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {
         const auto corner = [&](std::size_t c) { return raw_.positions[raw_.triangles[t][c]]; };
@@ -292,11 +307,22 @@ class Loader {
       }
       if (std::ranges::find(names, raw_.meshes[m].name) == names.end()) names.push_back(raw_.meshes[m].name);
     }
-    if (names.empty()) return;
+    if (names.empty()) return std::nullopt;
     char metres[32];
     std::snprintf(metres, sizeof metres, "%.3g", area);
-    raw_.notes.push_back("rays pass " + std::string(metres) + " m² of glass, each face counted, which stops people: " +
-                         some_of(names) + "; the word opaque for the setting glass stops rays too");
+    return Extent{metres, some_of(names)};
+  }
+
+  void note_glass() {
+    if (const auto glass = extent_of(&MeshInfo::glass))
+      raw_.notes.push_back("rays pass " + glass->metres + " m² of glass, each face counted, which stops people: " +
+                           glass->names + "; the word opaque for the setting glass stops rays too");
+  }
+
+  void note_mirrors() {
+    if (const auto mirrors = extent_of(&MeshInfo::mirror))
+      raw_.notes.push_back(mirrors->metres + " m² are mirrors, of which scans show ghosts and no points: " +
+                           mirrors->names + "; the word none for the setting mirror makes them matt");
   }
 
   static std::string some_of(const std::vector<std::string>& names) {
@@ -333,6 +359,7 @@ class Loader {
                            .door = job.placed->door,
                            .station_area = job.placed->station_area,
                            .glass = job.glass,
+                           .mirror = job.mirror,
                            .detail_m = job.detail_mm * 1e-3,
                            .accuracy_m = job.accuracy_mm * 1e-3});
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)

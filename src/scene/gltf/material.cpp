@@ -55,6 +55,10 @@ const MaterialInfo& MaterialTable::get(int index) {
                             std::to_string(count));
     info.marks = read_marks(file_, "materials", index, "material " + std::to_string(index));
     const json& pbr = file_.find("materials", index, {"pbrMetallicRoughness"});
+    // Polished metal. Without a factor a material is rough; with a texture it is so here and there.
+    constexpr double kMetallic = 0.9, kSmooth = 0.05;
+    info.mirror = pbr.is_object() && !pbr.contains("metallicRoughnessTexture") &&
+                  number_in(pbr, "metallicFactor", 1) >= kMetallic && number_in(pbr, "roughnessFactor", 1) <= kSmooth;
     const auto factor = numbers<4>(pbr, "baseColorFactor", {-1, 1, 1, 1});
     if (factor[0] >= 0)
       for (std::size_t c = 0; c < 4; ++c) material.base_colour[c] = static_cast<float>(std::clamp(factor[c], 0.0, 1.0));

@@ -19,6 +19,7 @@ struct MaterialInfo {
   std::uint32_t index = 0;                       // index into the table's materials
   Marks marks;                                   // of its extras
   bool glass = false;                            // light passes the whole surface
+  bool mirror = false;                           // polished metal
   std::optional<double> luminance;               // of the base colour factor, if the file gives one and no texture
   int texcoord_set = -1;                         // of the base colour texture; -1 without one
   double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)

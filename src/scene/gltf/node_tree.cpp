@@ -278,6 +278,7 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   };
   flag("door", marks.door);
   flag("glass", marks.glass);
+  flag("mirror", marks.mirror);
   return marks;
 }
 
@@ -292,7 +293,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     std::optional<std::uint32_t> pattern_weight;
     std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
     Marks marks;
-    bool door = false, station_area = false, glass = false;
+    bool door = false, station_area = false, glass = false, mirror = false;
     std::string name = {};  // of the nearest node above that has one
   };
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
@@ -305,8 +306,10 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   std::erase(door_names, kClosedDoors);
   std::vector<std::string> glass_names = options.glass;
   std::erase(glass_names, kOpaqueGlass);
+  std::vector<std::string> mirror_names = options.mirror;
+  std::erase(mirror_names, kNoMirror);
   Patterns<bool> doors = name_patterns(door_names), station_areas = name_patterns(options.station_area),
-                 glasses = name_patterns(glass_names);
+                 glasses = name_patterns(glass_names), mirrors = name_patterns(mirror_names);
   Patterns<double> details = length_patterns(options.details_mm, "detail"),
                    accuracies = length_patterns(options.accuracies_mm, "accuracy");
   std::vector<PlacedMesh> placed;
@@ -338,6 +341,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     visit.door = doors.find(name).value_or(visit.door);
     visit.station_area = station_areas.find(name).value_or(visit.station_area);
     visit.glass = glasses.find(name).value_or(visit.glass);
+    visit.mirror = mirrors.find(name).value_or(visit.mirror);
     if (const auto detail = details.find(name)) visit.pattern_detail_mm = detail;
     if (const auto accuracy = accuracies.find(name)) visit.pattern_accuracy_mm = accuracy;
     const Marks own = read_marks(file, "nodes", visit.node, where);
@@ -348,6 +352,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (own.accuracy_mm) visit.marks.accuracy_mm = own.accuracy_mm;
     if (own.door) visit.marks.door = own.door;
     if (own.glass) visit.marks.glass = own.glass;
+    if (own.mirror) visit.marks.mirror = own.mirror;
     const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
@@ -367,6 +372,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
                       visit.station_area,
                       visit.marks,
                       visit.glass,
+                      visit.mirror,
                       own_role.has_value()};
       for (glm::dmat4& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
@@ -377,13 +383,14 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
       stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
                        visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door, visit.station_area,
-                       visit.glass, visit.name});
+                       visit.glass, visit.mirror, visit.name});
   }
   roles.check(names);
   weights.check(names);
   doors.check(names);
   station_areas.check(names);
   glasses.check(names);
+  mirrors.check(names);
   details.check(names);
   accuracies.check(names);
   if (hidden > 0)

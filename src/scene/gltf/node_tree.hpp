@@ -20,6 +20,9 @@ inline constexpr std::string_view kClosedDoors = "closed";
 // Entry of SceneOptions::glass that makes all glass opaque.
 inline constexpr std::string_view kOpaqueGlass = "opaque";
 
+// Entry of SceneOptions::mirror that makes all surfaces matt.
+inline constexpr std::string_view kNoMirror = "none";
+
 // Marks in the extras of an element.
 struct Marks {
   std::optional<Role> role;
@@ -28,6 +31,7 @@ struct Marks {
   std::optional<double> detail_mm, accuracy_mm;
   std::optional<bool> door;   // a leaf, open unless SceneOptions::doors says otherwise
   std::optional<bool> glass;  // rays pass it, unless SceneOptions::glass says otherwise
+  std::optional<bool> mirror;
 };
 // Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, or a
 // detail or accuracy that is not above 0.
@@ -46,7 +50,7 @@ struct PlacedMesh {
   std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
   bool door = false, station_area = false;  // whether a pattern matches it or a node above it
   Marks marks = {};                         // from the nearest node that has them
-  bool glass = false;                       // whether a pattern of glass matches it or a node above it
+  bool glass = false, mirror = false;       // likewise
   bool own_role = false;                    // whether a role's pattern matches this node itself
 };
 

@@ -29,9 +29,8 @@ namespace {
     voxels.clear();
     for (std::uint32_t k = 0; k < hits.size; ++k) {
       const Float3 point = hits.point(origin, k);
-      const DroppedPoints dropped =
-          station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k], hits.primitive[k],
-                               behind_glass ? passed[k].share : 1);
+      const DroppedPoints dropped = station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k],
+                                                         hits.primitive[k], behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
         voxels.add(point);
       } else if (station_rays.grid().index_of(point) != no_voxel) {

@@ -26,7 +26,6 @@ GlassPanes::GlassPanes(std::shared_ptr<const SceneData> scene, std::shared_ptr<c
 
 bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {
   for (std::uint32_t k = 0; k < rays.size; ++k) rays.end[k] = rays.end[k] * (1 - face_gap_share) - face_gap_m;
-  rays.start = 0;
   const std::vector<RayCaster::Crossing> faces = caster_.crossings(rays);
   if (faces.empty()) return false;
   std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::no_hit, 0});

@@ -30,8 +30,8 @@ class GlassPanes {
  public:
   GlassPanes(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
-  // Follows each ray from the head to its `end`. Overwrites the ends. Returns false, and fills nothing, if no ray meets
-  // glass. REQUIRES: as many elements as rays.
+  // Follows each ray from its start to its `end`. Overwrites the ends. Returns false, and fills nothing, if no ray
+  // meets glass. REQUIRES: as many elements as rays.
   bool follow(RayBundle& rays, std::span<Passed> passed) const;
   // The same for hits.
   bool follow(const Float3& origin, const Hits& hits, std::span<Passed> passed) const;

@@ -56,7 +56,8 @@ class RayCaster {
     float t;
     std::uint32_t triangle;
   };
-  // All of them, in order of ray, t and triangle; leaves t and primitive of the bundle unspecified. REQUIRES: Of::glass.
+  // All of them, in order of ray, t and triangle; leaves t and primitive of the bundle unspecified. REQUIRES:
+  // Of::glass.
   std::vector<Crossing> crossings(RayBundle& rays) const;
 
   // A direction's component as Embree is given it. Embree replaces one below 1e-18 by +1e-18 but keeps its sign; such a

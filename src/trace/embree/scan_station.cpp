@@ -19,6 +19,7 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
   bool behind_glass = false;
   if (station_rays.glass()) {
     RayBundle beams = rays;
+    beams.start = 0;
     for (std::uint32_t slot = 0; slot < rays.size; ++slot)
       if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);

@@ -31,8 +31,8 @@ enum class Kernel {
 
 class Kernels {
  public:
-  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. All other arguments must
-  // outlive it.
+  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. All other arguments
+  // must outlive it.
   Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass)
       : device_(device), traversal_(traversal), set_(set), glass_(glass) {}
 

@@ -84,6 +84,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"doors", [](SceneOptions& o) { o.doors = {"door*"}; }, false},
     {"station_area", [](SceneOptions& o) { o.station_area = {"floor"}; }, false},
     {"glass", [](SceneOptions& o) { o.glass = {"nothing"}; }, false},
+    {"mirror", [](SceneOptions& o) { o.mirror = {"nothing"}; }, false},
     {"details_mm",
      [](SceneOptions& o) {
        o.details_mm = {{"wall*", 5}};
@@ -102,7 +103,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"wall_layers", [](SceneOptions& o) { o.wall_layers = {"A-WALL"}; }, false},
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SceneOptions>() == 18);
+static_assert(member_count<SceneOptions>() == 19);
 
 struct Alone final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }

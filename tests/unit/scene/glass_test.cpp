@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes are of glass, and that these come last.
+// Which meshes are of glass, and that these come last; and which are mirrors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,6 +122,46 @@ TEST(Glass, AloneLeavesNothingToSurvey) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("nothing to survey"), std::string::npos) << error.what();
   }
+}
+
+json metal(json factors) { return {{"pbrMetallicRoughness", std::move(factors)}}; }
+
+bool is_mirror(const GlbBuilder& builder, SceneOptions options = {}) {
+  options.unit = Unit::metre, options.up = UpAxis::y;
+  return mesh(load(builder, options), "pane").mirror;
+}
+
+TEST(Mirror, IsPolishedMetal) {
+  EXPECT_TRUE(is_mirror(pane_and_wall(metal({{"metallicFactor", 1}, {"roughnessFactor", 0}}))));
+  EXPECT_TRUE(is_mirror(pane_and_wall(metal({{"roughnessFactor", 0.05}})))) << "metallic is the default";
+  EXPECT_FALSE(is_mirror(pane_and_wall(metal({{"metallicFactor", 1}})))) << "rough is the default";
+  EXPECT_FALSE(is_mirror(pane_and_wall(metal({{"metallicFactor", 0}, {"roughnessFactor", 0}}))));
+  EXPECT_FALSE(is_mirror(pane_and_wall(metal({{"metallicFactor", 1}, {"roughnessFactor", 0.2}}))));
+  EXPECT_FALSE(is_mirror(pane_and_wall({{"name", "plain"}})));
+}
+
+TEST(Mirror, ExtrasAndPatternsComeBeforeTheMaterial) {
+  GlbBuilder polished = pane_and_wall(metal({{"roughnessFactor", 0}})), plain = pane_and_wall({{"name", "plain"}});
+  EXPECT_FALSE(is_mirror(polished, {.mirror = {"none"}}));
+  EXPECT_FALSE(is_mirror(polished, {.surveyed = {"pane"}}));
+  EXPECT_TRUE(is_mirror(plain, {.mirror = {"pan*"}}));
+  EXPECT_FALSE(is_mirror(plain, {.glass = {"pane"}, .mirror = {"pane"}})) << "glass comes first";
+  plain.json["nodes"][0]["extras"] = {{"vantage", {{"mirror", true}}}};
+  EXPECT_TRUE(is_mirror(plain));
+  EXPECT_THROW(is_mirror(plain, {.mirror = {"nothing of the kind"}}), Error);
+  plain.json["nodes"][0]["extras"] = {{"vantage", {{"mirror", "yes"}}}};
+  EXPECT_THROW(is_mirror(plain), Error);
+}
+
+TEST(Mirror, BlocksAndIsTold) {
+  const Scene scene = load(pane_and_wall(metal({{"roughnessFactor", 0}})), {.unit = Unit::metre, .up = UpAxis::y});
+  EXPECT_EQ(mesh(scene, "pane").role, Role::blocking);
+  EXPECT_EQ(mesh(scene, "wall").role, Role::surveyed);
+  EXPECT_TRUE(std::ranges::any_of(scene.notes(), [](const std::string& note) {
+    return note ==
+           "0.5 m² are mirrors, of which scans show ghosts and no points: \"pane\"; the word none for the "
+           "setting mirror makes them matt";
+  }));
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/ray_follower.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "trace/embree/hits.hpp"
+#include "trace/embree/point_judge.hpp"
+#include "trace/embree/range_noise.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kMostReflections = 16;
+// A reflected ray starts this far from its mirror, in metres: more than the rounding of its origin, less than anything
+// stands off a mirror.
+constexpr float kOffMirror_m = 1e-4f;
+
+Vec3 reflected(const Vec3& d, const Vec3& normal) { return d - normal * (2 * dot(d, normal)); }
+
+}  // namespace
+
+Float3 direction_of(const RayPattern& pattern, const TraceStation& station, std::uint64_t ray) {
+  const std::uint64_t row = ray / pattern.columns(), column = ray % pattern.columns();
+  const Float3 d{pattern.sin_zenith[row] * pattern.cos_azimuth[column],
+                 pattern.sin_zenith[row] * pattern.sin_azimuth[column], pattern.cos_zenith[row]};
+  return station.turn ? (*station.turn)(d) : d;
+}
+
+RayFollower::RayFollower(std::shared_ptr<const SceneData> scene)
+    : scene_(std::move(scene)),
+      planes_(std::make_shared<Planes>(scene_)),
+      caster_(scene_, planes_),
+      surface_(scene_, planes_) {}
+
+RayFollower::Seen RayFollower::seen(const Float3& origin, const Float3& direction, float t,
+                                    std::uint32_t triangle) const {
+  const Facet facet = surface_.facet(triangle);
+  const auto weights = facet.weights(origin, direction, t);
+  const Vec3 normal = facet.normal(direction, weights);
+  return {triangle,
+          t,
+          facet.reflectivity(direction, normal),
+          -dot(normal, widen(direction)),
+          narrow(normal),
+          {static_cast<float>(weights[0]), static_cast<float>(weights[1])}};
+}
+
+RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end) const {
+  std::array<Vec3, kMostReflections> normals;
+  RayBundle ray;
+  ray.size = 1;
+  ray.origin = origin;
+  ray.start = start;
+  Vec3 d = widen(direction);
+  float way = 0;  // to the last mirror
+  for (std::size_t reflections = 0; reflections < kMostReflections && way < end; ++reflections) {
+    const Float3 narrowed = narrow(d);
+    ray.x[0] = narrowed.x;
+    ray.y[0] = narrowed.y;
+    ray.z[0] = narrowed.z;
+    ray.end[0] = end - way;
+    caster_.cast(ray);
+    const std::uint32_t triangle = ray.primitive[0];
+    if (triangle == RayBundle::no_hit) break;
+    if (!is_mirror(triangle)) {
+      Seen last = seen(ray.origin, narrowed, ray.t[0], triangle);
+      last.t += way;
+      Vec3 normal = widen(last.normal);
+      for (std::size_t k = reflections; k-- > 0;) normal = reflected(normal, normals[k]);
+      last.normal = narrow(normal);
+      return last;
+    }
+    way += ray.t[0];
+    ray.origin = narrow(widen(ray.origin) + d * static_cast<double>(ray.t[0]));
+    normals[reflections] = planes_->normal(triangle);
+    d = reflected(d, normals[reflections]);
+    ray.start = kOffMirror_m;
+  }
+  return {RayBundle::no_hit, 0, 0, 0, {}, {}};
+}
+
+double RayFollower::distance_from_plane(std::uint32_t triangle, const Vec3& point) const {
+  return std::abs(dot(planes_->normal(triangle), point - widen(scene_->positions[scene_->triangles[triangle][0]])));
+}
+
+void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& station, std::uint64_t first_ray,
+                              Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const {
+  const RangeNoise noise(scanner.noise);
+  const bool limited = scanner.limits && scanner.limits->enabled();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ghost.size(), 4096), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+      if (raw.primitive[k] == RayBundle::no_hit || !is_mirror(raw.primitive[k])) continue;
+      const std::uint64_t ray = first_ray + k;
+      const Float3 d = direction_of(*scanner.pattern, station, ray);
+      const Seen found = follow(station.origin, d, scanner.pattern->min_range, scanner.pattern->max_range);
+      const float reach = limited && found.triangle != RayBundle::no_hit
+                              ? scanner.limits->meshes[mesh(found.triangle)].largest_reach_square
+                              : 0;
+      const bool point = found.triangle != RayBundle::no_hit &&
+                         (reach == 0 || PointJudge::detected(static_cast<double>(reach), found.cosine, found.t));
+      float t = std::numeric_limits<float>::infinity();
+      if (point) t = noise.enabled() ? noise.displaced(found.t, found.reflectivity, ray, station.place) : found.t;
+      raw.primitive[k] = point ? found.triangle : RayBundle::no_hit;
+      ghost[k] = point ? 1 : 0;
+      if (!raw.range.empty()) raw.range[k] = t;
+      if (!raw.position.empty() && point) raw.position[k] = point_at(station.origin, d, t);
+      if (!raw.normal.empty()) raw.normal[k] = point ? found.normal : Float3{};
+      if (!raw.reflectivity.empty()) raw.reflectivity[k] = point ? found.reflectivity : 0;
+      if (!raw.barycentric.empty()) raw.barycentric[k] = point ? found.weights : Float2{};
+      if (!raw.voxel.empty()) raw.voxel[k] = no_voxel;
+    }
+  });
+}
+
+}  // namespace vantage

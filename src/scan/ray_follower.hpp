@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays of scans that are followed on the processor, for all engines alike: off mirrors, and those of a wide beam.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "scene/scene_data.hpp"
+#include "trace/embree/ray_caster.hpp"
+#include "trace/embree/surface.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+// Direction of a ray in the local frame, to the bit as engines have it.
+Float3 direction_of(const RayPattern& pattern, const TraceStation& station, std::uint64_t ray);
+
+// Safe to use from any thread.
+class RayFollower {
+ public:
+  // Shares ownership of `scene`.
+  explicit RayFollower(std::shared_ptr<const SceneData> scene);
+
+  // What a ray meets, with its distance along the whole way.
+  struct Seen {
+    std::uint32_t triangle;  // RayBundle::no_hit: nothing, or mirrors without end
+    float t, reflectivity;
+    double cosine;  // of incidence
+    Float3 normal;  // as it looks in the mirrors
+    Float2 weights;
+  };
+  // A hit as it looks.
+  Seen seen(const Float3& origin, const Float3& direction, float t, std::uint32_t triangle) const;
+  // What a ray from start to end meets that is no mirror. Mirrors send it on.
+  Seen follow(const Float3& origin, const Float3& direction, float start, float end) const;
+
+  // Puts the points of rays that met a mirror where the scanner does: along the ray, as far as the way was long. Takes
+  // out those whose echo is too weak, and those of rays that meet nothing. Sets `ghost` to 1 for the others. REQUIRES:
+  // raw.primitive is filled.
+  void show_ghosts(const TraceScanner& scanner, const TraceStation& station, std::uint64_t first_ray,
+                   Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const;
+
+  std::uint32_t mesh(std::uint32_t triangle) const { return surface_.mesh(triangle); }
+  bool is_mirror(std::uint32_t triangle) const { return scene_->meshes[mesh(triangle)].mirror; }
+  double distance_from_plane(std::uint32_t triangle, const Vec3& point) const;
+  const RayCaster& caster() const { return caster_; }
+  const std::shared_ptr<const Planes>& planes() const { return planes_; }
+
+ private:
+  std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const Planes> planes_;
+  RayCaster caster_;
+  Surface surface_;
+};
+
+}  // namespace vantage
