@@ -89,7 +89,8 @@ TEST(LoadErrors, MissingFilesAndFolders) {
   const TemporaryFolder folder;
   EXPECT_EQ(failure(folder / "absent.glb").code, Errc::io);
   EXPECT_NE(failure(folder / "absent.glb").text.find("absent.glb"), std::string::npos);
-  EXPECT_EQ(failure(folder.path()).code, Errc::io);
+  EXPECT_EQ(failure(folder.path()).code, Errc::malformed_file);
+  EXPECT_NE(failure(folder.path()).text.find("a folder is a site if it holds scans"), std::string::npos);
 }
 
 TEST(LoadErrors, BuffersInEveryContainer) {
