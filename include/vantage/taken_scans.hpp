@@ -190,8 +190,8 @@ struct Day {
   NextConfig config = {};
   NextAnswer answer = {};
 
-  /// Of the scans, by the planned station that they are of, else by the name in their file, with ", taken" if a planned
-  /// station has it; then of the next stations.
+  /// A scan is named by the planned station that it is of, else by the name in its file, with ", taken" if a planned
+  /// station has it. The names of the next stations follow.
   std::vector<std::string> names() const;
   /// The scans as existing stations, then the next ones.
   std::vector<PlacedStation> stations() const;

@@ -22,7 +22,7 @@ float passed_of_pane(float square) {
   return passed;
 }
 
-// What becomes of a beam on its way to a hit: the share of its strength that passes there and back, or the pane that
+// A beam on its way to a hit: the share of its strength that passes there and back, or the pane that
 // returns it.
 struct Passed {
   float share;

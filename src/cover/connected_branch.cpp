@@ -135,13 +135,13 @@ std::pair<BendersMaster::Pocket, double> NodeCuts::between(std::size_t root, std
   entered_.assign(n, 0), left_.assign(n, 0);
   while (augment(root, to, capacity)) {
   }
-  // What borders on reached candidates and is not passed.
+  // The separator: candidates that border on reached ones and are not passed.
   std::vector<char> in_set(n, 0);
   for (std::size_t k = 0; k < n; ++k)
     if (left_[k])
       for (const std::uint32_t other : links_[k])
         if (!left_[other]) in_set[other] = 1;
-  // Without those that `to` does not reach around the others.
+  // Those that `to` does not reach around the others are left out.
   std::vector<char> seen(n, 0);
   std::vector<std::uint32_t> open{static_cast<std::uint32_t>(to)};
   seen[to] = 1;
@@ -284,7 +284,7 @@ void Branching::drop_idle() {
   lp_.deleteRows(static_cast<int>(drop.size()), drop.data());
 }
 
-// Without existing candidates a root reaches N / 2 links far.
+// A root reaches N / 2 links far if there are no existing candidates.
 void Branching::bound_columns(const Part& part) {
   std::vector<int> drop;
   std::vector<Row> kept;

@@ -480,7 +480,7 @@ bool EditSession::mend(const Progress& progress) {
     std::vector<Move> moves;
     for (std::size_t m = 0; m < n && !progress.stopped(); ++m) {
       if (stations_[m].locked) continue;
-      // Without its links; it is one of the components.
+      // The station counts without its links, and so is a component of its own.
       const Components part = components(
           n, [&](std::size_t i, std::size_t j) { return i != m && j != m && graph.linked(i, j, options_.link); });
       for (std::size_t p = 0; p < places_.size(); ++p) {

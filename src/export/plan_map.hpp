@@ -79,7 +79,7 @@ void draw_elsewhere(Canvas& canvas, Point at, const std::string& text);
 inline constexpr double kTargetRadius = 5;
 void draw_target(Canvas& canvas, Point at, bool control, double radius = kTargetRadius);
 bool stands_on(const Target& target, const PlanLevel& level);
-// Whether a person on the floor of the level is in the room's height.
+// True if a person on the floor of the level is in the room's height.
 bool lies_on(const Room& room, const PlanLevel& level);
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors);
 

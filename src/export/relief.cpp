@@ -24,7 +24,7 @@ class Painter {
   Painter(HeightBuffer& target, double z_cut, std::span<const float> cuts, const RowBand& band)
       : target_(target), z_cut_(z_cut), cuts_(cuts), band_(band) {}
 
-  // Whether anything of a triangle, or of the widest line along it, may lie in the band.
+  // True if anything of a triangle, or of the widest line along it, may lie in the band.
   bool reaches(const std::array<MapPoint, 3>& c) const {
     const auto [low, high] = std::minmax({c[0].y, c[1].y, c[2].y});
     return high + kWidest >= static_cast<double>(band_.first) && low - kWidest <= static_cast<double>(band_.end);

@@ -66,9 +66,9 @@ class CandidateTable {
   const StationGraph& graph() const { return graph_; }
 
  private:
-  TraceColumns surveyed_, surroundings_;
   void lower_overlaps(std::size_t first);  // of pairs with candidate `first` or a later one
 
+  TraceColumns surveyed_, surroundings_;
   StationSpacing spacing_;
   double unsampled_, errors_ = 0;
   StationGraph sampled_;                                 // as the sample shows it; empty while errors_ is 0

@@ -50,7 +50,7 @@ class Judge {
             1 / (simulator_.scanner().azimuth_step.in_radians() * simulator_.scanner().zenith_step.in_radians())) {
     const auto kept = std::make_shared<const Scene>(simulator_.scene());
     const std::shared_ptr<const SceneData> scene(kept, &kept->data());
-    if (simulator_.scanner().detection_range_m > 0 && scene->opaque_triangles().size() < scene->triangles.size())
+    if (simulator_.scanner().detection_range_m > 0 && scene->has_glass())
       glass_ = std::make_unique<const GlassPanes>(scene, std::make_shared<Planes>(scene));
   }
 

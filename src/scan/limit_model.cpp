@@ -62,7 +62,7 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
   const float least = degrees < 90 - 1e-9 ? static_cast<float>(cosine * cosine) : 0.0f;
   model.exit_diameter = static_cast<float>(scanner.exit_diameter_m);
   model.divergence = static_cast<float>(scanner.beam_divergence.in_radians());
-  model.glass = scanner.detection_range_m > 0 && scene.opaque_triangles().size() < scene.triangles.size();
+  model.glass = scanner.detection_range_m > 0 && scene.has_glass();
   for (const MeshInfo& mesh : scene.meshes) {
     // A mirror has no echo of its own to be too weak.
     model.meshes.push_back({.largest_reach_square = mesh.mirror ? 0 : reach_square(scanner, mesh.diffuse)});

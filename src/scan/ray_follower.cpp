@@ -53,23 +53,17 @@ RayFollower::Seen RayFollower::seen(const Float3& origin, const Float3& directio
 
 RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end) const {
   std::array<Vec3, kMostReflections> normals;
-  RayBundle ray;
-  ray.size = 1;
-  ray.origin = origin;
-  ray.start = start;
+  Float3 from = origin;
   Vec3 d = widen(direction);
   float way = 0;  // to the last mirror
   for (std::size_t reflections = 0; reflections < kMostReflections && way < end; ++reflections) {
     const Float3 narrowed = narrow(d);
-    ray.x[0] = narrowed.x;
-    ray.y[0] = narrowed.y;
-    ray.z[0] = narrowed.z;
-    ray.end[0] = end - way;
+    RayBundle ray = one_ray(from, narrowed, reflections == 0 ? start : kOffMirror_m, end - way);
     caster_.cast(ray);
     const std::uint32_t triangle = ray.primitive[0];
     if (triangle == RayBundle::no_hit) break;
     if (!is_mirror(triangle)) {
-      Seen last = seen(ray.origin, narrowed, ray.t[0], triangle);
+      Seen last = seen(from, narrowed, ray.t[0], triangle);
       last.t += way;
       Vec3 normal = widen(last.normal);
       for (std::size_t k = reflections; k-- > 0;) normal = reflected(normal, normals[k]);
@@ -77,10 +71,9 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
       return last;
     }
     way += ray.t[0];
-    ray.origin = narrow(widen(ray.origin) + d * static_cast<double>(ray.t[0]));
+    from = narrow(widen(from) + d * static_cast<double>(ray.t[0]));
     normals[reflections] = planes_->normal(triangle);
     d = reflected(d, normals[reflections]);
-    ray.start = kOffMirror_m;
   }
   return {RayBundle::no_hit, 0, 0, 0, {}, {}};
 }

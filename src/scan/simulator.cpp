@@ -464,9 +464,10 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
       if (mirrors) mirrors->show_ghosts(traced[from.scanner], from, first, raw, ghost);
       summary.trace_seconds += seconds_since(start);
       returns.resize(chunk.ray_count);
-      std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
-        return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
-      });
+      if (options.outputs & scan_returns)
+        std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
+          return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
+        });
       fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
       if (sink) sink(chunk);
     }

@@ -67,8 +67,7 @@ struct WideBeam::Echo {
 
 WideBeam::WideBeam(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid)
     : scene_(std::move(scene)), grid_(std::move(grid)), rays_(scene_) {
-  if (scene_->opaque_triangles().size() < scene_->triangles.size())
-    glass_ = std::make_unique<const GlassPanes>(scene_, rays_.planes());
+  if (scene_->has_glass()) glass_ = std::make_unique<const GlassPanes>(scene_, rays_.planes());
 }
 
 std::vector<WideBeam::Return> WideBeam::returns_of(const Scanner& scanner, const TraceStation& station,

@@ -21,7 +21,6 @@ namespace {
 // Triangles may lie on each other by the thousand; columns are fewer then. 8 bytes each.
 constexpr double kMostCrossings = 4'000'000;
 constexpr double kMostColumns = 160'000, kFewestColumns = 2000, kColumnsPerTriangle = 1000;
-constexpr double kLeastUp = 0.766;         // cosine of 40°, the steepest slope that people walk on
 constexpr double kBeside = 0.38196601125;  // where the first column stands in its cell: models are drawn on round lines
 
 // Heights in 2^-29 of the whole, and three bits below them.
@@ -111,7 +110,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       const double area = length(n);
       if (!(area > 0)) continue;
-      const bool gentle = std::abs(n.z) >= kLeastUp * area;
+      const bool gentle = std::abs(n.z) >= kWalkableUp * area;
       if (!gentle) {
         constexpr double kUpright = 0.01, kTurned = 0.1;
         upright[block][1] += area;

@@ -12,6 +12,8 @@
 
 namespace vantage {
 
+inline constexpr double kWalkableUp = 0.766;  // cosine of 40°, the steepest slope that people walk on
+
 class Columns {
  public:
   // A surface no steeper than people walk on.

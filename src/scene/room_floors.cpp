@@ -8,6 +8,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "scene/columns.hpp"
+
 namespace vantage {
 namespace {
 
@@ -19,7 +21,6 @@ constexpr double kWall_m = 0.3;                           // thickest wall with 
 constexpr double kStep_m = 0.05, kHeadroom_m = 2.2;       // over a stair
 constexpr double kLeastFloor = 0.5;                       // share of a room
 constexpr double kLargest_m = 1e4;                        // what is larger is no room
-constexpr double kWalkableUp = 0.766;                     // cosine of 40°, the steepest slope that people walk on
 
 bool is_sound(const Box& box) {
   const Vec3 size = box.size();

@@ -65,6 +65,7 @@ struct SceneData {
 
   std::uint32_t mesh_of(std::uint32_t triangle) const;  // by binary search over ranges
   std::span<const Triangle> opaque_triangles() const;   // those that stop rays: all but the last, of glass
+  bool has_glass() const { return opaque_triangles().size() < triangles.size(); }
 };
 
 }  // namespace vantage

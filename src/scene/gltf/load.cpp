@@ -201,8 +201,8 @@ class Loader {
                                                material.luminance};
         const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
         job.diffuse = first != std::end(given) ? **first : options_.default_diffuse;
-        job.glass = is_glass(mesh, mesh_marks, material);
-        job.mirror = !job.glass && is_mirror(mesh, mesh_marks, material);
+        job.glass = is(kGlass, mesh, mesh_marks, material);
+        job.mirror = !job.glass && is(kMirror, mesh, mesh_marks, material);
         some_surveyed = some_surveyed || (job.role == Role::surveyed && !job.glass && !job.mirror);
         jobs.push_back(job);
       }
@@ -219,20 +219,25 @@ class Loader {
     return jobs;
   }
 
-  bool is_glass(const PlacedMesh& mesh, const Marks& mesh_marks, const MaterialInfo& material) const {
-    if (std::ranges::count(options_.glass, kOpaqueGlass) > 0) return false;
-    if (mesh.glass || mesh.own_role) return mesh.glass;
-    for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
-      if (marks->glass) return *marks->glass;
-    return material.glass;
-  }
+  // A kind of surface, and where patterns, marks and materials tell it.
+  struct Kind {
+    std::vector<std::string> SceneOptions::*patterns;
+    std::string_view none;  // the entry of the patterns that rules the kind out
+    bool PlacedMesh::*named;
+    std::optional<bool> Marks::*marked;
+    bool MaterialInfo::*made;
+  };
+  static constexpr Kind kGlass{&SceneOptions::glass, kOpaqueGlass, &PlacedMesh::glass, &Marks::glass,
+                               &MaterialInfo::glass};
+  static constexpr Kind kMirror{&SceneOptions::mirror, kNoMirror, &PlacedMesh::mirror, &Marks::mirror,
+                                &MaterialInfo::mirror};
 
-  bool is_mirror(const PlacedMesh& mesh, const Marks& mesh_marks, const MaterialInfo& material) const {
-    if (std::ranges::count(options_.mirror, kNoMirror) > 0) return false;
-    if (mesh.mirror || mesh.own_role) return mesh.mirror;
+  bool is(const Kind& kind, const PlacedMesh& mesh, const Marks& mesh_marks, const MaterialInfo& material) const {
+    if (std::ranges::count(options_.*kind.patterns, kind.none) > 0) return false;
+    if (mesh.*kind.named || mesh.own_role) return mesh.*kind.named;
     for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
-      if (marks->mirror) return *marks->mirror;
-    return material.mirror;
+      if (marks->*kind.marked) return *(marks->*kind.marked);
+    return material.*kind.made;
   }
 
   // Allocates room for all meshes, after checking that it is available.

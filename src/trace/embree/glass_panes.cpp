@@ -62,13 +62,7 @@ bool GlassPanes::follow(const Float3& origin, const Hits& hits, std::span<Passed
 }
 
 double GlassPanes::share(const Float3& origin, const Float3& d, float t) const {
-  RayBundle ray;
-  ray.origin = origin;
-  ray.size = 1;
-  ray.x[0] = d.x;
-  ray.y[0] = d.y;
-  ray.z[0] = d.z;
-  ray.end[0] = t;
+  RayBundle ray = one_ray(origin, d, 0, t);
   Passed passed;
   return follow(ray, {&passed, 1}) ? passed.share : 1;
 }

@@ -14,7 +14,7 @@
 
 namespace vantage {
 
-// What becomes of a beam on its way: the share of its strength that passes there and back, or the pane that returns it.
+// A beam on its way: the share of its strength that passes there and back, or the pane that returns it.
 struct Passed {
   double share;
   std::uint32_t pane;  // RayBundle::no_hit: none

@@ -29,6 +29,19 @@ struct RayBundle {
   alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or no_hit
 };
 
+// A bundle of one ray.
+inline RayBundle one_ray(const Float3& origin, const Float3& d, float start, float end) {
+  RayBundle ray;
+  ray.origin = origin;
+  ray.start = start;
+  ray.size = 1;
+  ray.x[0] = d.x;
+  ray.y[0] = d.y;
+  ray.z[0] = d.z;
+  ray.end[0] = end;
+  return ray;
+}
+
 // Query whether anything blocks a ray before `end`.
 struct Probe {
   Float3 d;

@@ -15,14 +15,7 @@ inline RayCaster caster_over(const std::shared_ptr<const SceneData>& scene) {
 // The triangle hit, or no_hit, and its distance.
 inline std::uint32_t nearest_hit(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end,
                                  float& t) {
-  RayBundle ray;
-  ray.origin = origin;
-  ray.start = start;
-  ray.size = 1;
-  ray.x[0] = d.x;
-  ray.y[0] = d.y;
-  ray.z[0] = d.z;
-  ray.end[0] = end;
+  RayBundle ray = one_ray(origin, d, start, end);
   caster.cast(ray);
   t = ray.t[0];
   return ray.primitive[0];
