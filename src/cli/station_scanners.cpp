@@ -17,20 +17,20 @@ constexpr double kNarrower_deg = 10, kWider_deg = 2;
 // Steps differ by less if they are the same setting.
 constexpr double kSameStep = 0.02;
 
-// Letters and digits alone: makers and programs write names of models in many ways.
-std::string plain(std::string_view text) {
+// Letters and digits alone, without a setting: makers and programs write names of models in many ways.
+std::string model(std::string_view name) {
   std::string letters;
-  for (const char c : text)
+  for (const char c : name.substr(0, name.find('@')))
     if (std::isalnum(static_cast<unsigned char>(c))) letters += static_cast<char>(std::tolower(c));
   return letters;
 }
 
 // Key of the preset that a file calls `sensor`; empty if there is none.
 std::string preset_called(const std::string& sensor) {
-  const std::string wanted = plain(sensor);
+  const std::string wanted = model(sensor);
   if (std::ranges::none_of(wanted, [](unsigned char c) { return std::isalpha(c); })) return {};
   for (const ScannerPreset& preset : list_scanners(own_presets_file())) {
-    const std::string name = plain(load_scanner(preset.key, own_presets_file()).name), key = plain(preset.key);
+    const std::string name = model(load_scanner(preset.key, own_presets_file()).name), key = model(preset.key);
     if (wanted == key || name.ends_with(wanted) || wanted.ends_with(name) || (key.size() > 2 && wanted.ends_with(key)))
       return preset.key;
   }
@@ -131,7 +131,7 @@ std::vector<StationText> stations_of_scans(Site& site, const std::string& file, 
     StationText station{.position = scan.head, .name = scan.name, .setup = scan.setup};
     const std::string preset = preset_called(scan.sensor);
     // The site's own may have been set in another way than its preset.
-    if (!preset.empty() && load_scanner(preset, own_presets_file()).name != site.scanner().name)
+    if (!preset.empty() && model(load_scanner(preset, own_presets_file()).name) != model(site.scanner().name))
       station.scanner = preset;
     const Scanner base = scanner_text(site, station);
     if (scan.settings) take_settings(station, *scan.settings, base);
