@@ -93,7 +93,8 @@ std::vector<TakenScan> taken_scans(const std::filesystem::path& file, const Prog
   const auto glb = as_glb(file, kScans, {}, {}, progress);
   if (glb.empty()) return scans;
   read_parts(file, glb, [&](const nlohmann::json& all, std::span<const std::uint8_t>) {
-    for (const auto& scan : all) scans.push_back(scan_of(scan)), scans.back().settings = settings_of(scan.at("settings"));
+    for (const auto& scan : all)
+      scans.push_back(scan_of(scan)), scans.back().settings = settings_of(scan.at("settings"));
   });
   return scans;
 }

@@ -16,18 +16,18 @@ namespace vantage::importers {
 
 // How a scan was made, as its points tell. Fields of view are in whole degrees, rounded outwards.
 struct TakenSettings {
-  std::optional<std::array<Angle, 2>> steps;      // of azimuth and zenith
-  bool steps_by_grid = false;                     // false: by the density of points
+  std::optional<std::array<Angle, 2>> steps;        // of azimuth and zenith
+  bool steps_by_grid = false;                       // false: by the density of points
   Angle sweep_middle, sweep = Angle::degrees(360);  // azimuths that the scan has, in the scanner's frame
-  std::array<Angle, 2> zeniths;                   // from the first to the last that it has
-  std::array<double, 2> range_m;                  // from the nearest to the farthest point, without lone ones
+  std::array<Angle, 2> zeniths;                     // from the first to the last that it has
+  std::array<double, 2> range_m;                    // from the nearest to the farthest point, without lone ones
 };
 
 // A scan that was taken, as its file tells.
 struct TakenScan {
   std::string name, sensor;
-  Vec3 head;           // frame of the file, Z up, metres
-  StationSetup setup;  // heading and tilt; a tilt below 3° is that of a levelled scanner, 0
+  Vec3 head;                                   // frame of the file, Z up, metres
+  StationSetup setup;                          // heading and tilt; a tilt below 3° is that of a levelled scanner, 0
   std::optional<TakenSettings> settings = {};  // by taken_scans() alone, and none without points
 };
 

@@ -318,7 +318,8 @@ json scan_json(const CloudScan& scan) {
 std::string list_scans(const std::filesystem::path& file) {
   json scans = json::array();
   const auto source = open_e57(file);
-  if (std::ranges::none_of(source->scans(), &CloudScan::posed)) throw Refused("it does not say from where its scans were taken; export it with their poses");
+  if (std::ranges::none_of(source->scans(), &CloudScan::posed))
+    throw Refused("it does not say from where its scans were taken; export it with their poses");
   std::vector<ScanSettings> settings(source->scans().size());
   const auto all = static_cast<double>(source->announced());
   double done = 0;

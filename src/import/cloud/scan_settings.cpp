@@ -86,8 +86,8 @@ std::optional<std::array<double, 2>> ScanSettings::steps_by_grid() const {
     return found > 0 ? std::optional(found) : std::nullopt;
   };
   // A mirror that turns over the top fills both sides of a column: azimuths are those of its plane.
-  const auto column = step([](const Sample& s) { return s.column; }, [](const Sample& s) { return s.azimuth; }, 180,
-                           true);
+  const auto column =
+      step([](const Sample& s) { return s.column; }, [](const Sample& s) { return s.azimuth; }, 180, true);
   const auto row = step([](const Sample& s) { return s.row; }, [](const Sample& s) { return s.zenith; }, 360, false);
   if (!column || !row) return {};
   return std::array{*column, *row};
@@ -145,7 +145,9 @@ json ScanSettings::as_json() const {
     step = {rounded(*by_density), rounded(*by_density)};
   return {{"azimuth", azimuth},
           {"zenith", {first, last + 1}},
-          {"range", {kAtScanner_m * std::pow(kRangeGrows, static_cast<double>(nearest + 1)), kAtScanner_m * std::pow(kRangeGrows, static_cast<double>(farthest))}},
+          {"range",
+           {kAtScanner_m * std::pow(kRangeGrows, static_cast<double>(nearest + 1)),
+            kAtScanner_m * std::pow(kRangeGrows, static_cast<double>(farthest))}},
           {"step", step},
           {"by_grid", by_grid.has_value()}};
 }

@@ -33,7 +33,7 @@ class ScanSettings {
   std::optional<double> step_by_density() const;
 
   std::uint64_t points_ = 0, random_ = 0;
-  std::vector<Sample> samples_;           // of points with a cell
+  std::vector<Sample> samples_;                                                               // of points with a cell
   std::vector<std::uint32_t> directions_ = std::vector<std::uint32_t>(kAzimuths * kZeniths);  // points in each
   std::vector<std::uint64_t> ranges_ = std::vector<std::uint64_t>(kRanges);
 };

@@ -236,7 +236,7 @@ Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   std::vector<std::string> notes = notes_of(plan, drawing, walls, scale);
   check_view(drawing, plan, !swings.empty(), !settings.wall_layers.empty(), notes);
   std::vector<Flight> flights = find_flights(drawing);
-  return {std::move(plan),    std::move(flights), std::move(drawing.texts), origin, 0,
+  return {std::move(plan),      std::move(flights), std::move(drawing.texts), origin, 0,
           file.stem().string(), std::move(notes)};
 }
 
@@ -293,8 +293,9 @@ std::string convert(const std::vector<std::filesystem::path>& files, const Setti
     Storey& storey = storeys.back();
     if (files.size() == 1) {
       if (!storey.flights.empty())
-        storey.notes.push_back(counted(storey.flights.size(), "flight") +
-                               " of stairs left out: they are made between storeys, from a folder with a drawing of each");
+        storey.notes.push_back(
+            counted(storey.flights.size(), "flight") +
+            " of stairs left out: they are made between storeys, from a folder with a drawing of each");
       break;
     }
     storey.floor_m = static_cast<double>(storeys.size() - 1) * (settings.wall_height_m + kSlab_m);

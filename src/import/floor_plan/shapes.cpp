@@ -226,7 +226,8 @@ void add_triangles(const Shape& polygon_in, int halvings, std::vector<std::array
   const bool wide = high.x - low.x > high.y - low.y;
   // Not amid, where drawings are symmetric.
   constexpr double kPart = 0.47;
-  const Point cut = wide ? Point{low.x + kPart * (high.x - low.x), high.y} : Point{high.x, low.y + kPart * (high.y - low.y)};
+  const Point cut =
+      wide ? Point{low.x + kPart * (high.x - low.x), high.y} : Point{high.x, low.y + kPart * (high.y - low.y)};
   const Point from = wide ? Point{cut.x, low.y} : Point{low.x, cut.y};
   for (const auto& [a, b] : {std::pair(low, cut), std::pair(from, high)}) {
     const Point corners[]{a, {b.x, a.y}, b, {a.x, b.y}};

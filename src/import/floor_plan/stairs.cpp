@@ -17,12 +17,12 @@ constexpr double kLeastRiser_m = 0.13, kMostRiser_m = 0.21;
 constexpr std::size_t kLeastRisers = 4;
 constexpr double kSameGoing = 0.1, kSameWidth = 0.2, kSameWay = 0.035;  // shares; radians
 constexpr double kBetweenFlights_m = 0.6;
-constexpr double kBeyond_m = 0.4;           // floor must lie so far before a stair's ends
+constexpr double kBeyond_m = 0.4;  // floor must lie so far before a stair's ends
 constexpr double kLeastLanding_m = 0.6;
-constexpr double kThickness_m = 0.15;       // of a step below its riser
-constexpr double kTwice_m = 0.05;           // lines so near each other are one
+constexpr double kThickness_m = 0.15;        // of a step below its riser
+constexpr double kTwice_m = 0.05;            // lines so near each other are one
 constexpr std::size_t kMostTreads = 20'000;  // of a drawing; more are none
-constexpr double kWords_m = 1.5;            // texts so far from a flight speak of it
+constexpr double kWords_m = 1.5;             // texts so far from a flight speak of it
 
 Point across(Point along) { return {-along.y, along.x}; }
 
@@ -74,7 +74,8 @@ void add_flights(std::vector<Tread> treads, Point way, std::vector<Flight>& out)
     }
     const auto n = static_cast<double>(chain.size());
     const Point middle = sum * (1 / n);
-    const double from = dot(once[chain.front()].middle - middle, along), to = dot(once[chain.back()].middle - middle, along);
+    const double from = dot(once[chain.front()].middle - middle, along),
+                 to = dot(once[chain.back()].middle - middle, along);
     out.push_back({middle + along * from, along, to - from, width / n, chain.size()});
   }
 }
@@ -130,8 +131,9 @@ void add_steps(const Flight& flight, double low_m, double riser_m, std::vector<S
   const double going = flight.length / static_cast<double>(flight.risers - 1);
   for (std::size_t k = 0; k + 1 < flight.risers; ++k) {
     const double high = low_m + static_cast<double>(k + 1) * riser_m;
-    steps.push_back({box(flight.foot + flight.along * (static_cast<double>(k) * going), flight.along, going, flight.width),
-                     std::max(0.0, high - riser_m - kThickness_m), high});
+    steps.push_back(
+        {box(flight.foot + flight.along * (static_cast<double>(k) * going), flight.along, going, flight.width),
+         std::max(0.0, high - riser_m - kThickness_m), high});
   }
 }
 
@@ -286,7 +288,8 @@ class Finder {
     add_steps(best.second.turned(), half, riser, stair.steps);
     for (const Flight& flight : {best.first, best.second})
       stair.hole.push_back(box(flight.foot, along, end - dot(along, flight.foot), flight.width));
-    stair.hole.push_back({place(end, high), place(end, low), place(end + best.depth, low), place(end + best.depth, high)});
+    stair.hole.push_back(
+        {place(end, high), place(end, low), place(end + best.depth, low), place(end + best.depth, high)});
     found_.stairs.push_back(std::move(stair));
     return true;
   }

@@ -56,8 +56,9 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5.0, 3.6}));
   EXPECT_EQ(parse_station("x=5,y=3.6,z=1.85", "--station").position, (Vec3{5, 3.6, 1.85}));
   EXPECT_EQ(parse_station("x=5,y=3.6,ground=-1", "--station").ground, (Vec3{5, 3.6, -1}));
-  const auto part = parse_station("x=5,y=3,z=2,step=0.2,zenith-step=0.3,horizontal=90,vertical=160,zenith-start=40,nearest=1,farthest=80,name=P 1",
-                                  "--station");
+  const auto part = parse_station(
+      "x=5,y=3,z=2,step=0.2,zenith-step=0.3,horizontal=90,vertical=160,zenith-start=40,nearest=1,farthest=80,name=P 1",
+      "--station");
   EXPECT_EQ(part.name, "P 1");
   EXPECT_EQ(part.step, Angle::degrees(0.2));
   EXPECT_EQ(part.view.zenith_step, Angle::degrees(0.3));
