@@ -144,6 +144,8 @@ struct NextStation {
   /// Its strongest link to a station before it: index among the taken scans, then the next stations; empty if alone.
   std::optional<std::size_t> linked_to = {};
   double overlap = 0;  ///< Scan overlap of that link.
+  /// A station before it, numbered likewise, that no links tied to that one until now.
+  std::optional<std::size_t> ties = {};
 };
 
 /// A planned station, as it is judged after the scans.

@@ -138,6 +138,7 @@ std::string next_text(const Day& day, const std::vector<std::string>& names, Sit
       text += next.linked_to && next.overlap >= config.link
                   ? fmt::format("; linked to {} by {:.2f}", names[*next.linked_to], next.overlap)
                   : fmt::format("; not linked, its best overlap is {:.2f}: use targets", next.overlap);
+    if (next.ties) text += fmt::format("; ties {} to the others", names[*next.ties]);
     text += "\n";
   }
   if (answer.next.empty() && answer.enough)

@@ -13,16 +13,29 @@ namespace {
 }
 
 StationText parse_named_station(std::string_view text, const std::string& what) {
-  std::optional<double> x, y, z, ground, u, v, heading, tilt, step;
+  std::optional<double> x, y, z, ground, u, v, heading, tilt, step, zenith_step, horizontal, vertical, zenith_start;
   StationText station;
   const std::initializer_list<std::pair<const char*, std::optional<double>*>> names{
-      {"x", &x},       {"y", &y},      {"z", &z}, {"ground", &ground}, {"u", &u}, {"v", &v}, {"heading", &heading},
-      {"tilt", &tilt}, {"step", &step}};
+      {"x", &x},
+      {"y", &y},
+      {"z", &z},
+      {"ground", &ground},
+      {"u", &u},
+      {"v", &v},
+      {"heading", &heading},
+      {"tilt", &tilt},
+      {"step", &step},
+      {"zenith-step", &zenith_step},
+      {"horizontal", &horizontal},
+      {"vertical", &vertical},
+      {"zenith-start", &zenith_start},
+      {"nearest", &station.view.nearest_m},
+      {"farthest", &station.view.farthest_m}};
   for (const auto part : split(text, ',')) {
     const std::size_t equals = part.find('=');
     const std::string_view name = trimmed_text(part.substr(0, equals));
-    if (name == "scanner" && equals != std::string_view::npos) {
-      station.scanner = trimmed_text(part.substr(equals + 1));
+    if ((name == "scanner" || name == "name") && equals != std::string_view::npos) {
+      (name == "name" ? station.name : station.scanner) = trimmed_text(part.substr(equals + 1));
       continue;
     }
     const auto known = std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == name; });
@@ -30,13 +43,18 @@ StationText parse_named_station(std::string_view text, const std::string& what) 
       refuse(what, text,
              "is no station: '" + std::string(part) +
                  "' is none of x=, y=, z=, ground=, u=, v=, heading=, tilt=, step=, "
-                 "scanner=");
+                 "zenith-step=, horizontal=, vertical=, zenith-start=, nearest=, farthest=, scanner=, name=");
     if (*known->second) refuse(what, text, "says " + std::string(name) + " twice");
     *known->second = parse_number(part.substr(equals + 1), what);
   }
   if (heading) station.setup.heading = Angle::degrees(*heading);
   if (tilt) station.setup.tilt = Angle::degrees(*tilt);
-  if (step) station.step = Angle::degrees(*step);
+  const auto angle = [](std::optional<double> degrees) {
+    return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
+  };
+  station.step = angle(step), station.view.zenith_step = angle(zenith_step);
+  station.view.horizontal = angle(horizontal), station.view.vertical = angle(vertical);
+  station.view.zenith_start = angle(zenith_start);
   if (u && v && !x && !y && !z && !ground) {
     station.uv = Uv{*u, *v};
     return station;

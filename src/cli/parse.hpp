@@ -13,9 +13,16 @@
 
 namespace vantage::cli {
 
+// What else a station's scanner has of its own.
+struct ScannerView {
+  std::optional<Angle> zenith_step = {}, horizontal = {}, vertical = {}, zenith_start = {};
+  std::optional<double> nearest_m = {}, farthest_m = {};
+};
+
 // A station from a user: X,Y,Z of the scanner's head, or u,v on the search area. Or named quantities: x=5,y=3.6 (the
 // ground there is found), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5. With names also its setup:
-// heading=30,tilt=90,step=0.1,scanner=rtc360@6mm.
+// heading=30,tilt=90,step=0.1,scanner=rtc360@6mm, zenith-step= where it is another, horizontal=, vertical= and
+// zenith-start= of the field of view, nearest= and farthest= of the range, and its name=.
 struct StationText {
   std::optional<Vec3> position = {};  // the head
   std::optional<Uv> uv = {};
@@ -26,6 +33,7 @@ struct StationText {
   StationSetup setup = {};  // heading and tilt
   std::string scanner = {};
   std::optional<Angle> step = {};
+  ScannerView view = {};
 };
 StationText parse_station(std::string_view text, const std::string& what);
 

@@ -16,11 +16,11 @@
 #include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
+#include "cli/station_scanners.hpp"
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
-#include "import/scans.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage::cli {
@@ -103,21 +103,16 @@ std::vector<PlacedStation> heads_of(Site& site, const std::vector<StationText>& 
   return heads;
 }
 
-// The scans of a file as existing stations. K1 and so on are the names of such stations in results.
-std::vector<StationText> scans_of(const std::string& file, std::size_t before) {
-  std::vector<StationText> stations;
-  for (const importers::TakenScan& scan : importers::taken_scans(file)) {
-    stations.push_back({.position = scan.head, .name = scan.name, .setup = scan.setup});
-    spdlog::info("K{} is \"{}\" of {}, at {:.3f},{:.3f},{:.3f}", before + stations.size(), scan.name, file, scan.head.x,
-                 scan.head.y, scan.head.z);
-  }
-  return stations;
-}
-
 void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations) question.existing.push_back(station.position);
   if (std::ranges::all_of(stations, [](const PlacedStation& s) { return s.setup == StationSetup(); })) return;
   for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
+}
+
+// Existing stations keep the names that the user gave them.
+void name_existing(PlanResult& result, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  for (PlanEntry& entry : result.front) entry.names = names, entry.names.resize(entry.stations.size());
 }
 
 // Voxels that a start is chosen by.
@@ -304,9 +299,11 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))
     options.config.start.push_back(station.position);
   if (options.keep_from)
-    for (const StationText& scan : scans_of(*options.keep_from, options.keep.size())) options.keep.push_back(scan);
+    std::ranges::copy(stations_of_scans(site, *options.keep_from, program), std::back_inserter(options.keep));
   keep(options.question, heads_of(site, options.keep, options.keep_from ? "--keep, --keep-from" : "--keep"));
   if (options.targets_from) options.question.existing_targets = read_targets_csv(*options.targets_from);
+  std::vector<std::string> names;
+  for (const StationText& station : options.keep) names.push_back(station.name);
   const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
   site.area();  // an error now, not behind the voxels
 
@@ -321,7 +318,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.checkpoint = folder / "checkpoint.bin";
   choose_start(site, options, problem, config, program, plan_by);
 
-  nlohmann::json as_given = plan_options(site, options.question, problem, config);
+  nlohmann::json as_given = plan_options(site, options.question, problem, config, names);
   if (options.targets_from) as_given["plan"]["targets-from"] = *options.targets_from;
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   const FolderLock lock(folder);
@@ -330,6 +327,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
   PlanResult result = run_plan(site, problem, config, program, all_by);
   result.config.max_seconds = limit;
+  name_existing(result, names);
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");

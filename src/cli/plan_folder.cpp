@@ -4,20 +4,33 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <algorithm>
 #include <string>
 
 #include "cli/options.hpp"
 #include "core/options_json.hpp"
 #include "core/read_json.hpp"
+#include "export/setup_json.hpp"
 
 namespace vantage::cli {
 namespace {
 
 // In the form of --keep.
-std::string typed(const Vec3& head, const StationSetup& setup, const Scanner& scanner) {
-  return fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
-                     setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(),
-                     scanner.name);
+std::string typed(const Vec3& head, const StationSetup& setup, std::span<const Scanner> scanners, std::string name) {
+  const Scanner& scanner = scanners[setup.scanner];
+  std::string text =
+      fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
+                  setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(), scanner.name);
+  nlohmann::json all;
+  add_setup(all, setup, scanners);
+  for (const char* key : {"zenith_step", "horizontal", "vertical", "zenith_start", "nearest", "farthest"})
+    if (all.contains(key)) {
+      std::string option = key;
+      std::ranges::replace(option, '_', '-');
+      text += fmt::format(",{}={}", option, all[key].get<double>());
+    }
+  std::ranges::replace(name, ',', ' '), std::ranges::replace(name, '=', ' ');  // they mean something here
+  return name.empty() ? text : text + ",name=" + name;
 }
 
 // The default requirements of a survey have their own options, so that 0 can remove one.
@@ -38,13 +51,14 @@ void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
 }  // namespace
 
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
-                            const PlanConfig& config) {
+                            const PlanConfig& config, std::span<const std::string> names) {
   nlohmann::json options = options_json(settings(problem));
-  if (!problem.existing_setups.empty()) {
+  const bool named = std::ranges::any_of(names, [](const std::string& name) { return !name.empty(); });
+  if (!problem.existing_setups.empty() || named) {
     options["keep"] = nlohmann::json::array();
     for (std::size_t k = 0; k < problem.existing.size(); ++k) {
-      const StationSetup& setup = problem.existing_setups[k];
-      options["keep"].push_back(typed(problem.existing[k], setup, site.scanners()[setup.scanner]));
+      const StationSetup setup = problem.existing_setups.empty() ? StationSetup() : problem.existing_setups[k];
+      options["keep"].push_back(typed(problem.existing[k], setup, site.scanners(), k < names.size() ? names[k] : ""));
     }
   }
   if (!question.search_steps.empty()) options["search-step"] = fmt::format("{}", fmt::join(question.search_steps, ","));

@@ -8,6 +8,7 @@
 #include "cli/options.hpp"
 #include "cli/station_scanners.hpp"
 #include "core/read_json.hpp"
+#include "export/setup_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -147,7 +148,7 @@ std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stati
       placed.push_back({place_stations(site, uv).front(), true, station.name});
     }
     StationSetup& setup = placed.back().placed.setup = station.setup;
-    setup.scanner = scanner_of(site, station.scanner, station.step);
+    setup.scanner = scanner_of(site, station);
   }
   return placed;
 }
@@ -170,13 +171,7 @@ nlohmann::json to_json(const SiteStation& station, const std::string& name, std:
   if (placed.status != StationStatus::hole)
     json["position"] = list(placed.position), json["ground"] = list(placed.ground);
   if (station.has_uv) json["uv"] = {placed.uv.u, placed.uv.v};
-  if (placed.setup != StationSetup()) {
-    const Scanner& scanner = scanners[placed.setup.scanner];
-    json["heading"] = placed.setup.heading.in_degrees();
-    json["tilt"] = placed.setup.tilt.in_degrees();
-    json["scanner"] = scanner.name;
-    if (scanner.azimuth_step == scanner.zenith_step) json["step"] = scanner.azimuth_step.in_degrees();
-  }
+  if (placed.setup != StationSetup()) add_setup(json, placed.setup, scanners);
   return json;
 }
 
@@ -187,7 +182,19 @@ StationText station_of_json(const nlohmann::json& json) {
       .name = json.value("name", ""),
       .setup = {.heading = Angle::degrees(json.value("heading", 0.0)), .tilt = Angle::degrees(json.value("tilt", 0.0))},
       .scanner = json.value("scanner", "")};
-  if (json.contains("step")) text.step = Angle::degrees(json["step"].get<double>());
+  const auto angle = [&](const char* key) {
+    return json.contains(key) ? std::optional(Angle::degrees(json[key].get<double>())) : std::nullopt;
+  };
+  const auto metres = [&](const char* key) {
+    return json.contains(key) ? std::optional(json[key].get<double>()) : std::nullopt;
+  };
+  text.step = angle("step");
+  text.view = {.zenith_step = angle("zenith_step"),
+               .horizontal = angle("horizontal"),
+               .vertical = angle("vertical"),
+               .zenith_start = angle("zenith_start"),
+               .nearest_m = metres("nearest"),
+               .farthest_m = metres("farthest")};
   if (json.value("status", "ok") == "hole") text.position.reset();
   return text;
 }

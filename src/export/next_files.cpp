@@ -89,6 +89,7 @@ json stations_json(const Day& day, const std::vector<std::string>& names) {
                     {"adds", one.gain},
                     {"captured_then", one.captured},
                     {"linked_to", one.linked_to ? json(names[*one.linked_to]) : json()},
+                    {"ties", one.ties ? json(names[*one.ties]) : json()},
                     {"overlap", one.overlap}});
   }
   return next;

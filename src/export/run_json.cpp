@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "export/setup_json.hpp"
 #include "export/station_cells.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
@@ -81,15 +82,6 @@ ordered_json to_json(const std::vector<SummaryLine>& lines) {
   return json;
 }
 
-// As the columns of stations.csv.
-void add_setup(ordered_json& station, const StationSetup& setup, std::span<const Scanner> scanners) {
-  const Scanner& scanner = scanners[setup.scanner];
-  station["heading"] = setup.heading.in_degrees();
-  station["tilt"] = setup.tilt.in_degrees();
-  station["scanner"] = scanner.name;
-  if (scanner.azimuth_step == scanner.zenith_step) station["step"] = scanner.azimuth_step.in_degrees();
-}
-
 ordered_json matrix_json(const PairMatrix& matrix) {
   ordered_json rows = ordered_json::array();
   for (std::size_t i = 0; i < matrix.size(); ++i) rows.push_back(matrix.row(i));
@@ -137,7 +129,7 @@ ordered_json dropped_json(const std::vector<DroppedPoints>& dropped) {
 ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result,
                         std::span<const Scanner> scanners) {
   ordered_json stations = ordered_json::array();
-  const auto names = station_names(entry.stations);
+  const auto names = station_names(entry.stations, entry.names);
   const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     const PlacedStation& s = entry.stations[i];

@@ -55,7 +55,7 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
       text += "," + (e.exact ? number(e.value(measure.name)) : std::string());
     text += std::string(",") + (!e.exact ? "" : e.dominated ? "1" : "0") + "," + number(e.violation);
     if (alpha) text += "," + number(e.x.back());
-    const auto names = station_names(e.stations);
+    const auto names = station_names(e.stations, e.names);
     for (std::size_t i = 0; i < most; ++i) {
       if (i < e.stations.size())
         text += "," + station_cells(e.stations[i], names[i]) +

@@ -67,14 +67,34 @@ TakenScan scan_of(const nlohmann::json& scan) {
           .setup = setup_of(scan.at("rotation").get<std::array<double, 4>>())};
 }
 
+std::optional<TakenSettings> settings_of(const nlohmann::json& told) {
+  if (told.is_null()) return {};
+  const auto pair = [](const nlohmann::json& values) { return values.get<std::array<double, 2>>(); };
+  const auto degrees = [](const std::array<double, 2>& values) {
+    return std::array{Angle::degrees(values[0]), Angle::degrees(values[1])};
+  };
+  const auto sweep = degrees(pair(told.at("azimuth")));
+  TakenSettings settings{.steps = {},
+                         .steps_by_grid = told.at("by_grid"),
+                         .sweep_middle = sweep[0],
+                         .sweep = sweep[1],
+                         .zeniths = degrees(pair(told.at("zenith"))),
+                         .range_m = pair(told.at("range"))};
+  if (!told.at("step").is_null()) settings.steps = degrees(pair(told["step"]));
+  return settings;
+}
+
 }  // namespace
 
-std::vector<TakenScan> taken_scans(const std::filesystem::path& file) {
+std::vector<TakenScan> taken_scans(const std::filesystem::path& file, const Progress& progress) {
   if (std::string_view(recognise(file).format->name) != "E57")
     throw Error(Errc::malformed_file, file.string() + ": poses of scans are read from E57; this is none");
   std::vector<TakenScan> scans;
-  read_parts(file, as_glb(file, kScans), [&](const nlohmann::json& all, std::span<const std::uint8_t>) {
-    for (const auto& scan : all) scans.push_back(scan_of(scan));
+  const auto glb = as_glb(file, kScans, {}, {}, progress);
+  if (glb.empty()) return scans;
+  read_parts(file, glb, [&](const nlohmann::json& all, std::span<const std::uint8_t>) {
+    for (const auto& scan : all)
+      scans.push_back(scan_of(scan)), scans.back().settings = settings_of(scan.at("settings"));
   });
   return scans;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,16 +14,26 @@
 
 namespace vantage::importers {
 
+// How a scan was made, as its points tell. Fields of view are in whole degrees, rounded outwards.
+struct TakenSettings {
+  std::optional<std::array<Angle, 2>> steps;        // of azimuth and zenith
+  bool steps_by_grid = false;                       // false: by the density of points
+  Angle sweep_middle, sweep = Angle::degrees(360);  // azimuths that the scan has, in the scanner's frame
+  std::array<Angle, 2> zeniths;                     // from the first to the last that it has
+  std::array<double, 2> range_m;                    // from the nearest to the farthest point, without lone ones
+};
+
 // A scan that was taken, as its file tells.
 struct TakenScan {
   std::string name, sensor;
-  Vec3 head;           // frame of the file, Z up, metres
-  StationSetup setup;  // heading and tilt; a tilt below 3° is that of a levelled scanner, 0
+  Vec3 head;                                   // frame of the file, Z up, metres
+  StationSetup setup;                          // heading and tilt; a tilt below 3° is that of a levelled scanner, 0
+  std::optional<TakenSettings> settings = {};  // by taken_scans() alone, and none without points
 };
 
 // The scans of an E57 file that have a pose, read by the importer of point clouds. Throws Error as as_glb() does, and
-// malformed_file if the file is no E57.
-std::vector<TakenScan> taken_scans(const std::filesystem::path& file);
+// malformed_file if the file is no E57. Empty if stopped.
+std::vector<TakenScan> taken_scans(const std::filesystem::path& file, const Progress& progress = {});
 
 // A point that stands for all points of a scan in a small cell.
 struct ThinPoint {

@@ -117,6 +117,23 @@ CoverSolution choose(const Table& table, const CoverProblem& problem, std::span<
   return of_plan.chosen.size() <= grown.chosen.size() ? of_plan : grown;
 }
 
+// The first of the stations `there` that station `k` ties to `linked_to`, since no chain of links did.
+std::optional<std::size_t> tied(const Table& table, std::span<const std::size_t> there, std::size_t k,
+                                std::size_t linked_to, double link) {
+  std::vector<bool> reached(there.size());
+  std::vector<std::size_t> open{linked_to};
+  reached[linked_to] = true;
+  while (!open.empty()) {
+    const std::size_t from = open.back();
+    open.pop_back();
+    for (std::size_t to = 0; to < there.size(); ++to)
+      if (!reached[to] && table.graph.linked(there[from], there[to], link)) reached[to] = true, open.push_back(to);
+  }
+  for (std::size_t other = 0; other < there.size(); ++other)
+    if (!reached[other] && table.graph.linked(k, there[other], link)) return other;
+  return {};
+}
+
 // Orders what was chosen: next is what adds most of what is linked to stations before it, or of all if nothing is.
 void order(const Table& table, const std::vector<std::size_t>& chosen, double link, NextAnswer& answer) {
   std::vector<std::size_t> there(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(table.scans));
@@ -143,6 +160,7 @@ void order(const Table& table, const std::vector<std::size_t>& chosen, double li
     }
     const std::size_t k = left[best_at];
     if (k < table.scans + table.planned) best.planned = k - table.scans;
+    if (link > 0 && best.linked_to && best.overlap >= link) best.ties = tied(table, there, k, *best.linked_to, link);
     answer.next.push_back(best);
     there.push_back(k);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best_at));

@@ -31,6 +31,13 @@ constexpr Target kTargets[] = {{"gltf", gltf},
                                {"optimiser_state", optimiser_state},
                                {"message", message},
                                {"reference", reference},
+#ifdef VANTAGE_FUZZ_CLOUDS
+                               {"e57", e57},
+                               {"las", las},
+                               {"ply", ply},
+                               {"pcd", pcd},
+                               {"xyz", xyz},
+#endif
                                {"simulator", simulator}};
 
 // A folder of this process, removed with it.

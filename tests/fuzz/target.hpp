@@ -99,5 +99,10 @@ void optimiser_state(Bytes);
 void message(Bytes);
 void reference(Bytes);
 void simulator(Bytes);
+void e57(Bytes);
+void las(Bytes);
+void ply(Bytes);
+void pcd(Bytes);
+void xyz(Bytes);
 
 }  // namespace vantage::fuzz

@@ -14,6 +14,7 @@
 #include "import/cloud/free_space.hpp"
 #include "import/cloud/points.hpp"
 #include "import/cloud/rectangles.hpp"
+#include "import/cloud/scan_settings.hpp"
 #include "import/glb_bytes.hpp"
 #include "import/program.hpp"
 
@@ -317,11 +318,27 @@ json scan_json(const CloudScan& scan) {
 std::string list_scans(const std::filesystem::path& file) {
   json scans = json::array();
   const auto source = open_e57(file);
-  for (const CloudScan& scan : source->scans()) {
-    if (!scan.posed) continue;
-    scans.push_back(scan_json(scan));
+  if (std::ranges::none_of(source->scans(), &CloudScan::posed))
+    throw Refused("it does not say from where its scans were taken; export it with their poses");
+  std::vector<ScanSettings> settings(source->scans().size());
+  const auto all = static_cast<double>(source->announced());
+  double done = 0;
+  source->want_cells();
+  source->read([&](const PointBlock& block) {
+    const CloudScan& scan = source->scans()[block.scan];
+    const Eigen::Matrix3d into_scanner = scan.rotation.conjugate().toRotationMatrix();
+    for (std::size_t k = 0; k < block.positions.size(); ++k)
+      settings[block.scan].add(into_scanner * (block.positions[k] - scan.position),
+                               block.cells.empty() ? std::nullopt : std::optional(block.cells[k]));
+    done += static_cast<double>(block.positions.size());
+    if (all > 0) tell_progress(done / all);
+  });
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    if (!source->scans()[k].posed) continue;
+    json scan = scan_json(source->scans()[k]);
+    scan["settings"] = settings[k].as_json();
+    scans.push_back(std::move(scan));
   }
-  if (scans.empty()) throw Refused("it does not say from where its scans were taken; export it with their poses");
   return glb_bytes(
       {{"asset", {{"version", "2.0"}, {"generator", "vantage-import-cloud"}, {"extras", {{"scans", scans}}}}}}, "");
 }

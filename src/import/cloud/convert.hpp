@@ -25,7 +25,7 @@ double memory_for_cells();
 std::string convert_cloud(const Files& files, const std::string& format, std::optional<double> cell_m = {});
 
 // The scans of an E57 file, a GLB without meshes whose `asset.extras.scans` lists name, position (metres, Z up),
-// rotation (quaternion w, x, y, z) and sensor of those with a pose. Throws Refused.
+// rotation (quaternion w, x, y, z), sensor and settings (ScanSettings) of those with a pose. Throws Refused.
 std::string list_scans(const std::filesystem::path& file);
 // One of them.
 nlohmann::json scan_json(const CloudScan& scan);

@@ -78,8 +78,8 @@ std::size_t choose_cell(const Density& density, double memory, double bytes_each
     if (density.median(s) >= kEnough && density.cells(s) * bytes_each <= memory) return s;
   if (density.median(Density::sizes_m.size() - 1) >= kEnough)
     throw Refused("its surfaces take more memory than there is, even in cells of 50 cm; export parts of it");
-  throw Refused("its " + std::to_string(density.points()) +
-                " points are too thin for surfaces: cells of 50 cm mostly hold fewer than 6; export more of them");
+  throw Refused("its points, " + std::to_string(density.points()) +
+                " in all, are too thin for surfaces: cells of 50 cm mostly hold fewer than 6; export more of them");
 }
 
 }  // namespace vantage::importer

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // E57 (ASTM E2807, Standard Specification for 3D Imaging Data Exchange, 2011): Data3D after Data3D, each moved by its
 // pose. Images are passed over.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/utf8.hpp"
@@ -38,6 +40,11 @@ std::uint64_t whole_number(const XmlElement& points, const char* name) {
     if (failure == std::errc() && end == text.data() + text.size()) return value;
   }
   throw Refused("its points have no " + std::string(name) + "; export it again");
+}
+
+// Of a row or column, whatever a file says.
+std::uint32_t index_of(double value) {
+  return static_cast<std::uint32_t>(std::clamp(value, 0.0, double{std::numeric_limits<std::uint32_t>::max()}));
 }
 
 Data3d data_of(const XmlElement& element, const std::string& name) {
@@ -112,6 +119,9 @@ class E57Source final : public PointSource {
     }
     if (normals)
       for (const char* field : {"nor:normalX", "nor:normalY", "nor:normalZ"}) wanted.push_back(data.field(field));
+    const std::size_t first_cell = wanted.size();
+    const bool cells = cells_ && data.has("rowIndex") && data.has("columnIndex");
+    if (cells) wanted.push_back(data.field("rowIndex")), wanted.push_back(data.field("columnIndex"));
     const bool stated = data.has(state);
     if (stated) wanted.push_back(data.field(state));
     for (const std::size_t field : wanted)
@@ -127,7 +137,9 @@ class E57Source final : public PointSource {
           p = v[0] * Eigen::Vector3d(std::cos(v[2]) * std::cos(v[1]), std::cos(v[2]) * std::sin(v[1]), std::sin(v[2]));
         const Eigen::Vector3f normal =
             normals ? (turn * Eigen::Vector3d(v[3], v[4], v[5])).cast<float>().eval() : Eigen::Vector3f::Zero().eval();
-        points.add(turn * p + data.translation, normal);
+        std::optional<std::array<std::uint32_t, 2>> cell;
+        if (cells) cell = {index_of(v[first_cell]), index_of(v[first_cell + 1])};
+        points.add(turn * p + data.translation, normal, cell);
       });
     } catch (const Refused& why) {
       throw Refused("scan " + name + ": " + why.what());

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +28,7 @@ struct PointBlock {
   std::span<const Eigen::Vector3d> positions;  // metres, finite
   std::span<const Eigen::Vector3f> normals;    // none, or one each; 0 if unknown
   std::uint32_t scan = 0;
+  std::span<const std::array<std::uint32_t, 2>> cells = {};  // row and column in the scan's grid; none, or one each
 };
 
 using PointSink = std::function<void(const PointBlock&)>;
@@ -37,6 +40,8 @@ class PointSource {
   virtual void read(const PointSink& sink) = 0;
   // Points that the file announces; 0: it does not say.
   virtual std::uint64_t announced() const { return 0; }
+  // Wants `PointBlock::cells` of those scans that have them.
+  void want_cells() { cells_ = true; }
   // Complete after the first read().
   const std::vector<CloudScan>& scans() const { return scans_; }
   const std::string& crs() const { return crs_; }  // well-known text; empty if unknown
@@ -46,6 +51,7 @@ class PointSource {
   std::vector<CloudScan> scans_;
   std::string crs_;
   std::vector<std::string> notes_;
+  bool cells_ = false;
 };
 
 // Passes points on in blocks, without those that are not finite.
@@ -55,15 +61,17 @@ class BlockWriter {
     positions_.reserve(kPoints);
     if (normals_) directions_.reserve(kPoints);
   }
-  void add(const Eigen::Vector3d& position, const Eigen::Vector3f& normal = Eigen::Vector3f::Zero()) {
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3f& normal = Eigen::Vector3f::Zero(),
+           std::optional<std::array<std::uint32_t, 2>> cell = {}) {
     if (!position.allFinite()) return;
     positions_.push_back(position);
+    if (cell) cells_.push_back(*cell);
     if (normals_) directions_.push_back(normal.allFinite() ? normal : Eigen::Vector3f::Zero());
     if (positions_.size() == kPoints) flush();
   }
   void flush() {
-    if (!positions_.empty()) sink_({positions_, directions_, scan_});
-    positions_.clear(), directions_.clear();
+    if (!positions_.empty()) sink_({positions_, directions_, scan_, cells_});
+    positions_.clear(), directions_.clear(), cells_.clear();
   }
 
  private:
@@ -73,6 +81,7 @@ class BlockWriter {
   bool normals_;
   std::vector<Eigen::Vector3d> positions_;
   std::vector<Eigen::Vector3f> directions_;
+  std::vector<std::array<std::uint32_t, 2>> cells_;
 };
 
 // All points of several sources, one after the other.

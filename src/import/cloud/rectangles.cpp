@@ -12,8 +12,7 @@ namespace {
 void sort_rows(std::vector<Square>& squares) {
   std::ranges::sort(squares,
                     [](const Square& a, const Square& b) { return std::pair(a[1], a[0]) < std::pair(b[1], b[0]); });
-  const auto rest = std::ranges::unique(squares);
-  squares.erase(rest.begin(), rest.end());
+  squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
 }
 
 void fill_rows(std::vector<Square>& squares, std::int32_t most) {

@@ -38,9 +38,11 @@ struct ScalarField {
   }
 };
 
-// Place of the field of this name; fields.size() if there is none.
+// Place of the field of this name in lower case; fields.size() if there is none. Some writers put capitals.
 inline std::size_t find_field(std::span<const ScalarField> fields, std::string_view name) {
-  return static_cast<std::size_t>(std::ranges::find(fields, name, &ScalarField::name) - fields.begin());
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  const auto same = [&](const ScalarField& field) { return std::ranges::equal(field.name, name, {}, lower); };
+  return static_cast<std::size_t>(std::ranges::find_if(fields, same) - fields.begin());
 }
 
 // Places of three fields; empty unless all are there.

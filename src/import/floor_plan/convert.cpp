@@ -12,6 +12,7 @@
 #include "import/floor_plan/join_ends.hpp"
 #include "import/floor_plan/layers.hpp"
 #include "import/floor_plan/solids.hpp"
+#include "import/floor_plan/stairs.hpp"
 #include "import/floor_plan/swings.hpp"
 #include "import/floor_plan/unit.hpp"
 #include "import/floor_plan/walls.hpp"
@@ -129,9 +130,11 @@ json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
 // A drawing, raised.
 struct Storey {
   Plan plan;
+  std::vector<Flight> flights;  // of stairs
+  std::vector<Text> texts;
   Point origin;        // of its points, in metres of the drawing
   double floor_m = 0;  // above the lowest one
-  std::string name;    // of its file
+  std::string name;    // of its file, without its ending
   std::vector<std::string> notes;
 };
 
@@ -155,7 +158,7 @@ std::string glb_of(const std::vector<Storey>& storeys) {
   importer::Buffer buffer;
   json nodes = json::array(), meshes = json::array(), roots = json::array(), notes = json::array();
   for (std::size_t k = 0; k < storeys.size(); ++k) {
-    const auto& [plan, origin, floor_m, name, told] = storeys[k];
+    const auto& [plan, flights, texts, origin, floor_m, name, told] = storeys[k];
     json children = json::array();
     for (const Mesh& mesh : meshes_of(plan)) {
       meshes.push_back({{"primitives", {primitive_of(mesh, buffer)}}});
@@ -232,13 +235,53 @@ Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   plan.furniture = find_furniture(drawing, plan.rooms);
   std::vector<std::string> notes = notes_of(plan, drawing, walls, scale);
   check_view(drawing, plan, !swings.empty(), !settings.wall_layers.empty(), notes);
-  return {std::move(plan), origin, 0, file.stem().string(), std::move(notes)};
+  std::vector<Flight> flights = find_flights(drawing);
+  return {std::move(plan),      std::move(flights), std::move(drawing.texts), origin, 0,
+          file.stem().string(), std::move(notes)};
+}
+
+constexpr double kSlab_m = 0.3;  // between a ceiling and the floor above it
+
+std::string place_text(Point p) { return fixed(p.x, 2) + "," + fixed(p.y, 2); }
+
+Shape hole_of(const std::vector<Stair>& stairs, Point origin) {
+  std::vector<Shape> parts;
+  for (const Stair& stair : stairs)
+    for (auto corners : stair.hole) {
+      for (Point& corner : corners) corner = corner - origin;
+      parts.push_back(polygon(corners));
+    }
+  return areas(united(std::move(parts)));
+}
+
+// Links a storey with the one above it.
+void add_stairs(Storey& lower, Storey& upper) {
+  const auto storey_of = [](const Storey& s) {
+    return StairStorey{&s.plan.rooms, &s.plan.openings, &s.flights, &s.texts, s.origin};
+  };
+  const StairsFound found = find_stairs(storey_of(lower), storey_of(upper), upper.floor_m - lower.floor_m);
+  for (const Stair& stair : found.stairs) {
+    for (Step step : stair.steps) {
+      for (Point& corner : step.corners) corner = corner - lower.origin;
+      lower.plan.steps.push_back(step);
+    }
+    lower.notes.push_back("stairs from " + place_text(stair.foot) + " to the storey above, in risers of " +
+                          fixed(100 * stair.riser_m, 1) + " cm" +
+                          (stair.assumed ? "; which end is the lower one is assumed" : ""));
+  }
+  if (!found.stairs.empty()) {
+    lower.plan.hole_above = hole_of(found.stairs, lower.origin);
+    lower.plan.slab_m = upper.floor_m - lower.floor_m - lower.plan.wall_height_m;
+    upper.plan.hole_below = hole_of(found.stairs, upper.origin);
+  }
+  for (const auto& [place, why] : found.left_out)
+    lower.notes.push_back("stairs at " + place_text(place) + " are not made: " + why +
+                          (found.stairs.empty() ? "; enter the storey above with the setting enter" : ""));
 }
 
 }  // namespace
 
 std::string convert(const std::vector<std::filesystem::path>& files, const Settings& settings) {
-  constexpr double kSlab_m = 0.3;  // between a ceiling and the floor above it
   std::vector<Storey> storeys;
   for (const std::filesystem::path& file : files) {
     const std::string name = file.filename().string();
@@ -247,11 +290,20 @@ std::string convert(const std::vector<std::filesystem::path>& files, const Setti
     } catch (const Refused& why) {
       throw files.size() == 1 ? why : Refused(name + ": " + why.what());
     }
-    if (files.size() == 1) break;
     Storey& storey = storeys.back();
+    if (files.size() == 1) {
+      if (!storey.flights.empty())
+        storey.notes.push_back(
+            counted(storey.flights.size(), "flight") +
+            " of stairs left out: they are made between storeys, from a folder with a drawing of each");
+      break;
+    }
     storey.floor_m = static_cast<double>(storeys.size() - 1) * (settings.wall_height_m + kSlab_m);
-    for (std::string& note : storey.notes) note = name + ", " + fixed(storey.floor_m, 2) + " m up: " + note;
   }
+  for (std::size_t k = 0; k + 1 < storeys.size(); ++k) add_stairs(storeys[k], storeys[k + 1]);
+  for (std::size_t k = 0; storeys.size() > 1 && k < storeys.size(); ++k)
+    for (std::string& note : storeys[k].notes)
+      note = files[k].filename().string() + ", " + fixed(storeys[k].floor_m, 2) + " m up: " + note;
   return glb_of(storeys);
 }
 

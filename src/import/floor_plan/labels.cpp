@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
 
 #include "core/utf8.hpp"
 
@@ -121,6 +124,28 @@ std::string plain_text(const std::string& text, const std::string& code_page) {
   return on_one_line(without_formatting(without_escapes(decoded(text, code_page))));
 }
 
+int stair_way(const std::string& text) {
+  constexpr std::size_t kLongestOther = 2;  // as in DN 16R; a name of a room has longer ones
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalpha(byte) == 0) {
+      if (!words.back().empty()) words.emplace_back();
+    } else {
+      words.back() += static_cast<char>(std::tolower(byte));
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  if (words.empty()) return 0;
+  for (std::size_t k = 1; k < words.size(); ++k)
+    if (words[k].size() > kLongestOther) return 0;
+  const auto is = [&](std::initializer_list<std::string_view> wanted) {
+    return std::ranges::find(wanted, words.front()) != wanted.end();
+  };
+  if (is({"up", "auf", "hoch", "sube", "subir", "monte", "haut", "sale", "salita", "sobe", "op", "upp"})) return 1;
+  return is({"dn", "down", "ab", "runter", "baja", "bajar", "descente", "bas", "scende", "desce", "ned"}) ? -1 : 0;
+}
+
 Label::Kind label_of(const std::string& text) {
   std::size_t letters = 0, digits = 0, row = 0, longest = 0;
   for (const char c : text) {
@@ -136,6 +161,7 @@ Label::Kind label_of(const std::string& text) {
   for (const char* measure :
        {"m²", "m2", "m\u00B2", "sq", "SF", "sf", "qm", "м²", "кв", "㎡", "\u00B1", "\u00D8", "=", "'"})
     if (digits > 0 && text.find(measure) != std::string::npos) return Label::nothing;
+  if (stair_way(text) != 0) return Label::nothing;
   if (longest >= 2 && letters > digits) return Label::name;
   // 12, 1.04, A-12, but no 12.50 or 1,25, which are lengths or areas.
   if (digits == 0 || text.size() > kLongestNumber || text.find_first_of(", +/") != std::string::npos)

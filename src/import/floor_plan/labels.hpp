@@ -18,4 +18,8 @@ struct Label {
 };
 Label::Kind label_of(const std::string& text);
 
+// Which way a text at a stair says that it leads from there, such as UP or DN 16R: 1 up, -1 down, 0 if it is another
+// text.
+int stair_way(const std::string& text);
+
 }  // namespace vantage::floor_plan

@@ -6,6 +6,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace vantage::floor_plan {
 namespace {
@@ -210,13 +211,35 @@ std::vector<Point> outer_ring(const Shape& polygon) {
 
 Shape filled(const Shape& shape) { return polygon(outer_ring(shape)); }
 
-std::vector<std::array<Point, 3>> triangles(const Shape& shape) {
-  std::vector<std::array<Point, 3>> out;
-  for (const Shape& part : polygons(shape)) {
-    const Shape cut = check(GEOSConstrainedDelaunayTriangulation_r(context(), part.get()));
+namespace {
+
+// GEOS clips ears, and finds none in some areas with holes that nearly touch. Halves of these are easier.
+void add_triangles(const Shape& polygon_in, int halvings, std::vector<std::array<Point, 3>>& out) {
+  constexpr int kMostHalvings = 16;
+  if (const Shape cut{GEOSConstrainedDelaunayTriangulation_r(context(), polygon_in.get())}) {
     for (const Shape& triangle : polygons(cut))
       if (const auto ring = outer_ring(triangle); ring.size() == 3) out.push_back({ring[0], ring[1], ring[2]});
+    return;
   }
+  if (halvings == kMostHalvings || last_error().find("bad_alloc") != std::string::npos) fail();
+  const auto [low, high] = bounds(polygon_in);
+  const bool wide = high.x - low.x > high.y - low.y;
+  // Not amid, where drawings are symmetric.
+  constexpr double kPart = 0.47;
+  const Point cut =
+      wide ? Point{low.x + kPart * (high.x - low.x), high.y} : Point{high.x, low.y + kPart * (high.y - low.y)};
+  const Point from = wide ? Point{cut.x, low.y} : Point{low.x, cut.y};
+  for (const auto& [a, b] : {std::pair(low, cut), std::pair(from, high)}) {
+    const Point corners[]{a, {b.x, a.y}, b, {a.x, b.y}};
+    for (const Shape& half : polygons(common(polygon_in, polygon(corners)))) add_triangles(half, halvings + 1, out);
+  }
+}
+
+}  // namespace
+
+std::vector<std::array<Point, 3>> triangles(const Shape& shape) {
+  std::vector<std::array<Point, 3>> out;
+  for (const Shape& part : polygons(shape)) add_triangles(part, 0, out);
   return out;
 }
 

@@ -31,9 +31,18 @@ class Builder {
     flat("outside", plan_.solid, top, true).surveyed = false;
     for (std::size_t o = 0; o < plan_.openings.size(); ++o) opening(plan_.openings[o]);
     for (std::size_t r = 0; r < rooms_.size(); ++r) {
-      flat("floor " + room_name(plan_.rooms, r), plan_.rooms.rooms[r].area, 0, true);
-      if (!plan_.rooms.open) flat("ceiling " + room_name(plan_.rooms, r), plan_.rooms.rooms[r].area, top, false);
+      const Shape& room = plan_.rooms.rooms[r].area;
+      flat("floor " + room_name(plan_.rooms, r), plan_.hole_below ? without(room, plan_.hole_below) : clone(room), 0,
+           true);
+      if (!plan_.rooms.open)
+        flat("ceiling " + room_name(plan_.rooms, r), plan_.hole_above ? without(room, plan_.hole_above) : clone(room),
+             top, false);
     }
+    for (const Step& step : plan_.steps) add_step(step);
+    if (plan_.hole_above)
+      for (const auto& ring : rings(plan_.hole_above))
+        for (std::size_t i = 0; i < ring.size(); ++i)
+          upright(mesh("stairs"), ring[(i + 1) % ring.size()], ring[i], top, top + plan_.slab_m);
     for (const Furniture& piece : plan_.furniture) {
       const std::string name = "furniture " + piece.name;
       for (const auto& ring : rings(piece.area))
@@ -72,6 +81,20 @@ class Builder {
         triangle(into, {a.x, a.y, z}, {c.x, c.y, z}, {b.x, b.y, z});
     }
     return into;
+  }
+
+  // All but its back, which the next step covers.
+  void add_step(const Step& step) {
+    Mesh& into = mesh("stairs");
+    const auto& [a, b, c, d] = step.corners;
+    const auto quad = [&](const std::array<Point, 4>& p, double z) {
+      triangle(into, {p[0].x, p[0].y, z}, {p[1].x, p[1].y, z}, {p[2].x, p[2].y, z});
+      triangle(into, {p[0].x, p[0].y, z}, {p[2].x, p[2].y, z}, {p[3].x, p[3].y, z});
+    };
+    quad({a, b, c, d}, step.high_m);
+    if (step.low_m > 0) quad({a, d, c, b}, step.low_m);
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(d, a)})
+      upright(into, from, to, step.low_m, step.high_m);
   }
 
   std::optional<std::size_t> at(const Grid& grid, const std::vector<Region>& regions, Point p) const {

@@ -9,6 +9,7 @@
 #include "import/floor_plan/openings.hpp"
 #include "import/floor_plan/rooms.hpp"
 #include "import/floor_plan/shapes.hpp"
+#include "import/floor_plan/stairs.hpp"
 
 namespace vantage::floor_plan {
 
@@ -27,7 +28,10 @@ struct Plan {
   std::vector<Opening> openings;
   Rooms rooms;
   std::vector<Furniture> furniture;
-  double wall_height_m = 2.7;
+  std::vector<Step> steps;  // of stairs to the storey above
+  // Holes for stairs in the ceiling, whose sides reach up to the floor above, and in the floor; null: none.
+  Shape hole_above, hole_below;
+  double wall_height_m = 2.7, slab_m = 0;  // `slab_m`: from the ceiling to the floor above
 };
 
 // A name for each room: that of its texts, else `room N`.

@@ -56,6 +56,17 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5.0, 3.6}));
   EXPECT_EQ(parse_station("x=5,y=3.6,z=1.85", "--station").position, (Vec3{5, 3.6, 1.85}));
   EXPECT_EQ(parse_station("x=5,y=3.6,ground=-1", "--station").ground, (Vec3{5, 3.6, -1}));
+  const auto part = parse_station(
+      "x=5,y=3,z=2,step=0.2,zenith-step=0.3,horizontal=90,vertical=160,zenith-start=40,nearest=1,farthest=80,name=P 1",
+      "--station");
+  EXPECT_EQ(part.name, "P 1");
+  EXPECT_EQ(part.step, Angle::degrees(0.2));
+  EXPECT_EQ(part.view.zenith_step, Angle::degrees(0.3));
+  EXPECT_EQ(part.view.horizontal, Angle::degrees(90));
+  EXPECT_EQ(part.view.vertical, Angle::degrees(160));
+  EXPECT_EQ(part.view.zenith_start, Angle::degrees(40));
+  EXPECT_EQ(part.view.nearest_m, 1);
+  EXPECT_EQ(part.view.farthest_m, 80);
   const auto lying = parse_station("x=5,y=3,z=2,heading=30,tilt=90,step=0.2,scanner=rtc360@6mm", "--station");
   EXPECT_EQ(lying.position, (Vec3{5, 3, 2}));
   EXPECT_EQ(lying.setup, (StationSetup{.heading = Angle::degrees(30), .tilt = Angle::degrees(90)}));

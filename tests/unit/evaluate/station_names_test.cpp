@@ -17,7 +17,7 @@ TEST(StationNames, CountFromOneAndKeptOnesApart) {
 
 TEST(StationNames, TheirOwnersNamesGoBeforeAndStayApart) {
   const std::vector<PlacedStation> four(4);
-  EXPECT_EQ(station_names(four, Names{"P1", "", "P1", "S2"}), (Names{"P1", "S2", "P1 (3)", "S2 (4)"}));
+  EXPECT_EQ(station_names(four, Names{"P1", "", "P1", "S2"}), (Names{"P1", "S3", "P1 (3)", "S2"}));
 }
 
 }  // namespace

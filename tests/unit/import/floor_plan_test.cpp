@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawings of floor plans, through their importer into a scene.
 #include <algorithm>
+#include <fstream>
 #include <random>
 
 #include "drawing.hpp"
@@ -278,6 +279,77 @@ TEST_F(FloorPlanTest, AFolderHasAStoreyInEachFile) {
   expect_error(Errc::malformed_file, "give files of one format", [&] { Scene::load(folder_.path() / "house"); });
   write("house/2.dxf", "nothing");
   expect_error(Errc::malformed_file, "2.dxf", [&] { Scene::load(folder_.path() / "house"); });
+}
+
+// Walls of 0.3 m around 8 × 5 m from (0, 0), with a door in the south wall, and a straight stair along the north wall:
+// `lines` lines of treads from x = 2 on, with a word at that end.
+DrawingText hall_with_stair(int lines, const std::string& word, bool door) {
+  DrawingText drawing;
+  drawing.rectangle("A-WALL", -0.3, -0.3, 8.3, 5.3);
+  drawing.rectangle("A-WALL", 0, 0, 8, 5);
+  if (door) drawing.arc("A-DOOR", 5, 0, 0.9, 90, 180), drawing.line("A-DOOR", 5, 0, 5, 0.9);
+  for (int k = 0; k < lines; ++k) drawing.line("A-FLOR-STRS", 2 + 0.27 * k, 4, 2 + 0.27 * k, 5);
+  if (!word.empty()) drawing.text("A-ANNO", 1.9, 4.5, word);
+  drawing.text("A-ANNO", 3, 2, "HALL");
+  return drawing;
+}
+
+std::filesystem::path two_halls(const std::filesystem::path& folder, int lines, const std::string& word) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "0.dxf") << hall_with_stair(lines, word, true).str();
+  std::ofstream(folder / "1.dxf") << hall_with_stair(lines, "", false).str();
+  return folder;
+}
+
+std::size_t not_entered(const Scene& scene) {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
+  Site site = test::site_of(Simulator(scene, scanner, {.engine = Engine::embree, .user_size_m = 0.3}));
+  return site.area().not_entered().size();
+}
+
+TEST_F(FloorPlanTest, StairsLinkStoreys) {
+  const Scene scene = Scene::load(two_halls(folder_.path() / "halls", 16, "UP"));
+  expect_note(scene, "0.dxf, 0.00 m up: stairs from 2.00,4.50 to the storey above, in risers of 18.8 cm");
+  EXPECT_EQ(notes_of(scene).find("assumed"), std::string::npos) << notes_of(scene);
+  EXPECT_FALSE(blocked(scene, {3, 4.5, 2}, {3, 4.5, 4})) << "the slab is open";
+  EXPECT_TRUE(blocked(scene, {3, 2.5, 2}, {3, 2.5, 4}));
+  EXPECT_TRUE(blocked(scene, {2.4, 4.5, 0.5}, {2.4, 4.5, 0.3})) << "the second step, 37.5 cm high";
+  EXPECT_FALSE(blocked(scene, {2.4, 4.5, 0.5}, {2.4, 4.5, 0.4}));
+  EXPECT_TRUE(blocked(scene, {5.9, 4.5, 3}, {5.9, 4.5, 2.7})) << "the last one";
+  EXPECT_EQ(not_entered(scene), 0u);
+  // The other way, by another word.
+  const Scene down = Scene::load(two_halls(folder_.path() / "down", 16, "DN"));
+  EXPECT_TRUE(blocked(down, {2.1, 4.5, 3}, {2.1, 4.5, 2.7}));
+  EXPECT_EQ(not_entered(down), 0u);
+  expect_note(Scene::load(two_halls(folder_.path() / "no word", 16, "")), "which end is the lower one is assumed");
+}
+
+TEST_F(FloorPlanTest, StairsThatNobodyClimbsAreTold) {
+  const Scene scene = Scene::load(two_halls(folder_.path() / "halls", 8, "UP"));
+  expect_note(scene, "are not made: 8 risers would be 38 cm high; enter the storey above with the setting enter");
+  EXPECT_TRUE(blocked(scene, {3, 4.5, 2}, {3, 4.5, 4}));
+  EXPECT_GT(not_entered(scene), 0u);
+  expect_note(load(hall_with_stair(16, "UP", true)), "1 flight of stairs left out");
+}
+
+TEST_F(FloorPlanTest, TwoFlightsTurnOnTheirLanding) {
+  std::filesystem::create_directories(folder_.path() / "well");
+  for (const char* name : {"0.dxf", "1.dxf"}) {
+    DrawingText drawing;
+    drawing.rectangle("A-WALL", -0.3, -0.3, 2.8, 6.3);
+    drawing.rectangle("A-WALL", 0, 0, 2.5, 6);
+    drawing.arc("A-DOOR", 1.7, 0, 0.9, 90, 180), drawing.line("A-DOOR", 1.7, 0, 1.7, 0.9);
+    for (int k = 0; k < 8; ++k)
+      for (const double x : {0.1, 1.3}) drawing.line("STAIRS", x, 2.4 + 0.28 * k, x + 1.1, 2.4 + 0.28 * k);
+    drawing.text("A-ANNO", 1.2, 1.2, "STAIRWELL");
+    write(std::string("well/") + name, drawing.str());
+  }
+  const Scene scene = Scene::load(folder_.path() / "well");
+  expect_note(scene, "to the storey above, in risers of 18.8 cm");
+  EXPECT_TRUE(blocked(scene, {1.25, 5, 1.6}, {1.25, 5, 1.4})) << "the landing, 1.5 m up";
+  EXPECT_FALSE(blocked(scene, {1.25, 5, 1.6}, {1.25, 5, 4})) << "and nothing over it";
+  EXPECT_EQ(not_entered(scene), 0u);
 }
 
 // A room is entered, or captured from its door nearly as well as the whole.

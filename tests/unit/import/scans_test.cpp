@@ -42,6 +42,42 @@ TEST_F(ScansTest, PosesComeBackAsTheyWereWritten) {
   }
 }
 
+TEST_F(ScansTest, SettingsAreThoseOfThePoints) {
+  const auto file = folder_ / "a.e57";
+  PointCloudWriter writer(file, {}, scan_position | scan_reflectivity);
+  Scanner scanner;
+  scanner.name = "Leica RTC360";
+  scanner.horizontal_angle = Angle::degrees(120), scanner.heading = Angle::degrees(30);
+  scanner.azimuth_step = Angle::degrees(0.5), scanner.zenith_step = Angle::degrees(0.4);
+  scanner.zenith_start = Angle::degrees(60), scanner.vertical_angle = Angle::degrees(120);
+  writer.begin_station({.name = "P1", .head = {1, 2, 3}, .scanner = scanner});
+  ScanChunk chunk;
+  chunk.ray_count = scanner.rays();
+  for (std::uint64_t ray = 0; ray < chunk.ray_count; ++ray) {
+    const RayAngles angles = scanner.angles(ray);
+    const double z = angles.zenith.in_radians(), a = angles.azimuth.in_radians();
+    chunk.position.push_back({static_cast<float>(1 + 6 * std::sin(z) * std::cos(a)),
+                              static_cast<float>(2 + 6 * std::sin(z) * std::sin(a)),
+                              static_cast<float>(3 + 6 * std::cos(z))});
+  }
+  chunk.reflectivity.assign(chunk.ray_count, 0.5F);
+  writer.write(chunk, 1);
+  writer.close();
+  const auto scans = taken_scans(file);
+  ASSERT_EQ(scans.size(), 1u);
+  ASSERT_TRUE(scans[0].settings);
+  const auto& settings = *scans[0].settings;
+  EXPECT_EQ(scans[0].sensor, "Leica RTC360");
+  EXPECT_TRUE(settings.steps_by_grid);
+  ASSERT_TRUE(settings.steps);
+  EXPECT_NEAR((*settings.steps)[0].in_degrees(), 0.5, 1e-9);
+  EXPECT_NEAR((*settings.steps)[1].in_degrees(), 0.4, 1e-9);
+  EXPECT_NEAR(settings.sweep.in_degrees(), 120, 1e-9);
+  EXPECT_NEAR(scans[0].setup.heading.in_degrees() + settings.sweep_middle.in_degrees(), 30, 1e-9);
+  EXPECT_NEAR(settings.zeniths[0].in_degrees(), 60, 1e-9);
+  EXPECT_NEAR(settings.zeniths[1].in_degrees(), 120, 1e-9);
+}
+
 TEST_F(ScansTest, ALevelledScannerHasNoTilt) {
   const double half = 0.5 * 0.01;  // of 0.6°, about y
   EXPECT_EQ(importers::setup_of({std::cos(half), 0, std::sin(half), 0}).tilt.in_degrees(), 0);

@@ -85,6 +85,20 @@ TEST(NextStations, AreLinkedToWhatIsThere) {
   }
 }
 
+TEST(NextStations, SayWhatTheyTieTogether) {
+  Site site = site_of(Rooms{});
+  const std::vector<TakenScan> scans{scan_at(site, kInFirst), scan_at(site, kInSecond)};
+  // Enough is captured, but no chain of such links joins the scans of two rooms.
+  const auto answer = next_stations(site, scans, {}, {}, {.capture = 0.5, .link = 0.3});
+  ASSERT_TRUE(answer);
+  ASSERT_TRUE(answer->linked);
+  ASSERT_FALSE(answer->next.empty());
+  std::size_t ties = 0;
+  for (std::size_t k = 0; k < answer->next.size(); ++k)
+    if (answer->next[k].ties) ++ties, EXPECT_LT(*answer->next[k].ties, scans.size() + k);
+  EXPECT_EQ(ties, 1u);
+}
+
 TEST(NextStations, EnoughIsEnough) {
   Site site = site_of(Rooms{});
   const std::vector<TakenScan> scans{scan_at(site, kInFirst), scan_at(site, kInSecond)};
