@@ -219,10 +219,10 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
   const std::size_t at_once = networks.empty() || networks.back().size() > kTogether ? 1 : networks.size();
   std::vector<std::vector<Estimate>> estimates;
   for (std::size_t first = 0; first < networks.size(); first += at_once) {
-    auto some = context.evaluator().estimate(
-        std::span(networks).subspan(first, std::min(at_once, networks.size() - first)),
-        {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()}, NetworkEvaluator::Which::all,
-        {.report = {}, .stop = watch.stop});
+    auto some =
+        context.evaluator().estimate(std::span(networks).subspan(first, std::min(at_once, networks.size() - first)),
+                                     {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
+                                     NetworkEvaluator::Which::all, {.report = {}, .stop = watch.stop});
     if (!some) return {};
     std::ranges::move(*some, std::back_inserter(estimates));
   }

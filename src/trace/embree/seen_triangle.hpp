@@ -59,8 +59,8 @@ class SeenTriangle {
     return height_ > start * (1 + distance_doubt) * std::sqrt(dot(normal_, normal_)) &&
            beyond > height_ * (1 + distance_doubt) && beyond > steep_ * box.far;
   }
-  // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut. The
-  // edges are those from corner k to the next.
+  // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
+  // The edges are those from corner k to the next.
   bool inside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k]) > tolerance_ * box.far; }
   bool outside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k] * -1) > tolerance_ * box.far; }
   bool is_outside(std::size_t k, const Vec3& point) const {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// For each station in turn, find_open() leaves out groups of voxels that one triangle hides. look_from() bounds the rows and columns of rays that can cross each cube of the block, all
-// side by side. drop_hidden_boxes() probes the way to the middle of each cube: a triangle there that hides all of the
-// cube settles it. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
+// For each station in turn, find_open() leaves out groups of voxels that one triangle hides. look_from() bounds the
+// rows and columns of rays that can cross each cube of the block, all side by side. drop_hidden_boxes() probes the way
+// to the middle of each cube: a triangle there that hides all of the cube settles it, and one that hides a part saves
+// rays. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
 // fill_nearest() intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors.
 // Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
 // ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
@@ -95,8 +96,8 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
   }
 }
 
-// Finds the voxels of the block that the current station need look at: most voxels of a large site are behind walls, and
-// one triangle hides many of them.
+// Finds the voxels of the block that the current station need look at: most voxels of a large site are behind walls,
+// and one triangle hides many of them.
 void SampledVoxelCounter::find_open(std::size_t n) {
   met_.clear();
   for (std::uint32_t i = 0; i < n; ++i) open_[i] = !full(i);
@@ -142,10 +143,9 @@ Box SampledVoxelCounter::box_of(const SampledVoxels::Cells& cells) const {
           corner + Vec3{(cells.high[0] + 1) * side, (cells.high[1] + 1) * side, (cells.high[2] + 1) * side}};
   const Vec3 farthest{std::max(-box.min.x, box.max.x), std::max(-box.min.y, box.max.y),
                       std::max(-box.min.z, box.max.z)};
-  const double reach =
-      reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(
-                       static_cast<float>(std::sqrt(dot(farthest, farthest)) + reach_)))
-                 : 0;
+  const double reach = reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(
+                                        static_cast<float>(std::sqrt(dot(farthest, farthest)) + reach_)))
+                                  : 0;
   const double beyond = reach + 4 * pad_;
   return {box.min - Vec3{beyond, beyond, beyond}, box.max + Vec3{beyond, beyond, beyond}};
 }
@@ -319,7 +319,8 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   for (std::size_t k = 0; k < looks_.size(); ++k) {
     const std::uint32_t by = probes_[k].hit;
     if (by != RayBundle::no_hit && hides(by, box_of(looks_[k]))) continue;
-    looks_[kept++] = looks_[k];
+    looks_[kept] = looks_[k];
+    looks_[kept++].occluder = by;
   }
   looks_.resize(kept);
 }
@@ -361,15 +362,11 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
   std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
 
-  VoxelRays rays{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
+  VoxelRays rays{.voxel = i,
+                 .begin = listed_size_,
+                 .farthest = std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
+                 .occluder = look.occluder};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  const auto end_voxel = [&] {
-    rays.end = listed_size_;
-    if (rays.end == rays.begin) return;
-    // an occluder of the middle ray may hide all
-    std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
-    voxel_rays_.push_back(rays);
-  };
   for (std::uint32_t range = from.range; range < window.columns.size(); ++range) {
     const RayRanges::Range columns = window.columns[range];
     for (std::uint32_t row = range == from.range ? from.row : window.rows.begin; row < window.rows.end; ++row) {
@@ -398,7 +395,7 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
         found += list_batch(rays);
         if (full(i)) return;
         if (found >= enough) {
-          end_voxel();
+          end_rays(rays);
           rest_.push_back({look, window, {range, row, column}});
           return;
         }
@@ -408,7 +405,7 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
   }
   fill_nearest(planes, cube);
   list_batch(rays);
-  end_voxel();
+  end_rays(rays);
 }
 
 // Empties the batch: lists those of its rays that may hit. Returns their number.
@@ -422,11 +419,21 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   listed_size_ = size;
   batch_.size = 0;
   if (listed_size_ < rays_at_once) return added;
-  rays.end = listed_size_;
-  if (rays.end > rays.begin) voxel_rays_.push_back(rays);
+  end_rays(rays);
   settle();
   rays.begin = 0;
   return added;
+}
+
+// Those listed last are all of a voxel, or as many as are traced at once.
+void SampledVoxelCounter::end_rays(VoxelRays& rays) {
+  rays.end = listed_size_;
+  if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
+  listed_size_ = rays.end;
+  if (rays.end == rays.begin) return;
+  // An occluder of the middle ray may hide all.
+  std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
+  voxel_rays_.push_back(rays);
 }
 
 // Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.

@@ -56,7 +56,8 @@ class SampledVoxelCounter {
   struct Look {
     std::uint32_t voxel = 0;  // index in the block
     Cube cube;
-    bool sure = false;  // every hit that counts lies on a plane that crosses the voxel
+    bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
+    std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
   };
   // Where the listing of a voxel's rays goes on: at this row and column of this range of columns.
   struct Place {
@@ -74,6 +75,7 @@ class SampledVoxelCounter {
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
     bool probed = false;  // its first ray was probed
+    std::uint32_t occluder = RayBundle::no_hit;
   };
   struct Ray {
     Float3 d;
@@ -106,6 +108,7 @@ class SampledVoxelCounter {
   void list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
   std::uint32_t list_batch(VoxelRays& rays);
+  void end_rays(VoxelRays& rays);
   void settle();
   void drop_hidden(VoxelRays& rays, std::uint32_t by);
   void cast();

@@ -19,9 +19,10 @@ std::vector<Float3> bumpy_wall(RandomStream& random, int side, double bumps, boo
   for (int i = 0; i <= side; ++i)
     for (int j = 0; j <= side; ++j) {
       const double step = 6.0 / side, move = bumps * step;
-      at[static_cast<std::size_t>(i)].push_back({static_cast<float>(-3 + i * step) + test::between(random, -move, move),
-                                                 4 + test::between(random, -move, move),
-                                                 static_cast<float>(-3 + j * step) + test::between(random, -move, move)});
+      at[static_cast<std::size_t>(i)].push_back(
+          {static_cast<float>(-3 + i * step) + test::between(random, -move, move),
+           4 + test::between(random, -move, move),
+           static_cast<float>(-3 + j * step) + test::between(random, -move, move)});
     }
   std::vector<Float3> corners;
   const auto put = [&](std::array<Corner, 3> triangle) {
@@ -59,7 +60,8 @@ TEST(OccludingPatches, WhatTheyHideNoRayReaches) {
       Vec3 p = middle + Vec3{test::between(random, -half, half), test::between(random, -half, half),
                              test::between(random, -half, half)};
       if (r % 2) {
-        const std::size_t at = 3 * (static_cast<std::size_t>(random.uniform() * static_cast<double>(corners.size())) / 3);
+        const std::size_t at =
+            3 * (static_cast<std::size_t>(random.uniform() * static_cast<double>(corners.size())) / 3);
         const double u = r % 8 == 1 ? 0 : random.uniform();
         p = widen(corners[at]) * (1 - u) + widen(corners[at + 1]) * u;
         p = p * ((middle.y) / p.y);
