@@ -67,12 +67,14 @@ class Model:
         return len(self.json["bufferViews"]) - 1
 
     def mesh(self, boxes):
-        """Returns the number of a new mesh of boxes."""
+        """Returns the number of a new mesh of boxes; one without height is its upper side."""
         points, corners = [], []
         for x0, x1, y0, y1, z0, z1 in boxes:
             first = len(points)
-            points += [(x, z, -y) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)]
-            for a, b, c, d in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)):
+            flat = z0 == z1
+            points += [(x, z, -y) for z in ((z1,) if flat else (z0, z1)) for y in (y0, y1) for x in (x0, x1)]
+            sides = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+            for a, b, c, d in ((0, 1, 3, 2),) if flat else sides:
                 corners += [first + k for k in (a, b, c, a, c, d)]
         accessors = self.json["accessors"]
         accessors.append({
@@ -133,7 +135,7 @@ def main():
                 roots.append(len(nodes) - 1)
     x1 = (asked.across - 1) * pitch_x + (30 if asked.storeys == 1 else 35)
     y1 = (asked.deep - 1) * pitch_y + 20
-    nodes.append({"name": "ground", "mesh": model.mesh([box(-MARGIN, x1, -MARGIN, y1, LAWN - 0.1, LAWN)])})
+    nodes.append({"name": "ground", "mesh": model.mesh([box(-MARGIN, x1, -MARGIN, y1, LAWN, LAWN)])})
     roots.append(len(nodes) - 1)
     model.json["nodes"] = nodes
     model.json["scenes"], model.json["scene"] = [{"nodes": roots}], 0
