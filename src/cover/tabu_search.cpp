@@ -18,6 +18,14 @@ struct TabuSearch::Swap {
   }
 };
 
+// What the network loses without one of its members, and what candidates then gain more than now. A swap changes that
+// of few members: those that share an element with one of the two.
+struct TabuSearch::Leaving {
+  bool known = false;
+  double loss = 0;
+  std::vector<std::pair<std::uint32_t, double>> gained;
+};
+
 struct TabuSearch::State {
   std::vector<std::size_t> chosen;
   double link;
@@ -26,6 +34,7 @@ struct TabuSearch::State {
   NetworkLinks links;
   Swap best;                            // quality of the best network found
   std::vector<std::size_t> tabu_until;  // by candidate: may neither leave nor return before that swap
+  std::vector<Leaving> leaving;         // by place; made when first needed
   std::size_t swap = 1;
 };
 
@@ -81,19 +90,19 @@ struct TabuSearch::Round {
 
 // Candidates that one place looks at by themselves, with their gains there.
 struct TabuSearch::Scratch {
-  std::vector<std::uint32_t> marked, gained;  // by candidate: the last visit that marked it, and that knew its gain
-  std::vector<double> gains;                  // by candidate
+  std::vector<std::uint32_t> marked;  // by candidate: the last visit that marked it
+  std::vector<double> gained;         // by candidate: what it gains more without the leaving one
   std::vector<std::size_t> candidates;
   std::uint32_t visit = 0;
 
   void begin(std::size_t candidates_in_all) {
-    marked.resize(candidates_in_all, 0), gained.resize(candidates_in_all, 0), gains.resize(candidates_in_all);
+    marked.resize(candidates_in_all, 0), gained.resize(candidates_in_all, 0);
     candidates.clear();
     ++visit;
   }
   void mark(std::size_t k) {
     if (marked[k] == visit) return;
-    marked[k] = visit;
+    marked[k] = visit, gained[k] = 0;
     candidates.push_back(k);
   }
 };
@@ -104,17 +113,25 @@ TabuSearch::TabuSearch(const CoverProblem& problem, std::stop_token stop)
 // The best swap of one chosen candidate. A tabu one counts if it leads to less violation than any network so far. Only
 // candidates near the leaving one, and near parts that it cuts off, are looked at one by one: whether the others may
 // join, what they gain and how many components they link is as in the present network.
-TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round, std::size_t at,
-                                          Scratch& scratch) const {
+TabuSearch::Swap TabuSearch::best_swap_at(State& state, const Round& round, std::size_t at, Scratch& scratch) const {
   const std::size_t leaving = state.chosen[at], count_without = round.components_without[at];
   const bool may_leave = state.tabu_until[leaving] <= state.swap, connected = state.link > 0;
-  const double left = round.coverage - state.gains.cover().loss(leaving);
   scratch.begin(problem_.matrix.candidates());
-  state.gains.for_gains_without(leaving, [&](std::size_t k, double gained) {
-    if (scratch.gained[k] != scratch.visit) scratch.gained[k] = scratch.visit, scratch.gains[k] = state.gains[k];
-    scratch.gains[k] += gained;
-    scratch.mark(k);
-  });
+  Leaving& without = state.leaving[at];
+  if (without.known) {
+    for (const auto& [k, gained] : without.gained) scratch.mark(k), scratch.gained[k] = gained;
+  } else {
+    state.gains.for_gains_without(leaving, [&](std::size_t k, double gained) {
+      scratch.mark(k);
+      scratch.gained[k] += gained;
+    });
+    without.gained.clear();
+    for (const std::size_t k : scratch.candidates)
+      without.gained.emplace_back(static_cast<std::uint32_t>(k), scratch.gained[k]);
+    without.loss = state.gains.cover().loss(leaving);
+    without.known = true;
+  }
+  const double left = round.coverage - without.loss;
   const auto mark_linked = [&](std::size_t candidate) {
     for (const StationGraph::Overlap& other : problem_.graph->overlaps(candidate))
       if (static_cast<double>(other.share) >= state.link) scratch.mark(other.candidate);
@@ -150,7 +167,7 @@ TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round
     if (k == leaving || !state.joinable.may_stand_without(k, problem_.graph && problem_.graph->excluded(leaving, k)))
       continue;
     const std::size_t joined = connected ? round.links.joined(cut ? *cut : round.components, k, at) : 0;
-    consider(k, scratch.gained[k] == scratch.visit ? scratch.gains[k] : state.gains[k], count_with(joined));
+    consider(k, state.gains[k] + scratch.gained[k], count_with(joined));
   }
   const auto unmarked = [&](std::size_t k) { return scratch.marked[k] != scratch.visit; };
   for (std::size_t joined = 0; joined < round.rankings.size(); ++joined)
@@ -159,7 +176,7 @@ TabuSearch::Swap TabuSearch::best_swap_at(const State& state, const Round& round
   return best;
 }
 
-TabuSearch::Swap TabuSearch::best_swap(const State& state) const {
+TabuSearch::Swap TabuSearch::best_swap(State& state) const {
   const std::size_t first = problem_.existing.size();
   Round round{.coverage = state.gains.cover().value(), .links = state.links};
   round.components = round.links.components();
@@ -182,6 +199,20 @@ TabuSearch::Swap TabuSearch::best_swap(const State& state) const {
   return best;
 }
 
+void TabuSearch::replace(State& state, std::size_t at, std::size_t joining) const {
+  const std::size_t leaving = std::exchange(state.chosen[at], joining);
+  state.gains.replace(leaving, joining);
+  state.joinable.remove(leaving), state.joinable.add(joining);
+  state.links.replace(at, joining);
+  std::vector<char> touched(problem_.matrix.candidates(), 0);
+  for (const std::size_t k : {leaving, joining})
+    for (const CoverageMatrix::Entry& one : problem_.matrix.column(k))
+      for (const ColumnIndex::Column& other : columns_->of(one.element)) touched[other.candidate] = 1;
+  for (std::size_t other = 0; other < state.chosen.size(); ++other)
+    if (touched[state.chosen[other]]) state.leaving[other].known = false;
+  state.leaving[at].known = false;
+}
+
 std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double link) {
   if (!columns_) columns_.emplace(problem_.matrix);
   std::vector<std::size_t> best = start;
@@ -191,17 +222,16 @@ std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double 
               .joinable = {problem_, best},
               .links = {problem_, best, link},
               .best = {},
-              .tabu_until = std::vector<std::size_t>(problem_.matrix.candidates(), 0)};
+              .tabu_until = std::vector<std::size_t>(problem_.matrix.candidates(), 0),
+              .leaving = std::vector<Leaving>(best.size())};
   state.best.coverage = state.gains.cover().value();
   state.best.violation = violation(problem_, state.best.coverage, state.links.components().count);
   for (std::size_t idle = 0; state.best.violation > 0 && idle < kPatience && !stop_.stop_requested();
        ++state.swap, ++idle) {
     const Swap swap = best_swap(state);
     if (swap.violation == std::numeric_limits<double>::infinity()) break;
-    const std::size_t leaving = std::exchange(state.chosen[swap.at], swap.in);
-    state.gains.replace(leaving, swap.in);
-    state.joinable.remove(leaving), state.joinable.add(swap.in);
-    state.links.replace(swap.at, swap.in);
+    const std::size_t leaving = state.chosen[swap.at];
+    replace(state, swap.at, swap.in);
     state.tabu_until[leaving] = state.swap + kTabu + 1, state.tabu_until[swap.in] = state.swap + kTabu / 2 + 1;
     if (!swap.better_than(state.best)) continue;
     if (swap.violation < state.best.violation) idle = 0;

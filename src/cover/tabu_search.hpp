@@ -29,11 +29,13 @@ class TabuSearch {
   // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
+  struct Leaving;
   struct Round;
   struct Scratch;
   class Ranking;
-  Swap best_swap(const State& state) const;
-  Swap best_swap_at(const State& state, const Round& round, std::size_t at, Scratch& scratch) const;
+  Swap best_swap(State& state) const;
+  Swap best_swap_at(State& state, const Round& round, std::size_t at, Scratch& scratch) const;
+  void replace(State& state, std::size_t at, std::size_t joining) const;
 
   const CoverProblem& problem_;
   std::stop_token stop_;

@@ -18,6 +18,7 @@ constexpr double kAbove = 0.05;       // share of the ground that must lie over 
 constexpr double kOfLargest = 0.2;    // a floor has at least so much ground over others as the largest
 constexpr double kStep = 0.25;        // metres between heights that are told apart
 constexpr double kReach = 2 * kStep;  // a floor's ground may lie so much lower than its middle
+constexpr double kLanding_m = 2.2;    // a landing half way up a storey's stairs is no higher, and no floor of its own
 
 constexpr double kCutHeight = 1.2, kCutShare = 1.2 / 1.85;
 constexpr double kRoofed = 0.1;  // share of stations under a roof, in no building, from which on a site is cut
@@ -141,16 +142,16 @@ std::vector<PlanLevel> plan_levels(const SearchMesh& mesh, std::span<const Place
   for (const auto& [step, heights] : steps) by_size.push_back(&heights);
   std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const auto* heights) { return heights->size(); });
   std::vector<PlanLevel> levels;
-  const auto add = [&](double floor) {
-    if (std::ranges::none_of(levels, [&](const PlanLevel& l) { return std::abs(l.floor - floor) < apart_m; }))
+  const auto add = [&](double floor, double from_others_m) {
+    if (std::ranges::none_of(levels, [&](const PlanLevel& l) { return std::abs(l.floor - floor) < from_others_m; }))
       levels.push_back({.floor = floor});
   };
   for (const auto* heights : by_size) {
     if (static_cast<double>(heights->size()) < kOfLargest * static_cast<double>(by_size.front()->size())) break;
-    add(middle_of(*heights, 0));
+    add(middle_of(*heights, 0), apart_m);
   }
   std::ranges::sort(stand);
-  for (const double z : stand) add(z);
+  for (const double z : stand) add(z, std::max(apart_m, kLanding_m));
   std::ranges::sort(levels, {}, &PlanLevel::floor);
   for (std::size_t k = 1; k < levels.size(); ++k) levels[k - 1].high = levels[k].low = levels[k].floor - kReach;
   return levels;

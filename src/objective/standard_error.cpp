@@ -23,14 +23,17 @@ double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
 }
 
+// Whether a function looks at the sums of registration. Of hundreds of stations these are by far the most.
+enum class Sums : std::uint8_t { none, registration };
+
 // The sample's own counts, without its groups.
-NetworkCounts without_groups(const NetworkCounts& all) {
+NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
   NetworkCounts rest;
   rest.stations = all.stations;
   rest.voxels = all.voxels, rest.weight = all.weight;
   rest.saturated = all.saturated, rest.partial_points = all.partial_points, rest.point_weight = all.point_weight;
   rest.seen = all.seen, rest.shared = all.shared;
-  rest.registration = all.registration;
+  if (sums == Sums::registration) rest.registration = all.registration;
   return rest;
 }
 
@@ -42,6 +45,7 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   };
   subtract(rest.seen, group.seen);
   subtract(rest.shared, group.shared);
+  if (rest.registration.heads.empty()) return;
   // Differences of sums that are exact except for their last place.
   subtract(rest.registration.pairs, group.registration.pairs);
   subtract(rest.registration.surface, group.registration.surface);
@@ -49,13 +53,14 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
 
 // `of` each delete-one-group replicate; empty if there are fewer than two groups.
 template <class Value>
-std::vector<Value> replicates(const NetworkCounts& counts, const std::function<Value(const NetworkCounts&)>& of) {
+std::vector<Value> replicates(const NetworkCounts& counts, Sums sums,
+                              const std::function<Value(const NetworkCounts&)>& of) {
   std::vector<const NetworkCounts*> groups;
   for (const NetworkCounts& group : counts.groups)
     if (group.voxels > 0) groups.push_back(&group);
   if (groups.size() < 2) return {};
   std::vector<Value> found(groups.size());
-  const NetworkCounts all = without_groups(counts);
+  const NetworkCounts all = without_groups(counts, sums);
   tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
     NetworkCounts rest = all;
     take_off(rest, *groups[g]);
@@ -109,7 +114,7 @@ bool in_half(std::size_t r, std::size_t g) {
 double halving_bias(double estimate, const NetworkCounts& counts, double unsampled,
                     const std::function<double(const NetworkCounts&)>& of) {
   constexpr std::size_t halvings = kHalvedGroups - 1;
-  const NetworkCounts all = without_groups(counts);
+  const NetworkCounts all = without_groups(counts, Sums::none);
   double sum = 0;
   for (std::size_t r = 0; r < halvings; ++r) {
     NetworkCounts half = all, other = all;
@@ -123,7 +128,7 @@ double halving_bias(double estimate, const NetworkCounts& counts, double unsampl
 // error is as large as the correction.
 Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, double scale,
                   const std::function<double(const NetworkCounts&)>& of) {
-  const std::vector<double> values = replicates<double>(counts, of);
+  const std::vector<double> values = replicates<double>(counts, Sums::none, of);
   if (values.size() != kHalvedGroups) return jackknifed(seen, values, unsampled, scale);
   const double error = jackknife_error(values, unsampled, scale);
   const double bias = halving_bias(seen, counts, unsampled, of);
@@ -142,7 +147,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
   }
   if (counts.weight != counts.voxels) {
     const auto of = [&](const NetworkCounts& rest) { return coverage(rest, goal_density); };
-    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled);
+    estimate.standard_error = jackknife_error(replicates<double>(counts, Sums::none, of), unsampled);
     return estimate;
   }
   const double n = static_cast<double>(counts.voxels);
@@ -177,9 +182,10 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .surroundings_voxels = measured.surroundings_voxels,
                                 .minutes_on_site = measured.minutes_on_site});
       };
+      const Sums sums = objective.needs.registration ? Sums::registration : Sums::none;
       const Estimate own = objective.needs.pairs && !objective.needs.registration
                                ? of_pairs(estimate.value, counts, unsampled, scale, of)
-                               : jackknifed(estimate.value, replicates<double>(counts, of), unsampled, scale);
+                               : jackknifed(estimate.value, replicates<double>(counts, sums, of), unsampled, scale);
       // As `registration_estimate`: no registration is without error.
       estimate.value = objective.needs.registration ? std::max(own.value, least_unbiased * estimate.value) : own.value;
       add(own.standard_error);
@@ -197,7 +203,8 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       without.minutes_on_site = measured.minutes_on_site;
       return objective.value(without);
     };
-    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, of), unsampled, scale));
+    const Sums sums = objective.needs.surroundings_registration ? Sums::registration : Sums::none;
+    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, sums, of), unsampled, scale));
   }
   estimate.standard_error = std::sqrt(variance);
   return estimate;
@@ -226,10 +233,13 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
     estimate.standard_error = std::hypot(estimate.standard_error, own);
   };
   if (const double unsampled = unsampled_share(counts, voxels); unsampled > 0)
-    add(replicates<double>(counts, [&](const NetworkCounts& rest) { return error(rest, surroundings); }), unsampled);
+    add(replicates<double>(counts, Sums::registration,
+                           [&](const NetworkCounts& rest) { return error(rest, surroundings); }),
+        unsampled);
   if (options.surfaces == RegistrationSurfaces::all)
     if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0)
-      add(replicates<double>(*surroundings, [&](const NetworkCounts& rest) { return error(counts, &rest); }),
+      add(replicates<double>(*surroundings, Sums::registration,
+                             [&](const NetworkCounts& rest) { return error(counts, &rest); }),
           unsampled);
   // A bias that seems larger means that the weakest link rests on voxels of one group; the sample cannot tell its size.
   // But no registration is without error.
@@ -242,7 +252,7 @@ PairMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t po
   PairMatrix errors(counts.stations);
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return errors;
-  const std::vector<OverlapMatrix> without = replicates<OverlapMatrix>(counts, overlap_matrix);
+  const std::vector<OverlapMatrix> without = replicates<OverlapMatrix>(counts, Sums::none, overlap_matrix);
   std::vector<double> values(without.size());
   for (std::size_t i = 0; i < counts.stations; ++i) {
     for (std::size_t j = i + 1; j < counts.stations; ++j) {

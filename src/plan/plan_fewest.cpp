@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -25,6 +26,9 @@ constexpr double kAroundRadius = 0.8;
 constexpr std::size_t kRepairs = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 2000, kFewerStations = 500;
+
+// Largest networks of a trade-off that are measured together.
+constexpr std::size_t kTogether = 128;
 
 // A site with more ground has hundreds of links, of which a sample flatters some. There they are taken for weaker than
 // they seem, by so many standard errors, before every ray shows it. On smaller sites that would cost stations for links
@@ -211,10 +215,17 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
   const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop);
   std::vector<PlacedNetwork> networks;
   for (const CoverSolution& solution : solutions) networks.push_back(choice.stations_of(solution));
-  const auto estimates = context.evaluator().estimate(
-      networks, {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
-      NetworkEvaluator::Which::all, {.report = {}, .stop = watch.stop});
-  if (!estimates) return {};
+  // Sums of all pairs of hundreds of stations, by group of voxels, are gigabytes: one network at a time.
+  const std::size_t at_once = networks.empty() || networks.back().size() > kTogether ? 1 : networks.size();
+  std::vector<std::vector<Estimate>> estimates;
+  for (std::size_t first = 0; first < networks.size(); first += at_once) {
+    auto some =
+        context.evaluator().estimate(std::span(networks).subspan(first, std::min(at_once, networks.size() - first)),
+                                     {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
+                                     NetworkEvaluator::Which::all, {.report = {}, .stop = watch.stop});
+    if (!some) return {};
+    std::ranges::move(*some, std::back_inserter(estimates));
+  }
   std::vector<TradeOffPoint> points;
   for (std::size_t k = 0; k < networks.size(); ++k) {
     TradeOffPoint& point = points.emplace_back(TradeOffPoint{.stations = networks[k]});
@@ -222,7 +233,7 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
       const Objective& measure = context.measures().all[m];
       // A single scan has nothing to be registered to.
       if (measure.needs.registration && networks[k].size() < 2) continue;
-      point.values[measure.name] = (*estimates)[k][m];
+      point.values[measure.name] = estimates[k][m];
     }
     point.minutes_on_site = context.on_site().visit(std::span(networks[k]).subspan(choice.asked.existing)).minutes;
   }

@@ -160,6 +160,14 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     std::copy_n(planes.begin() + lists.offset[i], count, planes.begin() + offset_[i]);
   }
   planes_.assign(planes.begin(), planes.begin() + offset_[n]);
+  for (std::size_t level = 0; level < group_sizes.size(); ++level)
+    for (std::size_t first = 0; first < n; first += group_sizes[level]) {
+      Cells& cells = groups_[level].emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto of = std::span(places_.cell[axis]).subspan(first, std::min(group_sizes[level], n - first));
+        cells.low[axis] = std::ranges::min(of), cells.high[axis] = std::ranges::max(of);
+      }
+    }
 }
 
 bool SampledVoxels::made_for(std::span<const std::uint32_t> voxel_indices, double pad, double reach) const {

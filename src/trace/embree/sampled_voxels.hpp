@@ -39,6 +39,12 @@ class SampledVoxels {
     std::array<std::vector<float>, 3> middle, half;
   };
 
+  // Neighbouring voxels, by their number: `size` of them from a multiple of it on lie in these cells.
+  struct Cells {
+    std::array<std::int32_t, 3> low, high;
+  };
+  static constexpr std::array<std::size_t, 3> group_sizes{512, 64, 8};
+
   // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: how far outside its
   // voxel's cube a triangle's hit may lie whose point still counts in it. Metres.
   SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
@@ -57,6 +63,8 @@ class SampledVoxels {
   std::uint32_t crossing(std::size_t i) const { return crossing_[i]; }
   const Piece& piece(std::size_t k) const { return pieces_[k]; }
   const Places& places() const { return places_; }
+  // Number k of the groups of group_sizes[level] voxels.
+  const Cells& group(std::size_t level, std::size_t k) const { return groups_[level][k]; }
 
  private:
   double pad_, reach_;
@@ -65,6 +73,7 @@ class SampledVoxels {
   std::vector<Plane> planes_;
   std::vector<Piece> pieces_;
   Places places_;
+  std::array<std::vector<Cells>, group_sizes.size()> groups_;
 };
 
 }  // namespace vantage

@@ -12,6 +12,20 @@
 
 namespace vantage {
 
+// A box as seen from a head, at the origin.
+struct SeenBox {
+  explicit SeenBox(const Box& box) : middle((box.min + box.max) * 0.5), half((box.max - box.min) * 0.5) {
+    const Vec3 most{std::abs(middle.x) + half.x, std::abs(middle.y) + half.y, std::abs(middle.z) + half.z};
+    far = std::sqrt(dot(most, most));
+  }
+  // The least product of a vector with a point of the box.
+  double least(const Vec3& n) const {
+    return dot(n, middle) - (std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z);
+  }
+  Vec3 middle, half;
+  double far;  // no point is farther
+};
+
 class SeenTriangle {
  public:
   // Corners relative to the head.
@@ -35,17 +49,28 @@ class SeenTriangle {
   bool is_steep(const Vec3& d) const { return dot(normal_, d) > steep_; }
   double distance(const Vec3& d) const { return height_ / dot(normal_, d); }
   // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
-  // such a point. Each test holds for all points of a box if it holds at its corners: their directions are sums of the
-  // corners' with weights that add up to at least 1.
-  bool hides(const Box& box, double start) const {
-    if (!(height_ > start * (1 + distance_doubt) * std::sqrt(dot(normal_, normal_)))) return false;
-    for (unsigned k = 0; k < 8; ++k) {
-      const Vec3 corner{k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z};
-      if (!(dot(normal_, corner) > height_ * (1 + distance_doubt))) return false;
-      const Vec3 d = corner * (1 / std::sqrt(dot(corner, corner)));
-      if (!is_steep(d) || !must_hit(d)) return false;
-    }
-    return true;
+  // such a point.
+  bool hides(const SeenBox& box, double start) const {
+    return is_before(box, start) && inside(0, box) && inside(1, box) && inside(2, box);
+  }
+  // Whether each hit by such a ray lies beyond `start` and before the box.
+  bool is_before(const SeenBox& box, double start) const {
+    const double beyond = box.least(normal_);
+    return height_ > start * (1 + distance_doubt) * std::sqrt(dot(normal_, normal_)) &&
+           beyond > height_ * (1 + distance_doubt) && beyond > steep_ * box.far;
+  }
+  // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
+  // The edges are those from corner k to the next.
+  bool inside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k]) > tolerance_ * box.far; }
+  bool outside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k] * -1) > tolerance_ * box.far; }
+  bool is_outside(std::size_t k, const Vec3& point) const {
+    return dot(edge_[k], point) < -tolerance_ * std::sqrt(dot(point, point));
+  }
+  // Bound on the angle to the corner of two edges, as a sine, of a ray whose side of both is in doubt.
+  double doubt_at(std::size_t k, std::size_t other) const {
+    const double a = std::sqrt(dot(edge_[k], edge_[k])), b = std::sqrt(dot(edge_[other], edge_[other]));
+    const Vec3 across = cross(edge_[k], edge_[other]);
+    return 2 * tolerance_ * (a + b) / std::sqrt(dot(across, across));
   }
 
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight

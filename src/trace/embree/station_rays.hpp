@@ -10,6 +10,7 @@
 
 #include "trace/embree/glass_panes.hpp"
 #include "trace/embree/hits.hpp"
+#include "trace/embree/occluding_patch.hpp"
 #include "trace/embree/point_judge.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/embree/ray_caster.hpp"
@@ -37,6 +38,7 @@ struct EmbreeScene {
         caster(scene, planes),
         surface(scene, planes),
         prefixes(*grid),
+        patches(*scene),
         glass(weakens_through_glass(traced) ? std::make_unique<const GlassPanes>(scene, planes) : nullptr),
         whole_scans(traced.whole_scans) {}
 
@@ -47,6 +49,7 @@ struct EmbreeScene {
   RayCaster caster;
   Surface surface;
   BrickPrefixes prefixes;
+  OccludingPatches patches;
   std::unique_ptr<const GlassPanes> glass;  // null: glass weakens no echo
   WholeScans whole_scans;
 };
@@ -80,6 +83,7 @@ class StationRays {
   const Planes& planes() const { return *scene_->planes; }
   const RayCaster& caster() const { return scene_->caster; }
   const Surface& surface() const { return scene_->surface; }
+  const OccludingPatches& patches() const { return scene_->patches; }
   WholeScans whole_scans() const { return scene_->whole_scans; }
   VoxelLookup voxels() const { return {grid(), scene_->prefixes}; }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of the block, all
-// side by side. drop_hidden_boxes() probes the way to the middle of each cube: a triangle there that hides all of the
-// cube settles it. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
+// For each station in turn, find_open() leaves out groups of voxels that one triangle hides. look_from() bounds the
+// rows and columns of rays that can cross each cube of the block, all side by side. drop_hidden_boxes() probes the way
+// to the middle of each cube: a triangle there that hides all of the cube settles it, and one that hides a part saves
+// rays. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
 // fill_nearest() intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors.
 // Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
 // ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/target_clones.hpp"
@@ -27,6 +29,8 @@ constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel probed one by one for an occluder: the first, and the first that its occluder does not hide. Then all
 // are traced.
 constexpr int rounds = 2;
+// Triangles that are remembered.
+constexpr std::size_t kMet = 4;
 // Bound on the relative error of any distance computed in float here, on any plane tested, however grazing.
 constexpr double trust = 0x1p-7;
 // Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
@@ -75,12 +79,14 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     head_ = {station.origin.x, station.origin.y, station.origin.z};
     bundle_.origin = station.origin;
     bundle_.start = rays_->pattern().min_range;
+    find_open(counts.size());
+    if (std::ranges::none_of(std::span(open_).first(counts.size()), std::identity())) continue;
     look_from(first, counts.size());
     looks_.clear();
     rest_.clear();
     Look look;
     for (std::uint32_t i = 0; i < counts.size(); ++i)
-      if (!full(i) && look_at(i, look)) looks_.push_back(look);
+      if (open_[i] && look_at(i, look)) looks_.push_back(look);
     drop_hidden_boxes();
     for (const Look& each : looks_) list_rays(each);
     settle();
@@ -88,6 +94,92 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       if (!full(rest.look.voxel)) list_rays(rest.look, rest.window, rest.from, kAll);
     settle();
   }
+}
+
+// Finds the voxels of the block that the current station need look at: most voxels of a large site are behind walls,
+// and one triangle hides many of them.
+void SampledVoxelCounter::find_open(std::size_t n) {
+  met_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) open_[i] = !full(i);
+  for (std::size_t level = 0; level < SampledVoxels::group_sizes.size(); ++level) drop_hidden_groups(level, n);
+}
+
+void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
+  const RayPattern& pattern = rays_->pattern();
+  const std::size_t size = SampledVoxels::group_sizes[level];
+  for (std::size_t first = 0; first < n; first += size) {
+    const std::span<bool> open = std::span(open_).subspan(first, std::min(size, n - first));
+    if (std::ranges::none_of(open, std::identity())) continue;
+    const Box box = box_of(voxels_.group(level, (first_ + first) / size));
+    const Vec3 to_nearest{std::max({box.min.x, -box.max.x, 0.0}), std::max({box.min.y, -box.max.y, 0.0}),
+                          std::max({box.min.z, -box.max.z, 0.0})};
+    const double nearest = std::sqrt(dot(to_nearest, to_nearest));
+    if (nearest > (pattern.max_range + reach_) * (1 + trust)) {
+      std::ranges::fill(open, false);
+      continue;
+    }
+    if (nearest == 0) continue;  // the head is among them
+    bool hidden = is_hidden(SeenBox(box));
+    if (!hidden) {
+      const Vec3 middle = (box.min + box.max) * 0.5, d = middle * (1 / std::sqrt(dot(middle, middle)));
+      Probe probe{narrow(d), static_cast<float>(nearest * (1 - trust))};
+      rays_->caster().any_hits(bundle_.origin, bundle_.start, {&probe, 1});
+      ++traced_;
+      if (probe.hit != RayBundle::no_hit) {
+        meet(probe.hit);
+        hidden = hides(probe.hit, box);
+      }
+    }
+    if (hidden) std::ranges::fill(open, false);
+  }
+}
+
+// Holds every point that counts in one of the cells, before the noise moves it, relative to the head.
+Box SampledVoxelCounter::box_of(const SampledVoxels::Cells& cells) const {
+  const VoxelGrid& grid = rays_->grid();
+  const double side = grid.voxel_size();
+  const Vec3 corner = Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} - head_;
+  Box box{corner + Vec3{cells.low[0] * side, cells.low[1] * side, cells.low[2] * side},
+          corner + Vec3{(cells.high[0] + 1) * side, (cells.high[1] + 1) * side, (cells.high[2] + 1) * side}};
+  const Vec3 farthest{std::max(-box.min.x, box.max.x), std::max(-box.min.y, box.max.y),
+                      std::max(-box.min.z, box.max.z)};
+  const double reach = reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(
+                                        static_cast<float>(std::sqrt(dot(farthest, farthest)) + reach_)))
+                                  : 0;
+  const double beyond = reach + 4 * pad_;
+  return {box.min - Vec3{beyond, beyond, beyond}, box.max + Vec3{beyond, beyond, beyond}};
+}
+
+void SampledVoxelCounter::meet(std::uint32_t triangle) {
+  const auto known = std::ranges::find(met_, triangle, &std::pair<std::uint32_t, SeenTriangle>::first);
+  if (known != met_.end()) {
+    std::rotate(met_.begin(), known, known + 1);
+    return;
+  }
+  if (met_.size() == kMet) met_.pop_back();
+  met_.insert(met_.begin(), {triangle, seen(triangle)});
+}
+
+bool SampledVoxelCounter::hides(std::uint32_t triangle, const Box& box) {
+  const auto start = static_cast<double>(bundle_.start);
+  return seen(triangle).hides(SeenBox(box), start) ||
+         rays_->patches().hide(triangle, head_, box, start,
+                               [&](const Vec3& point, double radius) { return any_ray_near(point, radius); });
+}
+
+bool SampledVoxelCounter::any_ray_near(const Vec3& point, double radius) const {
+  Vec3 low = point - Vec3{radius, radius, radius}, high = point + Vec3{radius, radius, radius};
+  if (station_->turn) turn_back(*station_->turn, low, high);
+  return !rays_of_box(rays_->pattern(), low, high).empty();
+}
+
+bool SampledVoxelCounter::is_hidden(const SeenBox& box) {
+  for (auto one = met_.begin(); one != met_.end(); ++one) {
+    if (!one->second.hides(box, static_cast<double>(bundle_.start))) continue;
+    std::rotate(met_.begin(), one, one + 1);
+    return true;
+  }
+  return false;
 }
 
 // Bounds the rays to look at, for the block's voxels from the current head.
@@ -210,20 +302,25 @@ SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
 // Drops voxels that one triangle hides whole.
 void SampledVoxelCounter::drop_hidden_boxes() {
   probes_.clear();
+  std::size_t kept = 0;
   for (const Look& look : looks_) {
+    if (is_hidden(SeenBox(box_of(look)))) continue;
     const std::uint32_t i = look.voxel;
     const double inverse = 1 / std::max(distance_[i], std::numeric_limits<double>::min());
     const Float3 d{static_cast<float>(x_[i] * inverse), static_cast<float>(y_[i] * inverse),
                    static_cast<float>(z_[i] * inverse)};
     probes_.push_back({d, look.cube.nearest * static_cast<float>(1 - trust)});
+    looks_[kept++] = look;
   }
+  looks_.resize(kept);
   rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
   traced_ += probes_.size();
-  std::size_t kept = 0;
+  kept = 0;
   for (std::size_t k = 0; k < looks_.size(); ++k) {
     const std::uint32_t by = probes_[k].hit;
-    if (by != RayBundle::no_hit && seen(by).hides(box_of(looks_[k]), static_cast<double>(bundle_.start))) continue;
-    looks_[kept++] = looks_[k];
+    if (by != RayBundle::no_hit && hides(by, box_of(looks_[k]))) continue;
+    looks_[kept] = looks_[k];
+    looks_[kept++].occluder = by;
   }
   looks_.resize(kept);
 }
@@ -265,15 +362,11 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
   std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
 
-  VoxelRays rays{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
+  VoxelRays rays{.voxel = i,
+                 .begin = listed_size_,
+                 .farthest = std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
+                 .occluder = look.occluder};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  const auto end_voxel = [&] {
-    rays.end = listed_size_;
-    if (rays.end == rays.begin) return;
-    // an occluder of the middle ray may hide all
-    std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
-    voxel_rays_.push_back(rays);
-  };
   for (std::uint32_t range = from.range; range < window.columns.size(); ++range) {
     const RayRanges::Range columns = window.columns[range];
     for (std::uint32_t row = range == from.range ? from.row : window.rows.begin; row < window.rows.end; ++row) {
@@ -302,7 +395,7 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
         found += list_batch(rays);
         if (full(i)) return;
         if (found >= enough) {
-          end_voxel();
+          end_rays(rays);
           rest_.push_back({look, window, {range, row, column}});
           return;
         }
@@ -312,7 +405,7 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
   }
   fill_nearest(planes, cube);
   list_batch(rays);
-  end_voxel();
+  end_rays(rays);
 }
 
 // Empties the batch: lists those of its rays that may hit. Returns their number.
@@ -326,11 +419,21 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   listed_size_ = size;
   batch_.size = 0;
   if (listed_size_ < rays_at_once) return added;
-  rays.end = listed_size_;
-  if (rays.end > rays.begin) voxel_rays_.push_back(rays);
+  end_rays(rays);
   settle();
   rays.begin = 0;
   return added;
+}
+
+// Those listed last are all of a voxel, or as many as are traced at once.
+void SampledVoxelCounter::end_rays(VoxelRays& rays) {
+  rays.end = listed_size_;
+  if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
+  listed_size_ = rays.end;
+  if (rays.end == rays.begin) return;
+  // An occluder of the middle ray may hide all.
+  std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
+  voxel_rays_.push_back(rays);
 }
 
 // Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "trace/embree/sampled_voxels.hpp"
@@ -55,7 +56,8 @@ class SampledVoxelCounter {
   struct Look {
     std::uint32_t voxel = 0;  // index in the block
     Cube cube;
-    bool sure = false;  // every hit that counts lies on a plane that crosses the voxel
+    bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
+    std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
   };
   // Where the listing of a voxel's rays goes on: at this row and column of this range of columns.
   struct Place {
@@ -73,6 +75,7 @@ class SampledVoxelCounter {
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
     bool probed = false;  // its first ray was probed
+    std::uint32_t occluder = RayBundle::no_hit;
   };
   struct Ray {
     Float3 d;
@@ -89,13 +92,23 @@ class SampledVoxelCounter {
   float height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const;
   Box box_of(const Look& look) const;
   SeenTriangle seen(std::uint32_t triangle) const;  // from the current head
+  void find_open(std::size_t n);
+  void drop_hidden_groups(std::size_t level, std::size_t n);
+  Box box_of(const SampledVoxels::Cells& cells) const;
   void drop_hidden_boxes();
+  // Triangles that were met last; those of a group are likely to hide its neighbours, too.
+  void meet(std::uint32_t triangle);
+  bool is_hidden(const SeenBox& box);
+  // Whether the triangle, alone or with others, hides all of the box.
+  bool hides(std::uint32_t triangle, const Box& box);
+  bool any_ray_near(const Vec3& point, double radius) const;
   // Points that are still to be counted in voxel number i of the block, or more.
   std::uint32_t wanted(std::uint32_t i) const;
   void list_rays(const Look& look);
   void list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
   std::uint32_t list_batch(VoxelRays& rays);
+  void end_rays(VoxelRays& rays);
   void settle();
   void drop_hidden(VoxelRays& rays, std::uint32_t by);
   void cast();
@@ -117,6 +130,8 @@ class SampledVoxelCounter {
 
   BoxBatch boxes_;
   alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
+  std::array<bool, block> open_;  // by voxel of the block: whether the current station may need to look at it
+  std::vector<std::pair<std::uint32_t, SeenTriangle>> met_;
   RayBatch batch_;
   std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the current voxel
   std::vector<Ray> listed_;

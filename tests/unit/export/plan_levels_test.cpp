@@ -71,6 +71,16 @@ TEST(PlanLevels, StationsOverEachOtherAreOnLevelsOfTheirOwn) {
   }
 }
 
+TEST(PlanLevels, ALandingHalfWayUpBelongsToTheFloorBelow) {
+  SearchMesh house;
+  add_floor(house, 0, 20, 0, 0), add_floor(house, 0, 20, 3.8, 3.8);
+  add_floor(house, 20, 21, 0, 0), add_floor(house, 20, 21, 1.9, 1.9), add_floor(house, 20, 21, 5.7, 5.7);
+  const auto levels = plan_levels(house, std::vector{at(20.5, 5, 1.9), at(20.5, 5, 5.7), at(5, 5, 0)});
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_TRUE(levels[0].holds(1.9));
+  EXPECT_TRUE(levels[1].holds(5.7));
+}
+
 // A square of ground with a roof over a corner of it.
 Scene roofed_corner() {
   const std::vector<Vec3> p{{0, 0, 0},   {40, 0, 0},  {40, 40, 0}, {0, 40, 0},

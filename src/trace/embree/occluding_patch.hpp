@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Occlusion of a box by several connected triangles, none of which hides it alone.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+// Opaque triangles of a scene with their neighbours. Safe to use from any thread.
+class OccludingPatches {
+ public:
+  // Borrows the scene. Neighbours are found when they are first asked for.
+  explicit OccludingPatches(const SceneData& scene) : scene_(scene) {}
+
+  // Whether any ray passes within `radius` of a point, as seen from the head.
+  using AnyRayNear = std::function<bool(const Vec3& point, double radius)>;
+
+  // Whether Embree is certain to report a hit on the triangle, or on others connected to it, beyond `start` and before
+  // a point of the box, for every ray of the scanner that reaches such a point. `box`: relative to the head.
+  //
+  // Embree computes the same product, but for its sign, for both triangles of an edge, so a ray near an edge hits one
+  // of them. The patch grows over every edge that may cut the box. It has no hole if each of these has a triangle on
+  // either side, as seen from the head. Near a corner a ray may be in doubt of several edges, so none may pass there.
+  bool hide(std::uint32_t triangle, const Vec3& head, const Box& box, double start,
+            const AnyRayNear& any_ray_near) const;
+
+ private:
+  const SceneData& scene_;
+  mutable std::once_flag once_;
+  mutable std::vector<std::uint32_t> neighbours_;
+};
+
+}  // namespace vantage
