@@ -49,7 +49,9 @@ void add_cells(SceneData& data, const SolidCells& solid) {
 }  // namespace
 
 Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed) {
-  const SceneData& before = scene.data();
+  const std::shared_ptr<const SceneData> flat =
+      scene.data().shares() ? flattened(std::make_shared<const SceneData>(scene.data())) : nullptr;
+  const SceneData& before = flat ? *flat : scene.data();
   auto after = std::make_shared<SceneData>(before);
   after->triangles.clear(), after->ranges.clear(), after->meshes.clear();
   after->local_bounds = {};

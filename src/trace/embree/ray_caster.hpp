@@ -9,6 +9,7 @@
 
 #include "core/embree.hpp"
 #include "scene/scene_data.hpp"
+#include "scene/scene_tree.hpp"
 #include "trace/embree/planes.hpp"
 
 namespace vantage {
@@ -61,7 +62,7 @@ class RayCaster {
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   embree::Device device_;
-  embree::Scene tree_;
+  SceneTree tree_;
 };
 
 }  // namespace vantage
