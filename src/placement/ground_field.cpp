@@ -239,7 +239,8 @@ void GroundField::find_room(const SceneData& scene) {
             const double low = z_[s] + climb_, high = z_[s] + height_;
             if (z_max <= low || z_min >= high) continue;
             const std::uint8_t known = std::atomic_ref<std::uint8_t>(taken_[s]).load(std::memory_order_relaxed);
-            if (known == (beside | overhead | at_door)) continue;
+            const std::uint8_t all = door ? at_door : beside | overhead;  // that this triangle may mark
+            if ((known & all) == all) continue;
             const glm::dvec2 p = middle(column);
             if (whole < 0) whole = squared_distance(p, plan);
             if (whole >= widest * widest) break;
@@ -247,6 +248,7 @@ void GroundField::find_room(const SceneData& scene) {
               mark(s, at_door);
               continue;
             }
+            if (whole > 0 && (known & beside)) continue;
             for (int k = cylinders - 1; k >= 0; --k) {
               const double bottom = low + k * shorter, top = high - k * shorter;
               if (whole >= radius[k] * radius[k]) break;

@@ -66,7 +66,9 @@ class Builder {
 
   // All that was added, as one mesh.
   SharedMesh mesh() const {
-    SharedMesh mesh{.normals = raw_.normals, .triangles = raw_.triangles};
+    SharedMesh mesh;
+    mesh.normals = raw_.normals;
+    mesh.triangles = raw_.triangles;
     for (const glm::dvec3& p : raw_.positions) mesh.positions.push_back(to_float3(p));
     return mesh;
   }

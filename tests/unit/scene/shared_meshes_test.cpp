@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -151,7 +152,9 @@ TEST(SharedMeshes, DistancesAndClashesAreTheSame) {
               b.within_of_segment(p, p + glm::dvec3{0.3, 0.2, 1}, 0.2));
     const auto down = a.drop(p), down_too = b.drop(p);
     ASSERT_EQ(down.has_value(), down_too.has_value()) << "point " << k;
-    if (down) ASSERT_NEAR(*down, *down_too, 1e-4) << "point " << k;
+    if (down) {
+      ASSERT_NEAR(*down, *down_too, 1e-4) << "point " << k;
+    }
   }
   EXPECT_GT(near, 500u);
 }
@@ -238,8 +241,8 @@ TEST(SharedMeshes, DoorsAreOpenedAtEachPlace) {
       if (leaf.size() % 3 == 2) leaf.push_back(z);
     }
   const int door = builder.mesh({{"attributes", {{"POSITION", builder.positions(leaf)}}}});
-  for (const double x : {20.0, 24.0, 28.0})
-    builder.node({{"name", "door"}, {"mesh", door}, {"translation", {x, 0, 0}}});
+  for (const int k : {1, 2, 3})
+    builder.node({{"name", "door " + std::to_string(k)}, {"mesh", door}, {"translation", {16 + 4 * k, 0, 0}}});
   const SceneOptions once{.unit = Unit::metre, .up = UpAxis::y, .shared_meshes = SharedMeshes::always};
   const Scene scene = load(builder, once);
   EXPECT_TRUE(scene.data().shares());
