@@ -7,6 +7,8 @@
 #include <cstring>
 #include <map>
 
+#include "scene/local_from_mesh.hpp"
+
 namespace vantage {
 namespace {
 
@@ -15,21 +17,6 @@ embree::Scene new_scene(RTCDevice device) {
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
   return scene;
-}
-
-// Columns of local_from_mesh. Embree takes a ray's direction into the mesh's frame; a component below 1e-18 makes it
-// miss every box (RayCaster::safe). What rounding leaves of a right angle must therefore be 0; it is 1e-9 of a
-// coordinate, less than float's rounding.
-std::array<float, 12> columns_of(const MeshPlace& place, const Vec3& origin) {
-  std::array<float, 12> out{};
-  std::size_t n = 0;
-  for (const Vec3& column : {place.x, place.y, place.z}) {
-    const double least = 0x1p-30 * std::sqrt(dot(column, column));
-    for (const double c : {column.x, column.y, column.z}) out[n++] = std::abs(c) < least ? 0 : static_cast<float>(c);
-  }
-  const Vec3 at = place.origin - origin;
-  for (const double c : {at.x, at.y, at.z}) out[n++] = static_cast<float>(c);
-  return out;
 }
 
 }  // namespace
@@ -115,7 +102,7 @@ void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters
     }
     const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), mesh);
-    const std::array<float, 12> columns = columns_of(scene_.places[instance.place], scene_.origin);
+    const std::array<float, 12> columns = local_from_mesh(scene_, scene_.places[instance.place]);
     rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(tree_.get(), geometry.get(), static_cast<unsigned>(k));

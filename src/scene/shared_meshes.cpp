@@ -20,6 +20,20 @@ namespace {
 
 glm::dvec3 survey(const MeshPlace& place, const Float3& p) { return to_glm(place(p)); }
 
+// Whether a ray can be moved into the mesh's frame and back without losing much of its precision: the axes are not
+// much unequal, nor nearly in one plane.
+bool moves_rays(const MeshPlace& place) {
+  constexpr double kMostCondition = 24;  // 3 where axes are equal and upright; some 23 where one is 16 times the others
+  constexpr double kLeastScale = 1e-6, kMostScale = 1e4;
+  const auto norm = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return std::sqrt(dot(a, a) + dot(b, b) + dot(c, c));
+  };
+  const Vec3 yz = cross(place.y, place.z), zx = cross(place.z, place.x), xy = cross(place.x, place.y);
+  const double size = norm(place.x, place.y, place.z), determinant = std::abs(dot(place.x, yz));
+  // Product of the norms of the matrix and its inverse, whose entries are the cofactors over the determinant.
+  return size >= kLeastScale && size <= kMostScale && size * norm(yz, zx, xy) <= kMostCondition * determinant;
+}
+
 // Local frame, as SceneData::placed().
 Float3 local(const MeshPlace& place, const Float3& p, const Vec3& origin) {
   return without_minus_zero(narrow(place(p) - origin));
@@ -188,12 +202,12 @@ void SharedCleaner::drop_not_finite() {
   std::vector<std::uint8_t> stored;
   for (const PlacedRun& run : placed_runs(raw_)) {
     const Box& box = boxes[static_cast<std::size_t>(run.shared - raw_.shared.data())];
-    bool beyond = false;
+    bool stands = !box.empty() && !moves_rays(*run.place);
     for (int corner = 0; corner < 8 && !box.empty(); ++corner)
-      beyond = beyond ||
+      stands = stands ||
                !sound(survey(*run.place, narrow({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                                                  corner & 4 ? box.max.z : box.min.z})));
-    stored.push_back(beyond);
+    stored.push_back(stands);
   }
   store_placed(raw_, stored);
 }

@@ -64,7 +64,7 @@ struct SharedCleaning {
 class SharedCleaner {
  public:
   explicit SharedCleaner(RawScene& raw) : raw_(raw) {}
-  void drop_not_finite();          // also stores meshes where they stand beyond what is sound
+  void drop_not_finite();          // also stores meshes where they stand that rays cannot be moved to
   void extend(Box& bounds) const;  // survey frame, in double
   void drop_without_area(const Vec3& origin);
   void drop_duplicates();

@@ -211,6 +211,27 @@ TEST(SharedMeshes, AMeshBeyondWhatIsSoundIsStoredThere) {
   EXPECT_LT(once.bounds().max.x, 10);
 }
 
+TEST(SharedMeshes, AMeshIsStoredWhereRaysCannotBeMovedIntoItsFrame) {
+  GlbBuilder builder;
+  builder.json["asset"]["extras"]["vantage"] = json::object();
+  const int plate = bumpy_plate(builder, 9);
+  // The third is flattened, the fourth much longer than wide; the last two are as unequal as may be, and in
+  // millimetres.
+  const std::vector<std::vector<double>> scales{{1, 1, 1},  {-1, 1, 1}, {1, 1, 0},
+                                                {30, 1, 1}, {1, 15, 1}, {1e-3, 1e-3, 1e-3}};
+  for (std::size_t k = 0; k < scales.size(); ++k)
+    builder.node({{"mesh", plate}, {"translation", {3.0 * static_cast<double>(k), 0, 0}}, {"scale", scales[k]}});
+  const Scene once = loaded(builder, SharedMeshes::always), each = loaded(builder, SharedMeshes::never);
+  ASSERT_EQ(once.triangle_count(), each.triangle_count());
+  EXPECT_EQ(once.data().places.size(), 4u);
+  for (std::uint32_t m = 0; m < scales.size(); ++m) {
+    const std::uint32_t first = once.data().ranges[m].first_triangle;
+    EXPECT_EQ(once.data().instance_of(first).place == MeshInstance::kNoPlace, m == 2 || m == 3) << "node " << m;
+  }
+  for (std::uint32_t t = 0; t < once.triangle_count(); ++t)
+    ASSERT_EQ(once.data().corners(t), each.data().corners(t)) << "triangle " << t;
+}
+
 TEST(SharedMeshes, UnitsAndAxesAreTheSame) {
   GlbBuilder builder = site();
   builder.json["asset"].erase("extras");
