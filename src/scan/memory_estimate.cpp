@@ -209,10 +209,9 @@ class Estimator {
     const Scanner* const largest = &*std::ranges::max_element(scanners, {}, &Scanner::rays);
     const auto noisy = [](const Scanner& scanner) { return !scanner.noise.sigma_m.empty(); };
     const auto asks = [](const MeshInfo& mesh) { return mesh.detail_m || mesh.accuracy_m; };
-    const double stored = std::max(1.0, static_cast<double>(scene_.triangles.size())),
-                 triangles = scene_.triangle_count();
-    load_ = {.vertices = static_cast<double>(scene_.positions.size()) * triangles / stored,
-             .triangles = triangles,
+    load_ = {.vertices = static_cast<double>(scene_.positions.size()),
+             .triangles = static_cast<double>(scene_.triangles.size()),
+             .runs = static_cast<double>(scene_.instances.size()),
              .rows = static_cast<std::uint32_t>(largest->rows()),
              .columns = static_cast<std::uint32_t>(largest->columns()),
              .stations = static_cast<std::uint32_t>(std::min(stations, mask_bits)),
@@ -227,12 +226,9 @@ class Estimator {
     const double voxels = (surface_.cells_m2 - slivers.cells_m2) / cell_m2 + of_slivers;
     const double bricks_bytes = kBrickBytes * std::max(0.0, slivers.bricks - of_slivers / kVoxelsOfABrick);
     const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
-    // Vulkan's engines have every mesh stored where it stands.
-    const bool only_cpu = std::ranges::all_of(devices, on_cpu);
-    const double stored = only_cpu ? static_cast<double>(scene_.triangles.size()) : load_.triangles;
-    double host = host_bytes(stored, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
-    if (scene_.shares()) host += kPlaced * load_.triangles;
-    if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * stored;
+    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
+    if (scene_.shares()) host += kPlaced * scene_.triangle_count();
+    if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
     for (const ChosenDevice& each : devices) {
       if (each.engine == Engine::embree) continue;
       vulkan::DeviceLoad load = load_;

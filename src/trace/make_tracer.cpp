@@ -116,17 +116,13 @@ std::vector<DeviceChoice> all_devices(Engine engine) {
   return all;
 }
 
-std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& given,
+std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
-  if (devices.size() == 1) return make_tracer(devices.front().engine, devices.front().index, given, std::move(warn));
-  std::vector<DeviceChoice> settled_devices;
-  for (const DeviceChoice& device : devices) settled_devices.push_back(settled(device.engine, device.index));
-  TraceScene scene = given;
-  const auto on_gpu = [](const DeviceChoice& device) { return device.engine != Engine::embree; };
-  if (std::ranges::any_of(settled_devices, on_gpu)) scene.scene = flattened(scene.scene);  // once for all of them
+  if (devices.size() == 1) return make_tracer(devices.front().engine, devices.front().index, scene, std::move(warn));
   std::vector<std::future<std::unique_ptr<Tracer>>> building;
-  for (const DeviceChoice& device : settled_devices)
-    building.push_back(std::async(std::launch::async, [&] { return make_once(device, scene); }));
+  for (const DeviceChoice& device : devices)
+    building.push_back(
+        std::async(std::launch::async, [&] { return make_once(settled(device.engine, device.index), scene); }));
   std::vector<std::unique_ptr<Tracer>> tracers;
   std::optional<DeviceFault> fault;
   for (auto& each : building) try {
