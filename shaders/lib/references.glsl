@@ -19,7 +19,7 @@ layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
 layout(buffer_reference) buffer Limits;
 layout(buffer_reference) buffer TriangleRuns;
-layout(buffer_reference) buffer PlacedMeshes;
+layout(buffer_reference) buffer MeshTransforms;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleStations;
 layout(buffer_reference) buffer SampleRays;
@@ -32,7 +32,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Br
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Limits { PointLimits at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TriangleRuns { TriangleRun at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PlacedMeshes { PlacedMesh at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MeshTransforms { MeshTransform at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };

@@ -53,7 +53,7 @@ Edges edges_of(StoredTriangle stored, uvec3 vertices) {
   precise vec3 e = parameters.positions.at[vertices.y] - p;
   precise vec3 f = parameters.positions.at[vertices.z] - p;
   if (!with_shared || stored.place == no_place) return Edges(e, f);
-  const PlacedMesh place = parameters.places.at[stored.place];
+  const MeshTransform place = parameters.places.at[stored.place];
   return Edges(turned_from_mesh(place.x, place.y, place.z, e), turned_from_mesh(place.x, place.y, place.z, f));
 }
 
@@ -72,7 +72,7 @@ Corners corners_of(uint triangle, vec3 origin) {
     return Corners(a, b, c, 0.0);
   }
   // Edges are placed by themselves, since a small triangle may be far from the origin of its mesh.
-  const PlacedMesh place = parameters.places.at[stored.place];
+  const MeshTransform place = parameters.places.at[stored.place];
   const Edges edges = edges_of(stored, vertices);
   precise vec3 mesh = place.origin - origin;
   precise vec3 a = turned_from_mesh(place.x, place.y, place.z, parameters.positions.at[vertices.x]) + mesh;

@@ -30,7 +30,7 @@ vec3 flat_normal(StoredTriangle stored) {
 vec3 normal_at(StoredTriangle stored, uint vertex) {
   const vec3 n = parameters.normals.at[vertex];
   if (!with_shared || stored.place == no_place) return n;
-  const PlacedMesh place = parameters.places.at[stored.place];
+  const MeshTransform place = parameters.places.at[stored.place];
   return unit_or(turned_from_mesh(place.normal_x, place.normal_y, place.normal_z, n), vec3(0));
 }
 

@@ -18,7 +18,7 @@ VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
 VANTAGE_CONST uint bvh_end = 0xFFFFFFFFu;  // no leaf
-// Where nodes share meshes, the tree from node 0 on has leaves that place a mesh, with a count that no other leaf has;
+// If nodes share meshes, the tree from node 0 on has leaves that place a mesh, with a count that no other leaf has;
 // the rest is an index of BvhPlacement.
 VANTAGE_CONST uint bvh_placement_count = 7;
 VANTAGE_CONST uint bvh_leave = 0xFFFFFFFEu;  // no leaf: end of a mesh

@@ -65,7 +65,7 @@ struct TriangleRun {
   uint to_stored;  // added to the number of a triangle, gives the number that it is stored by, modulo 2^32
   uint place;      // index into `places`; no_place: stored where it stands
 };
-struct PlacedMesh {
+struct MeshTransform {
   vec3 x, y, z, origin;               // columns of local_from_mesh
   vec3 normal_x, normal_y, normal_z;  // of the map of normals, up to a positive length
   float doubt;  // by which rounding may move the mesh for a ray: a share of `size` and the distance of its origin
@@ -99,7 +99,7 @@ struct TraceParameters {
   // If meshes are shared.
   VANTAGE_ADDRESS(TriangleRuns) runs;  // ascending, and an end
   VANTAGE_ADDRESS(Uints) run_at;       // the run of every 2^run_block_bits-th triangle
-  VANTAGE_ADDRESS(PlacedMeshes) places;
+  VANTAGE_ADDRESS(MeshTransforms) places;
   uint rows;
   uint columns;
   float min_range;

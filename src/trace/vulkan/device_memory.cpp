@@ -27,7 +27,7 @@ double tree(const DeviceLoad& load) {
   return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure);
 }
 
-double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(PlacedMesh)); }
+double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(MeshTransform)); }
 
 double build_only(const DeviceLoad& load) {
   if (load.engine == Engine::compute_bvh) return 0;

@@ -26,7 +26,7 @@ namespace {
 // the condition of the place, and so are corners that are placed, and the way to them.
 constexpr double doubt_of_place = 0x1p-20;
 
-PlacedMesh placed_mesh(const SceneData& scene, std::size_t k) {
+MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
   const MeshPlace& place = scene.places[k];
   const MeshPlacement matrix{0, 0, local_from_mesh(scene, place)};
   const auto& m = matrix.columns;
@@ -141,11 +141,11 @@ void DeviceScene::upload_places() {
   for (const MeshInstance& instance : scene.instances)
     runs.push_back({instance.first_triangle, instance.first_stored - instance.first_triangle, instance.place});
   runs.push_back({no_primitive, 0, no_place});
-  std::vector<PlacedMesh> places(scene.places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) { places[k] = placed_mesh(scene, k); });
+  std::vector<MeshTransform> places(scene.places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) { places[k] = mesh_transform(scene, k); });
   runs_ = make_device_buffer<TriangleRun>(device_, commands_, runs, "runs of triangles");
   run_at_ = make_device_buffer<std::uint32_t>(device_, commands_, scene.instance_at, "runs of blocks");
-  places_ = make_device_buffer<PlacedMesh>(device_, commands_, places, "places of meshes");
+  places_ = make_device_buffer<MeshTransform>(device_, commands_, places, "places of meshes");
   parameters_.runs = runs_.address();
   parameters_.run_at = run_at_.address();
   parameters_.places = places_.address();

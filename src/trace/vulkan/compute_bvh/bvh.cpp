@@ -301,7 +301,7 @@ std::vector<WideBox> boxes_within(const Bvh& bvh) {
   return closed;
 }
 
-// What a placed mesh takes of the local frame, as far as any of its triangles' own boxes reach.
+// The box around a placed mesh, in the local frame, as far as any of its triangles' own boxes reach.
 WideBox box_of(const vulkan::MeshPlacement& place, std::span<const WideBox> boxes) {
   const glm::dmat3 local_from_mesh = place.linear();
   glm::dmat3 sizes;
