@@ -31,6 +31,8 @@ Options<SceneOptions> scene_options() {
       .add("up", &SceneOptions::up, "'x', 'y' or 'z'; None: recognised.")
       .add("wall_layers", &SceneOptions::wall_layers, "Patterns of the layers of a floor plan's walls; []: recognised.")
       .add("wall_height_m", &SceneOptions::wall_height_m, "Height of a floor plan's walls, metres; None: 2.7.")
+      .add("shared_meshes", &SceneOptions::shared_meshes,
+           "Whether a mesh that several nodes place is stored once: 'auto' (in large scenes), 'always' or 'never'.")
       .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Memory limit of the load; 0: half of the free memory.")
       .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside its own folder.");
 }

@@ -48,6 +48,10 @@ void main() {
   if (GIVEN(push.normal)) push.normal.at[k] = look.normal;
   if (GIVEN(push.reflectivity)) push.reflectivity.at[k] = look.reflectivity;
   if (GIVEN(push.primitive)) push.primitive.at[k] = is_point ? hit.id & ~surveyed_bit : no_primitive;
-  if (GIVEN(push.barycentric)) push.barycentric.at[k] = is_point ? hit.barycentric : vec2(0);
+  if (GIVEN(push.barycentric)) {
+    vec2 weights = is_point ? hit.barycentric : vec2(0);
+    if (with_shared && is_point && is_mirrored(hit.id & ~surveyed_bit)) weights = weights.yx;
+    push.barycentric.at[k] = weights;
+  }
   if (GIVEN(push.voxel)) push.voxel.at[k] = voxel_index;
 }

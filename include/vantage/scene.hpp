@@ -75,6 +75,16 @@ const char* to_string(UpAxis up) noexcept;
 /// Throws Error invalid_argument unless the text is "x", "y" or "z".
 UpAxis up_axis_from_string(const std::string& text);
 
+/// Whether a mesh that several nodes place is stored once, or at each of its places.
+enum class SharedMeshes {
+  automatic,  ///< Once, in scenes too large to store every place: of more than 8 million triangles.
+  always,     ///< Once.
+  never,      ///< At each place.
+};
+const char* to_string(SharedMeshes shared) noexcept;  ///< "auto", "always", "never".
+/// Throws Error invalid_argument for any other text.
+SharedMeshes shared_meshes_from_string(const std::string& text);
+
 /// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names; a node without a name goes by its
 /// mesh's. A node hands its role down to its children.
 /// Precedence: pattern, then extras on node, mesh, material. If several patterns match a node, the one with most
@@ -110,6 +120,9 @@ struct SceneOptions {
   /// else those whose lines enclose rooms.
   std::vector<std::string> wall_layers = {};
   std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.
+  /// Whether meshes that several nodes place are stored once (docs/scenes.md). It changes memory, and results by no
+  /// more than the rounding of coordinates (docs/method.md).
+  SharedMeshes shared_meshes = SharedMeshes::automatic;
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
   /// read. 0: half of what is free.
   std::uint64_t max_memory_bytes = 0;

@@ -81,6 +81,7 @@ class Scene:
         up: Optional[Literal["x", "y", "z"]] = None,
         wall_layers: Sequence[str] = [],
         wall_height_m: Optional[float] = None,
+        shared_meshes: Literal["auto", "always", "never"] = "auto",
         max_memory_bytes: int = 0,
         allow_outside: bool = False,
     ) -> Scene: ...
@@ -169,6 +170,7 @@ def load_gltf(
     up: Optional[Literal["x", "y", "z"]] = None,
     wall_layers: Sequence[str] = [],
     wall_height_m: Optional[float] = None,
+    shared_meshes: Literal["auto", "always", "never"] = "auto",
     max_memory_bytes: int = 0,
     allow_outside: bool = False,
 ) -> Scene: ...

@@ -40,7 +40,7 @@ Passed pass_glass(vec3 origin, vec3 direction, float t) {
                           direction, start, end, want_nearest, from_the_root);
     if (face.id == no_primitive) break;
     const uint triangle = face.id & ~surveyed_bit;
-    const float cosine = exact_dot(flat_normal(triangle), direction);
+    const float cosine = exact_dot(flat_normal(stored_of(triangle)), direction);
     precise float square = cosine * cosine;
     if (square >= pane_return_square) return Passed(0.0, Hit(face.t, triangle, face.barycentric));
     float share = passed_of_pane(square);

@@ -8,7 +8,7 @@
 #include "lib/shade.glsl"
 
 uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 direction, float t, float passed) {
-  const PointLimits limits = parameters.limits.at[parameters.limits_of.at[triangle]];
+  const PointLimits limits = parameters.limits.at[parameters.limits_of.at[stored_of(triangle).surface]];
   const float cosine = exact_dot(normal, direction);
   precise float square = cosine * cosine;
   uint misses = square < limits.least_cosine_square ? misses_incidence : 0u;

@@ -4,6 +4,7 @@
 #ifndef VANTAGE_LIB_OCCLUDER
 #define VANTAGE_LIB_OCCLUDER
 #include "lib/cube.glsl"
+#include "lib/scene_triangle.glsl"
 
 // A triangle as its station sees it: normals of the planes through the station and an edge. They are scaled so that no
 // engine's rounding matters if a unit vector's product with them is beyond ±1. The normal of an edge without length is
@@ -14,22 +15,12 @@ struct Occluder {
 
 const Occluder no_occluder = Occluder(vec3[3](vec3(0), vec3(0), vec3(0)));
 
-struct Corners {
-  vec3 a, b, c;  // relative to the station
-};
-
-Corners corners_of(uint triangle, vec3 origin) {
-  const uint first = 3u * triangle;
-  return Corners(parameters.positions.at[parameters.triangles.at[first]] - origin,
-                 parameters.positions.at[parameters.triangles.at[first + 1u]] - origin,
-                 parameters.positions.at[parameters.triangles.at[first + 2u]] - origin);
-}
-
 float size_of(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
 Occluder occluder_of(Corners t) {
   const vec3 ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
-  const vec3 far = vec3(size_of(t.a), size_of(t.b), size_of(t.c));
+  vec3 far = vec3(size_of(t.a), size_of(t.b), size_of(t.c));
+  if (with_shared) far += 65536.0 * t.doubt;
   const vec3 lengths = 65536.0 / max(max(far, far.yzx) * vec3(size_of(ab), size_of(bc), size_of(ca)), 1e-30);
   return Occluder(vec3[3](cross(t.a, ab) * lengths.x, cross(t.b, bc) * lengths.y, cross(t.c, ca) * lengths.z));
 }
@@ -70,7 +61,9 @@ bool is_before(Corners t, Cube cube) {
   // Error of the normal's products with unit vectors; it covers the effect of slender triangles and grazing rays on a
   // hit's distance.
   const float doubt = size_of(ab) * size_of(ca) * (1.0 / 262144.0);
-  const float plane = dot(normal, t.a), plane_doubt = doubt * max(max(size_of(t.a), size_of(t.b)), size_of(t.c));
+  const float plane = dot(normal, t.a);
+  float plane_doubt = doubt * max(max(size_of(t.a), size_of(t.b)), size_of(t.c));
+  if (with_shared) plane_doubt += size_of(normal) * t.doubt;
   const float middle = dot(normal, centre_of(cube)) * (plane < 0.0 ? -1.0 : 1.0);
   const float wide = 0.5 * cube.side * size_of(normal) + farthest_of(cube) * doubt;
   const float least = middle - wide, most = middle + wide;
@@ -82,8 +75,10 @@ bool is_before(Corners t, Cube cube) {
 vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
   uint corner = 2u;
   for (uint k = 0u; k < 3u; ++k)
-    if (parameters.neighbours.at[3u * other + k] == triangle) corner = (k + 2u) % 3u;
-  return parameters.positions.at[parameters.triangles.at[3u * other + corner]] - origin;
+    if (neighbour_of(other, k) == triangle) corner = (k + 2u) % 3u;
+  if (!with_shared) return parameters.positions.at[parameters.triangles.at[3u * other + corner]] - origin;
+  const Corners corners = corners_of(other, origin);
+  return corner == 0u ? corners.a : corner == 1u ? corners.b : corners.c;
 }
 
 // Whether all rays through the cube meet the triangle or others connected to it, for engines that let no ray pass
@@ -108,7 +103,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
     if (!is_before(corners, cube)) return false;
     for (uint k = 0u; k < 3u; ++k) {
       if (place.at[k] > place.wide[k]) continue;
-      const uint other = parameters.neighbours.at[3u * member + k];
+      const uint other = neighbour_of(member, k);
       if (other == no_primitive) return false;
       const vec3 beyond = corner_beyond(other, member, origin);
       if (facing * dot(occluder.sides[k], beyond) >= -length(beyond)) return false;  // folded back

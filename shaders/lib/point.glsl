@@ -20,9 +20,9 @@ struct Look {
 const Look unseen = Look(vec3(0), 0.0);
 
 Look look_of(Hit hit, vec3 direction) {
-  const uint triangle = hit.id & ~surveyed_bit;
-  const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
-  return Look(normal, reflectivity_of(triangle, normal, direction));
+  const StoredTriangle stored = stored_of(hit.id & ~surveyed_bit);
+  const vec3 normal = oriented_normal(stored, hit.barycentric, direction);
+  return Look(normal, reflectivity_of(stored, normal, direction));
 }
 
 // The measured range. `look` is read if there is noise.

@@ -18,6 +18,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec
 layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
 layout(buffer_reference) buffer Limits;
+layout(buffer_reference) buffer TriangleRuns;
+layout(buffer_reference) buffer MeshTransforms;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleStations;
 layout(buffer_reference) buffer SampleRays;
@@ -29,6 +31,8 @@ layout(buffer_reference) buffer SampleItems;
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BrickQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Limits { PointLimits at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TriangleRuns { TriangleRun at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MeshTransforms { MeshTransform at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };

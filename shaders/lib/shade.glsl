@@ -3,9 +3,10 @@
 #ifndef VANTAGE_LIB_SHADE
 #define VANTAGE_LIB_SHADE
 #include "lib/exact.glsl"
-#include "lib/philox.glsl"
-#include "lib/sigma.glsl"
 #include "lib/parameters.glsl"
+#include "lib/philox.glsl"
+#include "lib/scene_triangle.glsl"
+#include "lib/sigma.glsl"
 
 vec3 unit_or(vec3 v, vec3 otherwise) {
   const float square = exact_dot(v, v);
@@ -15,10 +16,9 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
 }
 
 // Unit normal of the triangle's plane.
-vec3 flat_normal(uint triangle) {
-  const vec3 p = parameters.positions.at[parameters.triangles.at[3u * triangle]];
-  precise vec3 e = parameters.positions.at[parameters.triangles.at[3u * triangle + 1u]] - p;
-  precise vec3 f = parameters.positions.at[parameters.triangles.at[3u * triangle + 2u]] - p;
+vec3 flat_normal(StoredTriangle stored) {
+  const Edges edges = edges_of(stored, vertices_of(stored));
+  const vec3 e = edges.second, f = edges.third;
   // Scaled first, so that tiny triangles do not underflow.
   precise float largest = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
   precise vec3 es = e * exact_reciprocal(largest);
@@ -26,28 +26,37 @@ vec3 flat_normal(uint triangle) {
   return unit_or(exact_cross(es, fs), vec3(0, 0, 1));
 }
 
+// Normal at a vertex, where it stands; 0 if the file has none.
+vec3 normal_at(StoredTriangle stored, uint vertex) {
+  const vec3 n = parameters.normals.at[vertex];
+  if (!with_shared || stored.place == no_place) return n;
+  const MeshTransform place = parameters.places.at[stored.place];
+  return unit_or(turned_from_mesh(place.normal_x, place.normal_y, place.normal_z, n), vec3(0));
+}
+
 // Interpolated vertex normal, or the triangle's own if the file has none; turned towards the scanner.
-vec3 oriented_normal(uint triangle, vec2 barycentric, vec3 direction) {
-  const uint i = parameters.triangles.at[3u * triangle], j = parameters.triangles.at[3u * triangle + 1u],
-             k = parameters.triangles.at[3u * triangle + 2u];
+vec3 oriented_normal(StoredTriangle stored, vec2 barycentric, vec3 direction) {
   vec3 n = vec3(0);
   if (parameters.has_normals != 0u) {
+    const uvec3 vertices = vertices_of(stored);
+    const vec3 i = normal_at(stored, vertices.x), j = normal_at(stored, vertices.y),
+               k = normal_at(stored, vertices.z);
     precise float rest = 1.0 - barycentric.x;
     precise float w = rest - barycentric.y;
-    precise vec3 a = w * parameters.normals.at[i];
-    precise vec3 b = barycentric.x * parameters.normals.at[j];
-    precise vec3 c = barycentric.y * parameters.normals.at[k];
+    precise vec3 a = w * i;
+    precise vec3 b = barycentric.x * j;
+    precise vec3 c = barycentric.y * k;
     precise vec3 ab = a + b;
     precise vec3 abc = ab + c;
     n = unit_or(abc, vec3(0));
   }
-  if (n == vec3(0)) n = flat_normal(triangle);
+  if (n == vec3(0)) n = flat_normal(stored);
   return exact_dot(n, direction) > 0.0 ? -n : n;
 }
 
 // R (I · (−N)), section 3.2.
-float reflectivity_of(uint triangle, vec3 normal, vec3 direction) {
-  precise float r = parameters.diffuse.at[triangle] * -exact_dot(normal, direction);
+float reflectivity_of(StoredTriangle stored, vec3 normal, vec3 direction) {
+  precise float r = parameters.diffuse.at[stored.surface] * -exact_dot(normal, direction);
   return clamp(r, 0.0, 1.0);
 }
 

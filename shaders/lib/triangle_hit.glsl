@@ -7,6 +7,7 @@
 //   order is exact unless they are equal; equal counts as inside for both. So no ray passes between two triangles that
 //   share an edge or a vertex.
 // - Only +, − and × are used, uncontracted, so all devices round alike.
+// - Triangles of a mesh that nodes share are met in the frame of the mesh, into which the ray is moved.
 // - The hit's t is clamped to the triangle's own box, widened by more than all rounding. Every box above contains that
 //   box and is widened more, so no box is culled that may hold the nearest hit. Among equal hits the lower triangle
 //   number wins.

@@ -33,6 +33,7 @@ VANTAGE_CONST uint traversal_arrays = 3;
 
 VANTAGE_CONST uint turned_constant = 4;  // constant_id of `turned` in lib/turn.glsl
 VANTAGE_CONST uint glass_constant = 5;   // of `with_glass` in lib/glass.glsl
+VANTAGE_CONST uint shared_constant = 6;  // of `with_shared` in lib/scene_triangle.glsl
 
 // Glass (docs/method.md). A pane returns the beam itself at up to 1° from its normal: the square of that cosine. A beam
 // with a smaller share left is lost. Faces nearer together than the sum of two gaps, one a share of the distance, are
@@ -55,6 +56,23 @@ VANTAGE_CONST uint misses_footprint = 2;
 VANTAGE_CONST uint misses_noise = 4;
 VANTAGE_CONST uint misses_echo = 8;
 
+// Scenes whose nodes share meshes (scene/scene_data.hpp). A run of triangles, which are stored elsewhere than their
+// numbers say.
+VANTAGE_CONST uint no_place = 0xFFFFFFFFu;
+VANTAGE_CONST uint run_block_bits = 10;
+struct TriangleRun {
+  uint first_triangle;
+  uint to_stored;  // added to the number of a triangle, gives the number that it is stored by, modulo 2^32
+  uint place;      // index into `places`; no_place: stored where it stands
+};
+struct MeshTransform {
+  vec3 x, y, z, origin;               // columns of local_from_mesh
+  vec3 normal_x, normal_y, normal_z;  // of the map of normals, up to a positive length
+  float doubt;  // by which rounding may move the mesh for a ray: a share of `size` and the distance of its origin
+  float size;   // metres
+  uint mirrored;
+};
+
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
   VANTAGE_ADDRESS(Floats) cos_zenith;
@@ -68,16 +86,20 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Vec3s) normals;     // 0: geometric normals
   VANTAGE_ADDRESS(Uints) triangles;   // three vertex numbers each
   VANTAGE_ADDRESS(Uints) neighbours;  // three per triangle, by triangle_neighbours(); for watertight engines
-  VANTAGE_ADDRESS(Floats) diffuse;    // per scene triangle
+  VANTAGE_ADDRESS(Floats) diffuse;    // per scene triangle, or per run if meshes are shared
   VANTAGE_ADDRESS(Floats) sigma;
   VANTAGE_ADDRESS(Floats) reaches;  // reach of noise, by noise_reaches(); 0: noise moves no points
   VANTAGE_ADDRESS(Vec4s) normal_table;
-  VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: index into `limits`
+  VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle, or per run: index into `limits`
   VANTAGE_ADDRESS(Limits) limits;
   // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0:
   // glass weakens no echo.
   uint64_t glass_nodes;
   uint64_t glass_corners;
+  // If meshes are shared.
+  VANTAGE_ADDRESS(TriangleRuns) runs;  // ascending, and an end
+  VANTAGE_ADDRESS(Uints) run_at;       // the run of every 2^run_block_bits-th triangle
+  VANTAGE_ADDRESS(MeshTransforms) places;
   uint rows;
   uint columns;
   float min_range;

@@ -174,9 +174,9 @@ std::vector<bool> under_roof(const Scene& scene, std::span<const PlacedStation> 
   std::vector<std::size_t> by_x(stations.size());
   std::iota(by_x.begin(), by_x.end(), std::size_t{0});
   std::ranges::sort(by_x, {}, [&](std::size_t k) { return stations[k].position.x; });
-  for (const Triangle& t : data.triangles) {
-    const std::array<Vec3, 3> p{widen(data.positions[t[0]]) + data.origin, widen(data.positions[t[1]]) + data.origin,
-                                widen(data.positions[t[2]]) + data.origin};
+  for (std::uint32_t t = 0; t < data.triangle_count(); ++t) {
+    const auto c = data.corners(t);
+    const std::array<Vec3, 3> p{widen(c[0]) + data.origin, widen(c[1]) + data.origin, widen(c[2]) + data.origin};
     const auto [low, high] = std::minmax({p[0].x, p[1].x, p[2].x});
     const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
     if (area == 0) continue;

@@ -288,8 +288,7 @@ Box plan_window(const PlanView& view) {
     if (scene.meshes[m].role != Role::surveyed) continue;
     const MeshRange& range = scene.ranges[m];
     for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
-      for (const std::uint32_t v : scene.triangles[t])
-        box.extend(scene.origin + Vec3{scene.positions[v].x, scene.positions[v].y, scene.positions[v].z});
+      for (const Float3& p : scene.corners(t)) box.extend(scene.origin + widen(p));
   }
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t) box.extend(mesh.positions[v]);
@@ -311,10 +310,11 @@ static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& dat
     if (data.meshes[m].name != name) continue;
     std::vector<char> found(pixels.size());
     for (std::uint32_t k = 0; k < data.ranges[m].triangle_count; ++k) {
+      const auto at = data.corners(data.ranges[m].first_triangle + k);
       std::array<MapPoint, 3> corners;
       double z = 0;
       for (std::size_t c = 0; c < 3; ++c) {
-        const Vec3 p = data.origin + widen(data.positions[data.triangles[data.ranges[m].first_triangle + k][c]]);
+        const Vec3 p = data.origin + widen(at[c]);
         corners[c] = window.at(p), z = std::max(c == 0 ? p.z : z, p.z);
       }
       if (level.only() || level.holds(z))

@@ -65,10 +65,7 @@ class Painter {
   RowBand band_;
 };
 
-std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
-  const Triangle& t = scene.triangles[triangle];
-  return {scene.positions[t[0]], scene.positions[t[1]], scene.positions[t[2]]};
-}
+std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) { return scene.corners(triangle); }
 
 // Unit normal, upwards.
 std::array<double, 3> normal_of(const SceneData& scene, std::uint32_t triangle) {
@@ -116,7 +113,7 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   for_row_bands(window, [&](const RowBand& band) {
     Painter painter(heights, z_cut - scene.origin.z, cuts, band);
     // The search goes on below a glass roof.
-    for (std::uint32_t t = 0; t < scene.opaque_triangles().size(); ++t) {
+    for (std::uint32_t t = 0; t < scene.opaque_count(); ++t) {
       std::array<MapPoint, 3> c;
       std::array<double, 3> z;
       const auto p = corners_of(scene, t);

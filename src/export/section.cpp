@@ -5,17 +5,23 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 namespace vantage {
 namespace {
 
-// Gives equal points one number, whatever face they belong to.
+// Gives equal points one number, whatever face they belong to. Points of different frames are never equal.
 std::vector<std::uint32_t> welded(const SceneData& scene) {
+  std::vector<std::uint32_t> frame(scene.shares() ? scene.positions.size() : 0, 0);
+  for (const MeshInstance& instance : scene.instances)
+    if (instance.place != MeshInstance::kNoPlace && frame[scene.triangles[instance.first_stored][0]] == 0)
+      for (std::uint32_t t = 0; t < instance.triangle_count; ++t)
+        for (const std::uint32_t v : scene.triangles[instance.first_stored + t]) frame[v] = instance.first_stored + 1;
   std::vector<std::uint32_t> order(scene.positions.size()), number(scene.positions.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t v) {
     const Float3& p = scene.positions[v];
-    return std::array{p.x, p.y, p.z};
+    return std::tuple(p.x, p.y, p.z, frame.empty() ? 0 : frame[v]);
   };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t k = 0; k < order.size(); ++k)
@@ -26,15 +32,22 @@ std::vector<std::uint32_t> welded(const SceneData& scene) {
 // A segment of the cut with the solid to its left in plan view.
 struct Cut {
   MapPoint from, to;
-  std::uint32_t surface;
+  std::uint64_t surface;
 };
+
+// Number of the surface of a triangle, by those of stored points.
+std::uint64_t surface_of(const SceneData& scene, std::span<const std::uint32_t> surfaces, std::uint32_t triangle) {
+  const std::uint64_t place = scene.shares() ? scene.instance_of(triangle).place : MeshInstance::kNoPlace;
+  return place << 32 | surfaces[scene.attributes(triangle)[0]];
+}
 
 // Calls found(triangle, from, to) for each triangle that crosses the height, with what is solid to the left.
 template <class Found>
 void for_each_cut(const SceneData& scene, double z, Found&& found) {
-  for (const Triangle& t : scene.triangles) {
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto corners = scene.corners(t);
     std::array<Vec3, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = widen(scene.positions[t[k]]) + scene.origin;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = widen(corners[k]) + scene.origin;
     // a corner in the plane counts as above: each surface is crossed evenly
     std::array<Vec3, 2> ends;
     std::size_t count = 0;
@@ -54,7 +67,7 @@ void for_each_cut(const SceneData& scene, double z, Found&& found) {
 }
 
 struct Crossing {
-  std::uint32_t surface;
+  std::uint64_t surface;
   double column;
   int winding;  // added to the right of it
 };
@@ -111,14 +124,13 @@ Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfac
   Section section;
   section.solid.assign(window.columns * window.rows, 0);
   // Glass first, so that what it touches is drawn over it.
-  const std::size_t opaque = scene.opaque_triangles().size();
+  const std::uint32_t opaque = scene.opaque_count();
   for (const bool glass : {true, false}) {
-    if (glass && opaque == scene.triangles.size()) continue;
+    if (glass && opaque == scene.triangle_count()) continue;
     std::vector<std::vector<Crossing>> rows(window.rows);
     std::vector<Cut> cuts;
-    for_each_cut(scene, z, [&](const Triangle& t, const Vec3& from, const Vec3& to) {
-      const auto number = static_cast<std::size_t>(&t - scene.triangles.data());
-      if ((number >= opaque) == glass) cuts.push_back({window.at(from), window.at(to), surfaces[t[0]]});
+    for_each_cut(scene, z, [&](std::uint32_t t, const Vec3& from, const Vec3& to) {
+      if ((t >= opaque) == glass) cuts.push_back({window.at(from), window.at(to), surface_of(scene, surfaces, t)});
     });
     for (const Cut& cut : cuts) {
       (glass ? section.glass_outlines : section.outlines).push_back({cut.from, cut.to});
@@ -139,7 +151,7 @@ Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfac
 
 std::vector<std::array<Vec3, 2>> section_lines(const SceneData& scene, double z) {
   std::vector<std::array<Vec3, 2>> lines;
-  for_each_cut(scene, z, [&](const Triangle&, const Vec3& from, const Vec3& to) { lines.push_back({from, to}); });
+  for_each_cut(scene, z, [&](std::uint32_t, const Vec3& from, const Vec3& to) { lines.push_back({from, to}); });
   return lines;
 }
 

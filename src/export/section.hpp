@@ -17,7 +17,7 @@ struct Section {
   Lines outlines, glass_outlines;   // lines where surfaces cross the plane, in pixels
 };
 
-// Number of the connected surface of each point.
+// Number of the connected surface of each stored point; those of a mesh that nodes share are each place's own.
 std::vector<std::uint32_t> surfaces_of(const SceneData& scene);
 
 // Cuts the scene at height `z` (survey frame). A pixel is solid if outward closed surfaces wind around it more often

@@ -343,11 +343,4 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& c
   return mesh;
 }
 
-double plan_hull_area(const std::vector<glm::dvec3>& points) {
-  std::vector<Uv> plan;
-  plan.reserve(points.size());
-  for (const glm::dvec3& p : points) plan.push_back({p.x, p.y});
-  return hull_area(convex_hull(std::move(plan)));
-}
-
 }  // namespace vantage

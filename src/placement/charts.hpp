@@ -31,7 +31,4 @@ bool holds_disc(const SurfacePieces& pieces, const GroundChart& chart, double ra
 // proportion to its true area; all share one scale. v spans [0, 1], u starts at 0. Positions are moved by `origin`.
 SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& charts, const Vec3& origin);
 
-// Area of the convex hull of the points seen from above.
-double plan_hull_area(const std::vector<glm::dvec3>& points);
-
 }  // namespace vantage

@@ -40,10 +40,10 @@ ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
     throw Error(Errc::invalid_argument, what.str());
   }
   const SceneData& data = scene.data();
-  const std::span<const Triangle> opaque = data.opaque_triangles();
+  const std::uint32_t opaque = data.opaque_count();
   impl_ = std::make_shared<const Impl>(
       Impl{data.origin, volume, MeshTree(data),
-           opaque.size() < data.triangles.size() ? std::optional<MeshTree>(MeshTree(data, opaque)) : std::nullopt});
+           opaque < data.triangle_count() ? std::optional<MeshTree>(MeshTree(data, opaque)) : std::nullopt});
 }
 
 bool ClashChecker::clashes(const Vec3& ground) const {

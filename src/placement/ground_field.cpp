@@ -82,8 +82,9 @@ Slice slice(const Corners& t, double low, double high) {
   return result;
 }
 
-Corners corners_of(const SceneData& scene, const Triangle& t) {
-  return {to_glm(scene.positions[t[0]]), to_glm(scene.positions[t[1]]), to_glm(scene.positions[t[2]])};
+Corners corners_of(const SceneData& scene, std::size_t triangle) {
+  const auto p = scene.corners(static_cast<std::uint32_t>(triangle));
+  return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
 }
 
 // Visits (row, first column, last column) of the column middles that may lie within `reach` of a triangle seen from
@@ -175,7 +176,7 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   const auto look = [&](const tbb::blocked_range<std::size_t>& range) {
     auto& own = collected.local();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const Corners t = corners_of(scene, scene.triangles[i]);
+      const Corners t = corners_of(scene, i);
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       if (n.z == 0) continue;
       const bool walkable = !plane && n.z >= least_up * length(n);
@@ -190,7 +191,7 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
       });
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), 64), look);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangle_count(), 64), look);
   std::vector<std::uint64_t> all;
   for (const auto& some : collected) all.insert(all.end(), some.begin(), some.end());
   if (plane)
@@ -227,7 +228,7 @@ void GroundField::find_room(const SceneData& scene) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
       const bool door = scene.meshes[mesh].door;
-      const Corners t = corners_of(scene, scene.triangles[i]);
+      const Corners t = corners_of(scene, i);
       const double z_min = std::min({t[0].z, t[1].z, t[2].z}), z_max = std::max({t[0].z, t[1].z, t[2].z});
       const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
       for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
@@ -238,7 +239,8 @@ void GroundField::find_room(const SceneData& scene) {
             const double low = z_[s] + climb_, high = z_[s] + height_;
             if (z_max <= low || z_min >= high) continue;
             const std::uint8_t known = std::atomic_ref<std::uint8_t>(taken_[s]).load(std::memory_order_relaxed);
-            if (known == (beside | overhead | at_door)) continue;
+            const std::uint8_t all = door ? at_door : beside | overhead;  // that this triangle may mark
+            if ((known & all) == all) continue;
             const glm::dvec2 p = middle(column);
             if (whole < 0) whole = squared_distance(p, plan);
             if (whole >= widest * widest) break;
@@ -246,6 +248,7 @@ void GroundField::find_room(const SceneData& scene) {
               mark(s, at_door);
               continue;
             }
+            if (whole > 0 && (known & beside)) continue;
             for (int k = cylinders - 1; k >= 0; --k) {
               const double bottom = low + k * shorter, top = high - k * shorter;
               if (whole >= radius[k] * radius[k]) break;
@@ -265,7 +268,7 @@ void GroundField::find_room(const SceneData& scene) {
       });
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), 64), look);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangle_count(), 64), look);
 }
 
 template <class Visit>
@@ -502,13 +505,15 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
 }
 
 std::vector<GroundField::ClosedDoor> GroundField::closed_doors(const SceneData& scene) const {
-  constexpr double kThreshold_m = 0.35;  // height of a sill, or of the gap below a leaf
-  const std::span<const Triangle> triangles(scene.triangles);
+  constexpr double kThreshold_m = 0.35;             // height of a sill, or of the gap below a leaf
+  constexpr std::uint32_t kMostTriangles = 20'000;  // of a leaf, where nodes share meshes
   std::vector<ClosedDoor> doors;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    if (scene.meshes[m].door) continue;
-    const auto leaf = leaf_around(triangles.subspan(scene.ranges[m].first_triangle, scene.ranges[m].triangle_count),
-                                  [&](std::uint32_t vertex) { return to_glm(scene.positions[vertex]); });
+    const MeshRange& range = scene.ranges[m];
+    if (scene.meshes[m].door || (scene.shares() && range.triangle_count > kMostTriangles)) continue;
+    const auto leaf = leaf_around(range.triangle_count, [&](std::uint32_t triangle) {
+      return corners_of(scene, range.first_triangle + triangle);
+    });
     if (!leaf || !(is_plain_leaf(*leaf) || names_a_door(scene.meshes[m].name))) continue;
     ClosedDoor door{m, {nowhere, nowhere}};
     for (int side = 0; side < 2; ++side)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/ground_weights.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -40,28 +42,25 @@ bool ground_is_unmarked(const Scene& scene, const SearchArea& area) {
 GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
   const SceneData& data = scene.data();
   std::vector<Area> areas(data.meshes.size());
-  const auto corner = [&](std::uint32_t v) {
-    return Vec3{data.positions[v].x, data.positions[v].y, data.positions[v].z};
-  };
   const auto for_each_surveyed = [&](auto&& with) {
-    for (std::size_t m = 0; m < data.meshes.size(); ++m) {
-      if (data.meshes[m].role != Role::surveyed) continue;
+    tbb::parallel_for(std::size_t{0}, data.meshes.size(), [&](std::size_t m) {
+      if (data.meshes[m].role != Role::surveyed) return;
       const MeshRange& range = data.ranges[m];
       for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {
-        const Triangle& of = data.triangles[t];
-        const Vec3 a = corner(of[0]), b = corner(of[1]), c = corner(of[2]), normal = cross(b - a, c - a);
+        const auto p = data.corners(t);
+        const Vec3 a = widen(p[0]), b = widen(p[1]), c = widen(p[2]), normal = cross(b - a, c - a);
         const double twice = std::sqrt(dot(normal, normal));
         // Models are wound either way, so a ceiling may count as upward, too; nobody stands on it.
         if (twice > 0) with(areas[m], a, b, c, twice / 2, std::abs(normal.z) >= upward * twice);
       }
-    }
+    });
   };
-  double all = 0, up = 0;
   for_each_surveyed([&](Area& of, const Vec3&, const Vec3&, const Vec3&, double size, bool is_up) {
     of.all += size;
-    all += size;
-    if (is_up) up += size;
+    if (is_up) of.up += size;
   });
+  double all = 0, up = 0;
+  for (const Area& of : areas) all += of.all, up += of.up;
   GroundWeights found;
   found.weights.assign(data.meshes.size(), 1);
   if (!(all > 0 && up > 0)) return found;
@@ -79,7 +78,6 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
       const auto ground = uv ? area.locate(*uv) : std::nullopt;
       if (ground && std::abs(ground->z - p.z) <= same_surface_m) ++on;
     }
-    of.up += size;
     of.stood_on += size * on / n;
   });
   double ground = 0;

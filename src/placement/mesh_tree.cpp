@@ -3,60 +3,69 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
-#include <string>
 
 #include "core/embree.hpp"
 #include "scene/positions.hpp"
+#include "scene/scene_tree.hpp"
 
 namespace vantage {
 namespace {
 
-struct Buffers {
-  const Float3* positions;
-  const Triangle* triangles;
+// What queries read: corners of triangles that Embree names.
+struct Triangles {
+  const SceneData& scene;
+  const SceneTree* tree;
+  std::uint32_t number(unsigned instance, unsigned primitive) const { return tree->number(instance, primitive); }
+  std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const {
+    const auto p = scene.corners(triangle);
+    return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
+  }
+  std::uint32_t number(const RTCPointQueryFunctionArguments& found) const {
+    return number(found.context->instStackSize > 0 ? found.context->instID[0] : RTC_INVALID_GEOMETRY_ID, found.primID);
+  }
 };
 
 struct Query {
-  Buffers buffers;
+  Triangles triangles;
   glm::dvec3 point;
   double best;                 // nearest so far
   double good_enough;          // a hit this near ends the search
   std::uint32_t triangle = 0;  // that of `best`
 };
 
-// A radius for Embree's boxes that covers the rounding of point and radius to float.
-float query_radius(const glm::dvec3& point, double radius) {
+// A radius for Embree's boxes that covers the rounding of point and radius to float, and of the point in the frame of a
+// shared mesh.
+float query_radius(const glm::dvec3& point, double radius, bool shared) {
   const double reach = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
-  return static_cast<float>((radius + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
+  return static_cast<float>((radius + (shared ? 32 : 4) * reach * 0x1p-23) * (1 + 0x1p-20));
 }
 
-RTCPointQuery ball_of(const glm::dvec3& point, double radius) {
+RTCPointQuery ball_of(const glm::dvec3& point, double radius, bool shared) {
   RTCPointQuery ball{};
   ball.x = static_cast<float>(point.x);
   ball.y = static_cast<float>(point.y);
   ball.z = static_cast<float>(point.z);
-  ball.radius = query_radius(point, radius);
+  ball.radius = query_radius(point, radius, shared);
   return ball;
 }
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
   Query& query = *static_cast<Query*>(arguments->userPtr);
-  const Triangle& t = query.buffers.triangles[arguments->primID];
-  const double distance =
-      distance_to_triangle(query.point, to_glm(query.buffers.positions[t[0]]), to_glm(query.buffers.positions[t[1]]),
-                           to_glm(query.buffers.positions[t[2]]));
+  const std::uint32_t number = query.triangles.number(*arguments);
+  const auto [a, b, c] = query.triangles.corners(number);
+  const double distance = distance_to_triangle(query.point, a, b, c);
   if (!(distance < query.best)) return false;
   query.best = distance;
-  query.triangle = arguments->primID;
-  arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query.point, query.best);
+  query.triangle = number;
+  arguments->query->radius =
+      distance < query.good_enough ? 0 : query_radius(query.point, query.best, query.triangles.scene.shares());
   return true;
 }
 
 struct SegmentQuery {
-  Buffers buffers;
+  Triangles triangles;
   glm::dvec3 a, b;
   double radius;
   bool found = false;
@@ -64,11 +73,8 @@ struct SegmentQuery {
 
 bool visit_segment(RTCPointQueryFunctionArguments* arguments) {
   SegmentQuery& query = *static_cast<SegmentQuery*>(arguments->userPtr);
-  const Triangle& t = query.buffers.triangles[arguments->primID];
-  if (query.found || !(distance_to_triangle(query.a, query.b, to_glm(query.buffers.positions[t[0]]),
-                                            to_glm(query.buffers.positions[t[1]]),
-                                            to_glm(query.buffers.positions[t[2]])) < query.radius))
-    return false;
+  const auto [a, b, c] = query.triangles.corners(query.triangles.number(*arguments));
+  if (query.found || !(distance_to_triangle(query.a, query.b, a, b, c) < query.radius)) return false;
   query.found = true;
   arguments->query->radius = 0;
   return true;
@@ -78,7 +84,7 @@ bool visit_segment(RTCPointQueryFunctionArguments* arguments) {
 // among equally distant triangles on the order of visits.
 struct Nearest {
   embree::Context rtc;  // first member: Embree passes its address to the filter
-  Buffers buffers;
+  Triangles triangles;
   glm::dvec3 point, way;
   double distance = std::numeric_limits<double>::infinity();
   std::optional<std::uint32_t> triangle = std::nullopt;
@@ -87,11 +93,10 @@ struct Nearest {
 void keep_nearest(const RTCFilterFunctionNArguments* arguments) {
   constexpr float beyond = 1 + 0x1p-8f;  // how far beyond the hit Embree continues
   Nearest& nearest = *reinterpret_cast<Nearest*>(arguments->context);
-  const std::uint32_t proposed = RTCHitN_primID(arguments->hit, arguments->N, 0);
-  const Triangle& t = nearest.buffers.triangles[proposed];
-  const glm::dvec3 a = to_glm(nearest.buffers.positions[t[0]]);
-  const glm::dvec3 normal =
-      cross(to_glm(nearest.buffers.positions[t[1]]) - a, to_glm(nearest.buffers.positions[t[2]]) - a);
+  const std::uint32_t proposed = nearest.triangles.number(RTCHitN_instID(arguments->hit, arguments->N, 0, 0),
+                                                          RTCHitN_primID(arguments->hit, arguments->N, 0));
+  const auto [a, b, c] = nearest.triangles.corners(proposed);
+  const glm::dvec3 normal = cross(b - a, c - a);
   const double distance = dot(normal, a - nearest.point) / dot(normal, nearest.way);
   if (distance < nearest.distance ||
       (nearest.triangle && distance == nearest.distance && proposed < *nearest.triangle)) {
@@ -140,6 +145,17 @@ double squared_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::d
   return squared(p - (a + edge * x));
 }
 
+// The scene's triangles alone.
+SceneData geometry_of(const SceneData& scene) {
+  SceneData geometry;
+  geometry.origin = scene.origin;
+  geometry.positions = scene.positions;
+  geometry.triangles = scene.triangles;
+  geometry.places = scene.places;
+  geometry.set_instances(scene.instances);
+  return geometry;
+}
+
 }  // namespace
 
 double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -168,36 +184,20 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
 }
 
 struct MeshTree::Impl {
+  SceneData scene;
   embree::Device device = embree::new_device();
-  embree::Scene tree;
-  Buffers buffers{};  // buffers of the geometry, which live as long as the tree
+  SceneTree tree;
+  Triangles triangles{scene, &tree};
 
-  Impl(const SceneData& scene, std::span<const Triangle> used) : tree(rtcNewScene(device.get())) {
-    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
-    if (!used.empty()) {
-      const embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-      auto* positions = static_cast<Float3*>(rtcSetNewGeometryBuffer(
-          geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), scene.positions.size()));
-      auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
-          geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), used.size()));
-      embree::check(device.get(), "taking the scene's triangles for distances");
-      std::copy(scene.positions.begin(), scene.positions.end(), positions);
-      std::copy(used.begin(), used.end(), triangles);
-      buffers = {positions, triangles};
-      rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_nearest);
-      rtcCommitGeometry(geometry.get());
-      rtcAttachGeometry(tree.get(), geometry.get());
-    }
-    rtcCommitScene(tree.get());
-    embree::check(device.get(), "building the tree for distances over " + std::to_string(used.size()) + " triangles");
-  }
+  Impl(const SceneData& whole, std::uint32_t used)
+      : scene(geometry_of(whole)), tree(device.get(), scene, 0, used, {.intersect = keep_nearest}, "for distances") {}
 
   Nearest first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
   bool occluded(RTCRay ray) const;
 
   Query nearest(const glm::dvec3& point, double limit, double good_enough) const {
-    Query query{.buffers = buffers, .point = point, .best = limit, .good_enough = good_enough};
-    RTCPointQuery ball = ball_of(point, limit);
+    Query query{.triangles = triangles, .point = point, .best = limit, .good_enough = good_enough};
+    RTCPointQuery ball = ball_of(point, limit, scene.shares());
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(tree.get(), &ball, &context, visit, &query);
@@ -209,7 +209,7 @@ Nearest MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way
   RTCRayHit hit{};
   hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  Nearest nearest{.rtc = {}, .buffers = buffers, .point = point, .way = way};
+  Nearest nearest{.rtc = {}, .triangles = triangles, .point = point, .way = way};
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&nearest.rtc);
   RTCIntersectArguments arguments;
@@ -223,8 +223,7 @@ Nearest MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way
   return nearest;
 }
 
-MeshTree::MeshTree(const SceneData& scene, std::span<const Triangle> triangles)
-    : impl_(std::make_unique<Impl>(scene, triangles)) {}
+MeshTree::MeshTree(const SceneData& scene, std::uint32_t triangles) : impl_(std::make_unique<Impl>(scene, triangles)) {}
 MeshTree::~MeshTree() = default;
 MeshTree::MeshTree(MeshTree&&) noexcept = default;
 MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
@@ -248,8 +247,8 @@ bool MeshTree::within(const glm::dvec3& point, double radius) const {
 }
 
 bool MeshTree::within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const {
-  SegmentQuery query{impl_->buffers, a, b, radius};
-  RTCPointQuery ball = ball_of((a + b) * 0.5, radius + 0.5 * length(b - a));
+  SegmentQuery query{impl_->triangles, a, b, radius};
+  RTCPointQuery ball = ball_of((a + b) * 0.5, radius + 0.5 * length(b - a), impl_->scene.shares());
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl_->tree.get(), &ball, &context, visit_segment, &query);
@@ -287,10 +286,8 @@ bool MeshTree::inside_solid(const glm::dvec3& point) const {
        {glm::dvec3{0, 0, 1}, glm::dvec3{1, 0, 0}, glm::dvec3{-1, 0, 0}, glm::dvec3{0, 1, 0}, glm::dvec3{0, -1, 0}}) {
     const auto hit = impl_->first_hit(point, way).triangle;
     if (!hit) return false;
-    const Triangle& t = impl_->buffers.triangles[*hit];
-    const glm::dvec3 a = to_glm(impl_->buffers.positions[t[0]]);
-    const glm::dvec3 normal =
-        cross(to_glm(impl_->buffers.positions[t[1]]) - a, to_glm(impl_->buffers.positions[t[2]]) - a);
+    const auto [a, b, c] = impl_->triangles.corners(*hit);
+    const glm::dvec3 normal = cross(b - a, c - a);
     if (dot(normal, way) <= 0 && ++fronts > 1) return false;
   }
   return true;

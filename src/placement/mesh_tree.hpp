@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "core/glm.hpp"
 #include "scene/scene_data.hpp"
@@ -16,16 +16,16 @@ namespace vantage {
 class MeshTree {
  public:
   // Keeps no reference to `scene`. Throws Error: out_of_memory, device_failure.
-  explicit MeshTree(const SceneData& scene) : MeshTree(scene, scene.triangles) {}
-  // Of some of its triangles.
-  MeshTree(const SceneData& scene, std::span<const Triangle> triangles);
+  explicit MeshTree(const SceneData& scene) : MeshTree(scene, scene.triangle_count()) {}
+  // Of its first triangles.
+  MeshTree(const SceneData& scene, std::uint32_t triangles);
   ~MeshTree();
   MeshTree(MeshTree&&) noexcept;
   MeshTree& operator=(MeshTree&&) noexcept;
 
   // Distance from `point` to the nearest triangle, at most `limit`, in double on the float vertices.
   double distance(const glm::dvec3& point, double limit) const;
-  // A triangle by its number, in the order in which they were given, and its distance.
+  // A triangle by its number in the scene, and its distance.
   struct Hit {
     double distance;
     std::uint32_t triangle;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/walkable.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +20,7 @@
 #include "placement/charts.hpp"
 #include "placement/ground_field.hpp"
 #include "placement/mesh_tree.hpp"
+#include "placement/plan_hull.hpp"
 #include "placement/surface_pieces.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
@@ -210,19 +213,79 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
   return surface;
 }
 
-std::vector<Triangle> upward_triangles(const SceneData& scene, const std::vector<glm::dvec3>& points,
-                                       const WalkableOptions& options, bool station_area) {
+bool is_upward(const std::array<Float3, 3>& p, double least_up) {
+  return unit_normal(to_glm(p[0]), to_glm(p[1]), to_glm(p[2])).z >= least_up;
+}
+
+// Meshes whose surfaces may be stood on.
+std::vector<MeshRange> standing_meshes(const SceneData& scene, bool station_area) {
+  std::vector<MeshRange> meshes;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (!scene.meshes[m].door && (!station_area || scene.meshes[m].station_area)) meshes.push_back(scene.ranges[m]);
+  return meshes;
+}
+
+// Into the scene's positions. REQUIRES: it shares no meshes.
+std::vector<Triangle> upward_triangles(const SceneData& scene, const WalkableOptions& options, bool station_area) {
   const double least_up = std::cos(options.max_slope.in_radians());
   std::vector<Triangle> upward;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    if (scene.meshes[m].door || (station_area && !scene.meshes[m].station_area)) continue;
-    const MeshRange& range = scene.ranges[m];
-    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i) {
-      const Triangle& t = scene.triangles[i];
-      if (unit_normal(points[t[0]], points[t[1]], points[t[2]]).z >= least_up) upward.push_back(t);
-    }
-  }
+  for (const MeshRange& range : standing_meshes(scene, station_area))
+    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i)
+      if (is_upward(scene.corners(i), least_up)) upward.push_back(scene.triangles[i]);
   return upward;
+}
+
+// The same where nodes share meshes, with their corners in `points`. Of shared ones, only those that somebody may
+// reach, or that are as wide as the pieces that are told apart: those of many machines' tops would fill the memory.
+std::vector<Triangle> reached_triangles(const SceneData& scene, const GroundField& field,
+                                        const WalkableOptions& options, bool station_area,
+                                        std::vector<glm::dvec3>& points) {
+  constexpr std::uint32_t kBlock = 1 << 16;
+  const double least_up = std::cos(options.max_slope.in_radians());
+  const double spacing = piece_spacing(options, scene.local_bounds);
+  const auto wanted = [&](std::uint32_t triangle, const std::array<Float3, 3>& p) {
+    if (scene.instance_of(triangle).place == MeshInstance::kNoPlace) return true;
+    const glm::dvec3 a = to_glm(p[0]), b = to_glm(p[1]), c = to_glm(p[2]);
+    const Access access = field.at((a + b + c) * (1.0 / 3));
+    return access == Access::reached || (station_area && access != Access::narrow && access != Access::headroom) ||
+           std::max({length(b - a), length(c - b), length(a - c)}) > spacing;
+  };
+  for (const MeshRange& range : standing_meshes(scene, station_area)) {
+    std::vector<std::vector<glm::dvec3>> found((range.triangle_count + kBlock - 1) / kBlock);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t block) {
+      const auto first = range.first_triangle + static_cast<std::uint32_t>(block) * kBlock;
+      for (std::uint32_t t = first; t < std::min(range.first_triangle + range.triangle_count, first + kBlock); ++t)
+        if (const auto p = scene.corners(t); is_upward(p, least_up) && wanted(t, p))
+          for (const Float3& corner : p) found[block].push_back(to_glm(corner));
+    });
+    for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
+  }
+  std::vector<Triangle> triangles(points.size() / 3);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = {3 * t, 3 * t + 1, 3 * t + 2};
+  return triangles;
+}
+
+std::vector<glm::dvec3> stored_points(const SceneData& scene) {
+  std::vector<glm::dvec3> points;
+  points.reserve(scene.positions.size());
+  for (const Float3& p : scene.positions) points.push_back(to_glm(p));
+  return points;
+}
+
+// Area of the model's convex outline seen from above.
+double outline_area(const SceneData& scene) {
+  using Hull = std::vector<Uv>;
+  return hull_area(tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 1 << 14), Hull{},
+      [&](const tbb::blocked_range<std::uint32_t>& range, Hull own) {
+        for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+          for (const Float3& p : scene.corners(t)) own.push_back({p.x, p.y});
+        return convex_hull(std::move(own));
+      },
+      [](Hull a, const Hull& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return convex_hull(std::move(a));
+      }));
 }
 
 std::vector<glm::dvec3> local_entries(const SceneData& scene, const WalkableOptions& options) {
@@ -240,12 +303,14 @@ void tell_entries(WalkableSurface& surface, const GroundField& field, const Scen
   }
 }
 
-WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
-                                 const WalkableOptions& options) {
+WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
   GroundField field(scene, options);
   field.reach(tree, local_entries(scene, options));
-  WalkableSurface surface =
-      derive_from(scene, tree, field, points, upward_triangles(scene, points, options, true), options, true);
+  std::vector<glm::dvec3> points;
+  if (!scene.shares()) points = stored_points(scene);
+  const std::vector<Triangle> upward =
+      scene.shares() ? reached_triangles(scene, field, options, true, points) : upward_triangles(scene, options, true);
+  WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, true);
   if (surface.mesh.triangles.empty())
     throw Error(
         Errc::invalid_argument,
@@ -256,16 +321,21 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
   return surface;
 }
 
-WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
-                                const WalkableOptions& options) {
-  const std::vector<Triangle> upward = upward_triangles(scene, points, options, false);
-  if (upward.empty()) return {};
+WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
+  std::vector<glm::dvec3> points;
+  std::vector<Triangle> upward;
+  if (!scene.shares()) {
+    upward = upward_triangles(scene, options, false);
+    if (upward.empty()) return {};
+    points = stored_points(scene);
+  }
   GroundField field(scene, options);
   field.reach(tree, local_entries(scene, options));
+  if (scene.shares()) upward = reached_triangles(scene, field, options, false, points);
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
   // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
-  const bool around = field.ground_area(lower_half_z) >= ground_share * plan_hull_area(points);
+  const bool around = field.ground_area(lower_half_z) >= ground_share * outline_area(scene);
   const bool inside = field.covered_area() >= ground_share * field.outline();
   const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
   if (field.entries().empty() || (options.enter.empty() && !around && !inside && !floors())) return {};
@@ -372,16 +442,13 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
     WalkableSurface marked = unfold_marked(scene, options);
     if (!marked.mesh.triangles.empty()) return marked;
   }
-  if (scene.triangles.empty() || scene.local_bounds.empty())
+  if (scene.triangle_count() == 0 || scene.local_bounds.empty())
     throw Error(Errc::invalid_argument,
                 "the scene has neither a mesh nor a usable search area to stand on; mark one with the role \"search\" "
                 "or add a ground");
   const MeshTree tree(scene);
-  std::vector<glm::dvec3> points;
-  points.reserve(scene.positions.size());
-  for (const Float3& p : scene.positions) points.push_back(to_glm(p));
-  if (named) return use_station_area(scene, tree, points, options);
-  WalkableSurface walkable = derive_walkable(scene, tree, points, options);
+  if (named) return use_station_area(scene, tree, options);
+  WalkableSurface walkable = derive_walkable(scene, tree, options);
   if (!walkable.mesh.triangles.empty()) return walkable;
   if (is_scanned(scene))
     throw Error(Errc::invalid_argument,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -22,6 +23,64 @@ struct Welded {
   std::vector<std::uint32_t> indices;
 };
 
+double largest_scale(const MeshPlace& place) {
+  return std::sqrt(std::max({dot(place.x, place.x), dot(place.y, place.y), dot(place.z, place.z)}));
+}
+
+// The scene with its shared meshes simplified to one share each, so that all their places together have about
+// `triangles`.
+SceneData thinned(const SceneData& scene, std::size_t triangles, double& error_m) {
+  const double share = static_cast<double>(triangles) / scene.triangle_count();
+  SceneData thin;
+  thin.origin = scene.origin;
+  thin.positions = scene.positions;
+  thin.places = scene.places;
+  thin.meshes = scene.meshes;
+  thin.ranges.resize(scene.ranges.size());
+  struct Simple {
+    std::uint32_t first_stored, count;
+    double error;  // in the mesh's frame
+  };
+  std::map<std::uint32_t, Simple> simple;  // by first stored triangle
+  const auto simplify = [&](std::uint32_t first, std::uint32_t count) {
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t t = first; t < first + count; ++t)
+      indices.insert(indices.end(), scene.triangles[t].begin(), scene.triangles[t].end());
+    const auto [low, high] = std::ranges::minmax(indices);
+    for (std::uint32_t& v : indices) v -= low;
+    const float* const positions = &scene.positions[low].x;
+    const std::size_t vertices = high - low + 1;
+    float error = 0;
+    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions, vertices, sizeof(Float3),
+                                    static_cast<std::size_t>(std::ceil(share * count)) * 3, kMostError, 0, &error));
+    const Simple out{static_cast<std::uint32_t>(thin.triangles.size()), static_cast<std::uint32_t>(indices.size() / 3),
+                     error * meshopt_simplifyScale(positions, vertices, sizeof(Float3))};
+    for (std::size_t k = 0; k < indices.size(); k += 3)
+      thin.triangles.push_back({indices[k] + low, indices[k + 1] + low, indices[k + 2] + low});
+    return out;
+  };
+  std::vector<MeshInstance> instances;
+  std::uint32_t next = 0;
+  for (const MeshInstance& instance : scene.instances) {
+    MeshRange& range = thin.ranges[scene.mesh_of(instance.first_triangle)];
+    if (range.triangle_count == 0) range.first_triangle = next;
+    MeshInstance own{next, instance.triangle_count, static_cast<std::uint32_t>(thin.triangles.size()), instance.place};
+    if (instance.place == MeshInstance::kNoPlace) {
+      const auto first = scene.triangles.begin() + instance.first_stored;
+      thin.triangles.insert(thin.triangles.end(), first, first + instance.triangle_count);
+    } else {
+      const auto [known, first] = simple.emplace(instance.first_stored, Simple{});
+      if (first) known->second = simplify(instance.first_stored, instance.triangle_count);
+      own.first_stored = known->second.first_stored, own.triangle_count = known->second.count;
+      error_m = std::max(error_m, known->second.error * largest_scale(scene.places[instance.place]));
+    }
+    next += own.triangle_count, range.triangle_count += own.triangle_count;
+    if (own.triangle_count > 0) instances.push_back(own);
+  }
+  thin.set_instances(std::move(instances));
+  return thin;
+}
+
 Welded weld(const SceneData& scene) {
   struct Corner {
     Float3 at;
@@ -29,14 +88,13 @@ Welded weld(const SceneData& scene) {
     std::uint32_t place;
   };
   std::vector<Corner> corners;
-  corners.reserve(3 * scene.triangles.size());
+  corners.reserve(3 * std::size_t{scene.triangle_count()});
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
     if (scene.meshes[m].glass) continue;  // it would hide what is behind it
     const MeshRange& range = scene.ranges[m];
     const std::uint8_t kind = scene.meshes[m].role == Role::surveyed ? kSurveyedVertex : 0;
     for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
-      for (const std::uint32_t v : scene.triangles[t])
-        corners.push_back({scene.positions[v], kind, static_cast<std::uint32_t>(corners.size())});
+      for (const Float3& p : scene.corners(t)) corners.push_back({p, kind, static_cast<std::uint32_t>(corners.size())});
   }
   const auto key = [](const Corner& c) { return std::tuple(c.at.x, c.at.y, c.at.z, c.kind); };
   std::ranges::sort(corners, {}, key);
@@ -118,8 +176,10 @@ std::vector<std::uint32_t> simplified(const Welded& mesh, std::size_t triangles,
 
 SurfaceMesh surface_mesh(const SceneData& scene, std::size_t triangles) {
   SurfaceMesh mesh;
-  if (scene.triangles.empty()) return mesh;
-  Welded welded = weld(scene);
+  if (scene.triangle_count() == 0) return mesh;
+  constexpr std::size_t kThinned = 8;  // times what is wanted
+  const bool many = scene.shares() && scene.triangle_count() > kThinned * triangles;
+  Welded welded = many ? weld(thinned(scene, kThinned * triangles, mesh.error_m)) : weld(scene);
   mark_solids(welded);
   std::vector<std::uint32_t> indices = simplified(welded, triangles, mesh.error_m);
   meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), welded.positions.size());

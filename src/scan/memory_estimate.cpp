@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/memory_estimate.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/info.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
@@ -21,9 +23,10 @@ namespace vantage {
 namespace {
 
 // Measured on processes (docs/reliability.md). Per voxel: its count, its share of a brick, and the words of its mask.
-// Per triangle: vertices and temporary data; the tree and planes of the CPU engine.
+// Per triangle: vertices and temporary data; the tree and planes of the CPU engine; per place of one that nodes share,
+// a bit.
 constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
-                 kVoxel = 6, kMaskWord = 8;
+                 kPlaced = 1.0 / 8, kVoxel = 6, kMaskWord = 8;
 constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
 
 struct SurfaceExtent {
@@ -31,20 +34,46 @@ struct SurfaceExtent {
   double extent_m = 0;
 };
 
+// Local frame.
+std::array<glm::dvec3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
+  const auto p = scene.corners(triangle);
+  return {glm::dvec3(p[0].x, p[0].y, p[0].z), glm::dvec3(p[1].x, p[1].y, p[1].z), glm::dvec3(p[2].x, p[2].y, p[2].z)};
+}
+
+// Calls body(sum, triangle) for every surveyed triangle, and adds up the sums of blocks, always in one order.
+template <class Sum, class Body>
+Sum sum_surveyed(const SceneData& scene, const Body& body) {
+  Sum sum;
+  for (const MeshRange& mesh : surveyed_ranges(scene))
+    sum += tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096), Sum{},
+        [&](const tbb::blocked_range<std::uint32_t>& range, Sum own) {
+          for (std::uint32_t t = range.begin(); t != range.end(); ++t) body(own, t);
+          return own;
+        },
+        [](Sum a, const Sum& b) { return a += b; });
+  return sum;
+}
+
 SurfaceExtent surface_of(const SceneData& scene) {
-  SurfaceExtent surface;
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const auto& mesh : surveyed_triangles(scene))
-    for (const Triangle& t : mesh) {
-      const auto corner = [&](int k) {
-        const Float3& p = scene.positions[t[static_cast<std::size_t>(k)]];
-        return glm::dvec3(p.x, p.y, p.z);
-      };
-      const glm::dvec3 a = corner(0), b = corner(1), c = corner(2), normal = cross(b - a, c - a);
-      surface.cells_m2 += 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-      low = glm::min(low, glm::min(a, glm::min(b, c))), high = glm::max(high, glm::max(a, glm::max(b, c)));
+  struct Sum {
+    double cells_m2 = 0;
+    glm::dvec3 low{INFINITY}, high{-INFINITY};
+    Sum& operator+=(const Sum& other) {
+      cells_m2 += other.cells_m2, low = glm::min(low, other.low), high = glm::max(high, other.high);
+      return *this;
     }
-  if (surface.cells_m2 > 0) surface.extent_m = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  };
+  const Sum sum = sum_surveyed<Sum>(scene, [&](Sum& own, std::uint32_t t) {
+    const auto [a, b, c] = corners_of(scene, t);
+    const glm::dvec3 normal = cross(b - a, c - a);
+    own.cells_m2 += 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    own.low = glm::min(own.low, glm::min(a, glm::min(b, c))),
+    own.high = glm::max(own.high, glm::max(a, glm::max(b, c)));
+  });
+  SurfaceExtent surface{.cells_m2 = sum.cells_m2};
+  const glm::dvec3 size = sum.high - sum.low;
+  if (surface.cells_m2 > 0) surface.extent_m = std::max({size.x, size.y, size.z});
   return surface;
 }
 
@@ -65,24 +94,27 @@ struct Sliver {
 std::vector<Sliver> find_slivers(const SceneData& scene, double voxel_size, double& cells_m2) {
   constexpr double kLong = 8, kThin = 0.25;  // voxels; share of those that it passes through
   const double least = kLong * voxel_size * kLong * voxel_size;
-  std::vector<Sliver> found;
-  for (const auto& mesh : surveyed_triangles(scene))
-    for (const Triangle& t : mesh) {
-      const auto corner = [&](std::size_t k) {
-        const Float3& p = scene.positions[t[k]];
-        return glm::dvec3(p.x, p.y, p.z);
-      };
-      const std::array<glm::dvec3, 3> p{corner(0), corner(1), corner(2)}, edges{p[1] - p[0], p[2] - p[1], p[0] - p[2]};
-      const std::array<double, 3> squares{dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2])};
-      const auto longest = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
-      if (squares[longest] <= least) continue;
-      const glm::dvec3 normal = cross(edges[0], edges[1]);
-      const double area = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-      if (area >= kThin * voxel_size * std::sqrt(squares[longest])) continue;
-      found.push_back({p[longest] / voxel_size, edges[longest] / voxel_size});
-      cells_m2 += area;
+  struct Sum {
+    std::vector<Sliver> found = {};
+    double cells_m2 = 0;
+    Sum& operator+=(const Sum& other) {
+      found.insert(found.end(), other.found.begin(), other.found.end()), cells_m2 += other.cells_m2;
+      return *this;
     }
-  return found;
+  };
+  Sum sum = sum_surveyed<Sum>(scene, [&](Sum& own, std::uint32_t t) {
+    const std::array<glm::dvec3, 3> p = corners_of(scene, t), edges{p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+    const std::array<double, 3> squares{dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2])};
+    const auto longest = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+    if (squares[longest] <= least) return;
+    const glm::dvec3 normal = cross(edges[0], edges[1]);
+    const double area = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    if (area >= kThin * voxel_size * std::sqrt(squares[longest])) return;
+    own.found.push_back({p[longest] / voxel_size, edges[longest] / voxel_size});
+    own.cells_m2 += area;
+  });
+  cells_m2 = sum.cells_m2;
+  return std::move(sum.found);
 }
 
 // The first step, from step k on, behind the brick that step k is in.
@@ -179,6 +211,7 @@ class Estimator {
     const auto asks = [](const MeshInfo& mesh) { return mesh.detail_m || mesh.accuracy_m; };
     load_ = {.vertices = static_cast<double>(scene_.positions.size()),
              .triangles = static_cast<double>(scene_.triangles.size()),
+             .runs = static_cast<double>(scene_.instances.size()),
              .rows = static_cast<std::uint32_t>(largest->rows()),
              .columns = static_cast<std::uint32_t>(largest->columns()),
              .stations = static_cast<std::uint32_t>(std::min(stations, mask_bits)),
@@ -192,8 +225,9 @@ class Estimator {
     const double of_slivers = std::max(slivers.cells_m2 / cell_m2, slivers.voxels);
     const double voxels = (surface_.cells_m2 - slivers.cells_m2) / cell_m2 + of_slivers;
     const double bricks_bytes = kBrickBytes * std::max(0.0, slivers.bricks - of_slivers / kVoxelsOfABrick);
-    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
     const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
+    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
+    if (scene_.shares()) host += kPlaced * scene_.triangle_count();
     if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
     for (const ChosenDevice& each : devices) {
       if (each.engine == Engine::embree) continue;
@@ -245,7 +279,7 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
   if (fits(wanted)) return;
   const bool of_host = wanted.bytes > host;
   std::string what = "this takes about " + bytes_text(of_host ? wanted.bytes : wanted.device_bytes) + " of " +
-                     (of_host ? "" : "the device's ") + "memory, for " + number(scene.data().triangles.size()) +
+                     (of_host ? "" : "the device's ") + "memory, for " + number(scene.data().triangle_count()) +
                      " triangles and some " + number(wanted.voxels) + " surveyed voxels; ";
   if (given > 0)
     what += "it may take " + bytes_text(given);

@@ -79,7 +79,7 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
 }
 
 double RayFollower::distance_from_plane(std::uint32_t triangle, const Vec3& point) const {
-  return std::abs(dot(planes_->normal(triangle), point - widen(scene_->positions[scene_->triangles[triangle][0]])));
+  return std::abs(dot(planes_->normal(triangle), point - widen(scene_->corners(triangle)[0])));
 }
 
 void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& station, std::uint64_t first_ray,

@@ -11,6 +11,8 @@ Scene all_surveyed(const Scene& scene) {
   data->origin = given.origin;
   data->positions = given.positions;
   data->triangles = given.triangles;
+  data->places = given.places;
+  data->set_instances(given.instances);
   data->ranges = given.ranges;
   data->meshes = given.meshes;
   for (MeshRange& range : data->ranges) range.material = 0;

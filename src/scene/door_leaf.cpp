@@ -22,13 +22,13 @@ constexpr double kLowestPlain = 1.85, kHighestPlain = 2.6, kNarrowestPlain = 0.6
 
 }  // namespace
 
-std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
-                                    const std::function<glm::dvec3(std::uint32_t vertex)>& place) {
+std::optional<DoorLeaf> leaf_around(std::size_t triangles,
+                                    const std::function<std::array<glm::dvec3, 3>(std::uint32_t triangle)>& corners) {
   double low = std::numeric_limits<double>::infinity(), high = -low, count = 0;
   glm::dvec2 mean(0);
   const auto for_points = [&](const auto& visit) {
-    for (const Triangle& t : triangles)
-      for (const std::uint32_t v : t) visit(place(v));
+    for (std::uint32_t t = 0; t < triangles; ++t)
+      for (const glm::dvec3& p : corners(t)) visit(p);
   };
   bool broken = false;
   for_points([&](const glm::dvec3& p) {

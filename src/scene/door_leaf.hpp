@@ -2,13 +2,14 @@
 // What a door's leaf looks like, and what it is called.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "core/glm.hpp"
-#include "scene/scene_data.hpp"
 
 namespace vantage {
 
@@ -20,8 +21,8 @@ struct DoorLeaf {
 };
 
 // The box around triangles, if it has that size.
-std::optional<DoorLeaf> leaf_around(std::span<const Triangle> triangles,
-                                    const std::function<glm::dvec3(std::uint32_t vertex)>& place);
+std::optional<DoorLeaf> leaf_around(std::size_t triangles,
+                                    const std::function<std::array<glm::dvec3, 3>(std::uint32_t triangle)>& corners);
 
 // Whether a box of that height may be one.
 bool is_leaf_high(double height);

@@ -14,6 +14,11 @@ std::uint64_t Scene::fingerprint() const noexcept {
   hash.add_all(scene.texcoords);
   hash.add_all(scene.colours);
   hash.add_all(scene.triangles);
+  for (const MeshInstance& instance : scene.instances)
+    hash.add(instance.first_triangle), hash.add(instance.first_stored), hash.add(instance.place);
+  for (const MeshPlace& place : scene.places)
+    for (const Vec3& column : {place.x, place.y, place.z, place.origin})
+      hash.add(column.x), hash.add(column.y), hash.add(column.z);
   for (const MeshRange& range : scene.ranges) hash.add(range.triangle_count), hash.add(range.material);
   for (const MeshInfo& mesh : scene.meshes) {
     hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse), hash.add(mesh.weight), hash.add(mesh.detail_m),

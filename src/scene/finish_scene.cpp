@@ -10,6 +10,7 @@
 
 #include "scene/cut_coplanar.hpp"
 #include "scene/raw_scene.hpp"
+#include "scene/shared_meshes.hpp"
 #include "scene/sound_triangle.hpp"
 #include "vantage/error.hpp"
 
@@ -29,6 +30,14 @@ void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
 }
 
 namespace {
+
+// Shared ones counted at each of their places.
+std::size_t count_triangles(const RawScene& raw) {
+  std::size_t count = raw.triangles.size();
+  for (const auto& range : raw.placed)
+    for (const PlacedShared& placed : range) count += raw.shared[placed.mesh].triangles.size();
+  return count;
+}
 
 template <class Keep>
 std::size_t drop_unless(RawScene& raw, Keep&& sound_triangle) {
@@ -155,14 +164,18 @@ void note_lost_precision(RawScene& raw, const Box& local) {
 void drop_empty_meshes(RawScene& raw) {
   std::size_t out = 0;
   for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
-    if (raw.ranges[m].triangle_count == 0) continue;
+    const bool shares = !raw.placed.empty() && !raw.placed[m].empty();
+    if (raw.ranges[m].triangle_count == 0 && !shares) continue;
     raw.ranges[out] = raw.ranges[m];
     if (out != m) raw.meshes[out] = std::move(raw.meshes[m]);
+    if (shares && out != m) raw.placed[out] = std::move(raw.placed[m]);
+    if (!shares && !raw.placed.empty()) raw.placed[out].clear();
     raw.meshes[out].triangle_count = raw.ranges[out].triangle_count;
     ++out;
   }
   raw.ranges.resize(out);
   raw.meshes.resize(out);
+  if (!raw.placed.empty()) raw.placed.resize(out);
 }
 
 Vec3 local_origin(const Box& bounds) {
@@ -177,11 +190,14 @@ Vec3 local_origin(const Box& bounds) {
 }
 
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source) {
-  const std::size_t given = raw.triangles.size();
-  const std::size_t not_finite = drop_unless(raw, [&](const Triangle& t) {
+  const std::size_t given = count_triangles(raw);
+  SharedCleaner shared(raw);
+  shared.drop_not_finite();
+  std::size_t not_finite = drop_unless(raw, [&](const Triangle& t) {
     return sound(raw.positions[t[0]]) && sound(raw.positions[t[1]]) && sound(raw.positions[t[2]]);
   });
   Box bounds;
+  shared.extend(bounds);
   for (const Triangle& t : raw.triangles)
     for (const std::uint32_t v : t) bounds.extend(to_vec3(raw.positions[v]));
 
@@ -196,10 +212,15 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   const auto has_area_in_float = [&](const Triangle& t) {
     return has_area(to_glm(data->positions[t[0]]), to_glm(data->positions[t[1]]), to_glm(data->positions[t[2]]));
   };
-  const std::size_t flat = drop_unless(raw, has_area_in_float);
-  const std::size_t duplicates = drop_duplicates(raw, data->positions);
+  shared.drop_without_area(data->origin);
+  std::size_t flat = drop_unless(raw, has_area_in_float);
+  shared.drop_duplicates();
+  std::size_t duplicates = drop_duplicates(raw, data->positions);
   const CoplanarCut cut = cut_coplanar(raw, data->positions);
   if (cut.blocking > 0) drop_unless(raw, has_area_in_float);
+
+  not_finite += shared.done().not_finite, flat += shared.done().without_area, duplicates += shared.done().duplicates;
+  if (!raw.placed.empty()) drop_empty_meshes(raw);
 
   if (not_finite > 0)
     raw.notes.push_back("dropped " + std::to_string(not_finite) +
@@ -211,16 +232,14 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
     raw.notes.push_back("cut away what of " + std::to_string(cut.blocking) +
                         " blocking triangles lies in one plane with " + std::to_string(cut.surveyed) +
                         " surveyed ones, behind these");
-  if (raw.triangles.empty() ||
-      std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
-    throw Error(
-        Errc::malformed_file,
-        source + ": nothing to survey: " +
-            (given == 0 ? std::string("the scene has no triangles of surveyed or blocking meshes")
-             : raw.triangles.empty()
-                 ? "all " + std::to_string(given) + " triangles are without area or not finite"
-                 : "all " + std::to_string(raw.triangles.size()) + " triangles only block; mark meshes as surveyed"),
-        raw.notes);
+  const std::size_t left = count_triangles(raw);
+  if (left == 0 || std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
+    throw Error(Errc::malformed_file,
+                source + ": nothing to survey: " +
+                    (given == 0  ? std::string("the scene has no triangles of surveyed or blocking meshes")
+                     : left == 0 ? "all " + std::to_string(given) + " triangles are without area or not finite"
+                                 : "all " + std::to_string(left) + " triangles only block; mark meshes as surveyed"),
+                raw.notes);
 
   const auto kept = renumber(raw.triangles, data->positions.size());
   if (kept.size() != data->positions.size()) {
@@ -230,13 +249,14 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
     compact(raw.colours, kept);
   }
   for (const Float3& p : data->positions) data->local_bounds.extend(to_vec3(to_glm(p)));
-  note_lost_precision(raw, data->local_bounds);
-  clean_search_area(raw);
-
   data->normals = std::move(raw.normals);
   data->texcoords = std::move(raw.texcoords);
   data->colours = std::move(raw.colours);
   data->triangles = std::move(raw.triangles);
+  if (!raw.placed.empty()) append_shared(*data, raw);
+  note_lost_precision(raw, data->local_bounds);
+  clean_search_area(raw);
+
   data->ranges = std::move(raw.ranges);
   data->meshes = std::move(raw.meshes);
   data->materials = std::move(raw.materials);

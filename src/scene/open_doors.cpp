@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/open_doors.hpp"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -15,6 +18,7 @@
 
 #include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
+#include "scene/shared_meshes.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
@@ -28,13 +32,41 @@ constexpr double kNear = 0.02;             // what is as near to a leaf is of it
 constexpr std::size_t kMostLeaves = 2000;  // leaves that are looked at
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-// The model, or what it would be in another unit and with another axis up: metres, z up.
+// The model, or what it would be in another unit and with another axis up: metres, z up. Shared meshes are looked at by
+// glTF's rule alone.
 struct Reading {
   const RawScene& raw;
   double metres = 1;
   UpAxis up = UpAxis::y;
+  std::vector<PlacedRun> runs = {};
+  std::vector<Box> boxes = {};  // around each run
+
   glm::dvec3 at(std::uint32_t vertex) const { return with_up(up, raw.positions[vertex]) * metres; }
+  std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const {
+    if (triangle < raw.triangles.size()) {
+      const Triangle& t = raw.triangles[triangle];
+      return {at(t[0]), at(t[1]), at(t[2])};
+    }
+    const PlacedRun& run = runs[run_of(runs, triangle)];
+    const Triangle& t = run.shared->triangles[triangle - run.first];
+    return {run.at(t[0]), run.at(t[1]), run.at(t[2])};
+  }
+  // Numbers of the runs of a mesh: from, to.
+  std::pair<std::size_t, std::size_t> runs_of(std::size_t mesh) const {
+    const auto of = std::ranges::equal_range(runs, mesh, {}, &PlacedRun::range);
+    return {static_cast<std::size_t>(of.begin() - runs.begin()), static_cast<std::size_t>(of.end() - runs.begin())};
+  }
 };
+
+std::vector<Box> boxes_of(std::span<const PlacedRun> runs) {
+  std::vector<Box> boxes(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t k) {
+    for (const Triangle& t : runs[k].shared->triangles)
+      for (const std::uint32_t v : t)
+        if (const glm::dvec3 p = runs[k].at(v); sound(p)) boxes[k].extend(to_vec3(p));
+  });
+  return boxes;
+}
 
 // The leaf that a mesh may be, or a connected part of one, and its triangles, ascending.
 struct Leaf : DoorLeaf {
@@ -53,21 +85,15 @@ struct Leaf : DoorLeaf {
   }
 };
 
-// A connected part of a mesh: its triangles, as places in MeshParts::triangles, and the box around them.
-struct MeshPart {
-  std::uint32_t first = 0, end = 0;
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-};
-struct MeshParts {
+// Triangles of a mesh, by connected parts.
+struct Connected {
   std::vector<std::uint32_t> triangles;
-  std::vector<MeshPart> parts;
+  std::vector<std::uint32_t> begin;  // of each part in `triangles`, and their end
 };
 
 // Triangles that share a corner, by its position, are connected.
-MeshParts parts_of(const Reading& model, std::size_t mesh) {
-  const MeshRange& range = model.raw.ranges[mesh];
-  const std::span<const Triangle> triangles =
-      std::span(model.raw.triangles).subspan(range.first_triangle, range.triangle_count);
+template <class Position>
+Connected connect(std::span<const Triangle> triangles, std::span<const Position> positions) {
   std::uint32_t low = kNone, high = 0;
   for (const Triangle& t : triangles)
     for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
@@ -83,51 +109,100 @@ MeshParts parts_of(const Reading& model, std::size_t mesh) {
     parent[std::max(v, w)] = std::min(v, w);
   };
   for (const Triangle& t : triangles) join(t[0] - low, t[1] - low), join(t[0] - low, t[2] - low);
-  std::erase_if(order, [&](std::uint32_t v) { return !sound(model.raw.positions[low + v]); });
   const auto key = [&](std::uint32_t v) {
-    const glm::dvec3& p = model.raw.positions[low + v];
+    const Position& p = positions[low + v];
     return std::tie(p.x, p.y, p.z);
   };
+  std::erase_if(order, [&](std::uint32_t v) {
+    const auto [x, y, z] = key(v);
+    return !sound({x, y, z});
+  });
   tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) { return key(v) < key(w); });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (key(order[i]) == key(order[i - 1])) join(order[i], order[i - 1]);
-  MeshParts out;
+  Connected out{std::vector<std::uint32_t>(triangles.size()), {0}};
   std::vector<std::uint32_t>& number = order;  // of the part of each root
   number.assign(parent.size(), kNone);
   for (const Triangle& t : triangles) {
     std::uint32_t& part = number[find(t[0] - low)];
-    if (part == kNone) part = static_cast<std::uint32_t>(out.parts.size()), out.parts.emplace_back();
-    MeshPart& of = out.parts[part];
-    ++of.end;
-    for (const std::uint32_t v : t) of.low = glm::min(of.low, model.at(v)), of.high = glm::max(of.high, model.at(v));
+    if (part == kNone) part = static_cast<std::uint32_t>(out.begin.size()) - 1, out.begin.push_back(0);
+    ++out.begin[part + 1];
   }
-  std::uint32_t at = 0;
-  for (MeshPart& part : out.parts) part.first = at, at += part.end, part.end = part.first;
-  out.triangles.resize(triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i)
-    out.triangles[out.parts[number[find(triangles[i][0] - low)]].end++] = range.first_triangle + i;
+  std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
+  std::vector<std::uint32_t> at = out.begin;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) out.triangles[at[number[find(triangles[i][0] - low)]]++] = i;
   return out;
 }
 
-// Triangles by squares in plan view, so that those beside a leaf are found.
+// The connected parts of a mesh where it stands, and the boxes around them and around all.
+struct MeshParts {
+  std::shared_ptr<const Connected> connected;
+  std::uint32_t first = 0;  // triangle
+  std::vector<Box> boxes = {};
+  Box all = {};
+  std::vector<std::uint32_t> triangles_of(std::size_t part) const {
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t k = connected->begin[part]; k < connected->begin[part + 1]; ++k)
+      numbers.push_back(first + connected->triangles[k]);
+    return numbers;
+  }
+};
+
+MeshParts parts_from(const Reading& model, std::uint32_t first, std::shared_ptr<const Connected> connected) {
+  MeshParts parts{std::move(connected), first};
+  for (std::size_t part = 0; part + 1 < parts.connected->begin.size(); ++part) {
+    Box& box = parts.boxes.emplace_back();
+    for (std::uint32_t k = parts.connected->begin[part]; k < parts.connected->begin[part + 1]; ++k)
+      for (const glm::dvec3& p : model.corners(first + parts.connected->triangles[k])) box.extend(to_vec3(p));
+    parts.all.extend(box.min), parts.all.extend(box.max);
+  }
+  return parts;
+}
+
+// Of each of the model's meshes: of its own triangles, and of what it shares, of which `wanted` says whether to look.
+std::vector<std::vector<MeshParts>> parts_of(const Reading& model, const std::vector<std::uint8_t>& wanted) {
+  const RawScene& raw = model.raw;
+  std::vector<std::shared_ptr<const Connected>> shared(raw.shared.size());
+  const auto number_of = [&](const PlacedRun& run) { return static_cast<std::size_t>(run.shared - raw.shared.data()); };
+  for (const PlacedRun& run : model.runs)
+    if (auto& connected = shared[number_of(run)]; !connected && wanted[run.range])
+      connected = std::make_shared<const Connected>(
+          connect<Float3>(run.shared->triangles, std::span<const Float3>(run.shared->positions)));
+  std::vector<std::vector<MeshParts>> parts(raw.meshes.size());
+  tbb::parallel_for(std::size_t{0}, raw.meshes.size(), [&](std::size_t m) {
+    if (!wanted[m]) return;
+    const MeshRange& range = raw.ranges[m];
+    if (range.triangle_count > 0)
+      parts[m].push_back(parts_from(
+          model, range.first_triangle,
+          std::make_shared<const Connected>(connect<glm::dvec3>(
+              std::span(raw.triangles).subspan(range.first_triangle, range.triangle_count), raw.positions))));
+    for (auto [k, end] = model.runs_of(m); k < end; ++k)
+      parts[m].push_back(parts_from(model, model.runs[k].first, shared[number_of(model.runs[k])]));
+  });
+  return parts;
+}
+
+// The model's own triangles by squares in plan view, so that those beside a leaf are found. Of shared meshes, those
+// that stand there are searched.
 class PlanIndex {
  public:
   explicit PlanIndex(const Reading& model) : model_(model) {
     glm::dvec2 high(-std::numeric_limits<double>::infinity());
     low_ = -high;
-    const std::vector<Triangle>& triangles = model.raw.triangles;
-    for (const Triangle& t : triangles)
-      if (const auto box = box_of(t)) low_ = glm::min(low_, box->first), high = glm::max(high, box->second);
+    const auto triangles = static_cast<std::uint32_t>(model.raw.triangles.size());
+    for (std::uint32_t i = 0; i < triangles; ++i)
+      if (const auto box = box_of(i)) low_ = glm::min(low_, box->first), high = glm::max(high, box->second);
     if (!(low_.x <= high.x)) return;
     cell_ = std::max({kCell, (high.x - low_.x) / kMostCells, (high.y - low_.y) / kMostCells});
     nx_ = static_cast<std::size_t>((high.x - low_.x) / cell_) + 1;
     const std::size_t ny = static_cast<std::size_t>((high.y - low_.y) / cell_) + 1;
     first_.assign(nx_ * ny + 1, 0);
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) visit(i, [&](std::size_t c) { ++first_[c + 1]; });
+    for (std::uint32_t i = 0; i < triangles; ++i) visit(i, [&](std::size_t c) { ++first_[c + 1]; });
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
     items_.resize(first_.back());
     std::vector<std::uint32_t> at(first_.begin(), first_.end() - 1);
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    for (std::uint32_t i = 0; i < triangles; ++i) {
       bool many = false;
       visit(
           i, [&](std::size_t c) { items_[at[c]++] = i; }, &many);
@@ -144,6 +219,15 @@ class PlanIndex {
     });
     std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
+    const auto meets = [&](const auto& low, const auto& high) {
+      return low.x <= middle.x + reach && high.x >= middle.x - reach && low.y <= middle.y + reach &&
+             high.y >= middle.y - reach;
+    };
+    for (std::size_t k = 0; k < model_.runs.size(); ++k) {
+      if (!meets(model_.boxes[k].min, model_.boxes[k].max)) continue;
+      for (std::uint32_t i = model_.runs[k].first; i < model_.runs[k].first + model_.runs[k].count(); ++i)
+        if (const auto box = box_of(i); box && meets(box->first, box->second)) near.push_back(i);
+    }
     std::vector<std::uint32_t> others;
     std::ranges::set_difference(near, leaf.triangles, std::back_inserter(others));
     return others;
@@ -154,10 +238,9 @@ class PlanIndex {
   static constexpr double kMostCells = 1000;
   static constexpr std::size_t kMany = 64;  // cells of a triangle that is kept apart
 
-  std::optional<std::pair<glm::dvec2, glm::dvec2>> box_of(const Triangle& t) const {
+  std::optional<std::pair<glm::dvec2, glm::dvec2>> box_of(std::uint32_t triangle) const {
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const std::uint32_t v : t) {
-      const glm::dvec3 p = model_.at(v);
+    for (const glm::dvec3& p : model_.corners(triangle)) {
       if (!sound(p)) return std::nullopt;
       low = glm::min(low, glm::dvec2(p.x, p.y)), high = glm::max(high, glm::dvec2(p.x, p.y));
     }
@@ -175,7 +258,7 @@ class PlanIndex {
   }
   template <class Visit>
   void visit(std::uint32_t triangle, const Visit& visit, bool* many = nullptr) const {
-    const auto box = box_of(model_.raw.triangles[triangle]);
+    const auto box = box_of(triangle);
     if (!box) return;
     const glm::dvec2 cells = (box->second - box->first) / cell_ + 1.0;
     if (cells.x * cells.y > static_cast<double>(kMany)) {
@@ -201,8 +284,8 @@ template <class Visit>
 void for_hits(const Reading& model, std::span<const std::uint32_t> triangles, const glm::dvec3& from,
               const glm::dvec3& way, const Visit& visit) {
   for (const std::uint32_t i : triangles) {
-    const Triangle& t = model.raw.triangles[i];
-    const glm::dvec3 a = model.at(t[0]) - from, b = model.at(t[1]) - from, c = model.at(t[2]) - from;
+    const auto corners = model.corners(i);
+    const glm::dvec3 a = corners[0] - from, b = corners[1] - from, c = corners[2] - from;
     if (std::min({a.z, b.z, c.z}) > 0 || std::max({a.z, b.z, c.z}) < 0) continue;
     const glm::dvec3 n = cross(b - a, c - a);
     const double across = dot(n, way);
@@ -243,10 +326,7 @@ std::optional<std::pair<double, double>> panel_among(const Reading& model, std::
 
 // The leaf that triangles may be, if they have the size of one.
 std::optional<Leaf> leaf_of(const Reading& model, std::size_t mesh, std::vector<std::uint32_t> triangles) {
-  std::vector<Triangle> own;
-  own.reserve(triangles.size());
-  for (const std::uint32_t i : triangles) own.push_back(model.raw.triangles[i]);
-  const auto box = leaf_around(own, [&](std::uint32_t vertex) { return model.at(vertex); });
+  const auto box = leaf_around(triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); });
   if (!box) return std::nullopt;
   Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), std::move(triangles), {}};
   leaf.panel = panel_among(model, leaf.triangles, leaf);
@@ -272,19 +352,30 @@ bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, cons
   return wall_at(panel.middle + aside) && wall_at(panel.middle - aside) && wall_at(panel.middle + up);
 }
 
-std::vector<std::uint32_t> triangles_of(const MeshRange& range) {
-  std::vector<std::uint32_t> all(range.triangle_count);
-  std::iota(all.begin(), all.end(), range.first_triangle);
+// Of a mesh that has the height of a leaf; else none.
+std::vector<std::uint32_t> triangles_of(const Reading& model, std::size_t mesh) {
+  const MeshRange& range = model.raw.ranges[mesh];
+  Box box;
+  const auto [begin, end] = model.runs_of(mesh);
+  for (std::size_t k = begin; k < end; ++k) box.extend(model.boxes[k].min), box.extend(model.boxes[k].max);
+  if (range.triangle_count == 0 && !is_leaf_high(box.size().z)) return {};
+  std::vector<std::uint32_t> all;
+  const auto add = [&](std::uint32_t first, std::uint32_t n) {
+    for (std::uint32_t i = first; i < first + n; ++i) all.push_back(i);
+  };
+  add(range.first_triangle, range.triangle_count);
+  for (std::size_t k = begin; k < end; ++k) add(model.runs[k].first, model.runs[k].count());
   return all;
 }
 
 // Whether a part lies in the box of a leaf, as handles do, which stand out.
-bool lies_in(const MeshPart& part, const Leaf& leaf) {
+bool lies_in(const Box& part, const Leaf& leaf) {
   constexpr double kHandle = 0.12;
   const glm::dvec3 size{leaf.width / 2 + kNear, leaf.thickness / 2 + kHandle, leaf.height / 2 + kNear};
   for (int corner = 0; corner < 8; ++corner) {
-    glm::dvec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1 ? part.high[k] : part.low[k]) - leaf.middle[k];
+    const glm::dvec3 p = glm::dvec3(corner & 1 ? part.max.x : part.min.x, corner & 2 ? part.max.y : part.min.y,
+                                    corner & 4 ? part.max.z : part.min.z) -
+                         leaf.middle;
     if (std::abs(dot(p, leaf.along)) > size.x || std::abs(dot(p, leaf.through)) > size.y || std::abs(p.z) > size.z)
       return false;
   }
@@ -296,7 +387,6 @@ bool lies_in(const MeshPart& part, const Leaf& leaf) {
 std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t>& candidate, std::size_t most,
                             bool parts) {
   std::vector<Leaf> leaves;
-  std::vector<MeshParts> parted;
   std::optional<PlanIndex> index;
   std::size_t looked = 0;
   const auto is_door = [&](Leaf& leaf) {
@@ -308,28 +398,40 @@ std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t
     if (!leaf.panel) leaf.panel = panel_among(model, others, leaf);
     return leaf.panel && in_a_wall(model, others, leaf.alone());
   };
-  for (std::size_t m = 0; m < model.raw.meshes.size() && looked < most; ++m) {
+  const std::size_t meshes = model.raw.meshes.size();
+  std::vector<std::optional<Leaf>> whole(meshes);
+  std::vector<std::uint8_t> larger(meshes, 0);
+  for (std::size_t m = 0; m < meshes; ++m) {
     if (!candidate.empty() && !candidate[m]) continue;
-    if (std::optional<Leaf> leaf = leaf_of(model, m, triangles_of(model.raw.ranges[m]))) {
-      if (is_door(*leaf)) leaves.push_back(std::move(*leaf));
-      continue;
-    }
-    if (!parts) continue;
-    MeshParts& own = parted.emplace_back(parts_of(model, m));
-    for (const MeshPart& part : own.parts) {
-      const glm::dvec3 size = part.high - part.low;
-      if (own.parts.size() == 1 || !is_leaf_high(size.z) || looked >= most) continue;
-      const auto begin = own.triangles.begin();
-      std::optional<Leaf> leaf = leaf_of(model, m, {begin + part.first, begin + part.end});
-      if (leaf && is_door(*leaf)) leaves.push_back(std::move(*leaf));
-    }
+    whole[m] = leaf_of(model, m, triangles_of(model, m));
+    larger[m] = parts && !whole[m];
+  }
+  std::vector<std::vector<MeshParts>> parted = parts_of(model, larger);
+  for (std::size_t m = 0; m < meshes && looked < most; ++m) {
+    if (whole[m] && is_door(*whole[m])) leaves.push_back(std::move(*whole[m]));
+    std::size_t count = 0;
+    for (const MeshParts& some : parted[m]) count += some.boxes.size();
+    if (count < 2) continue;
+    for (const MeshParts& some : parted[m])
+      for (std::size_t k = 0; k < some.boxes.size() && looked < most; ++k) {
+        if (!is_leaf_high(some.boxes[k].size().z)) continue;
+        std::optional<Leaf> leaf = leaf_of(model, m, some.triangles_of(k));
+        if (leaf && is_door(*leaf)) leaves.push_back(std::move(*leaf));
+      }
   }
   for (Leaf& leaf : leaves)
-    for (const MeshParts& some : parted)
-      for (const MeshPart& part : some.parts)
-        if (lies_in(part, leaf))
-          leaf.triangles.insert(leaf.triangles.end(), some.triangles.begin() + part.first,
-                                some.triangles.begin() + part.end);
+    for (const auto& of_mesh : parted)
+      for (const MeshParts& some : of_mesh) {
+        const double far = leaf.width + leaf.height;
+        if (some.all.min.x > leaf.middle.x + far || some.all.max.x < leaf.middle.x - far ||
+            some.all.min.y > leaf.middle.y + far || some.all.max.y < leaf.middle.y - far)
+          continue;
+        for (std::size_t k = 0; k < some.boxes.size(); ++k) {
+          if (!lies_in(some.boxes[k], leaf)) continue;
+          const auto own = some.triangles_of(k);
+          leaf.triangles.insert(leaf.triangles.end(), own.begin(), own.end());
+        }
+      }
   // A pane in its frame is no door of its own.
   std::vector<Leaf> doors;
   for (const Leaf& leaf : leaves)
@@ -351,18 +453,38 @@ std::vector<std::size_t> leaves_if(const RawScene& raw, Unit unit, UpAxis up) {
 }
 
 std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_t>& candidate) {
-  std::vector<std::uint8_t> keep(raw.triangles.size(), 1);
+  Reading model{.raw = raw, .runs = placed_runs(raw)};
+  model.boxes = boxes_of(model.runs);
+  std::vector<std::uint8_t> keep(raw.triangles.size(), 1), lose(model.runs.size(), 0);
+  std::vector<std::vector<std::uint8_t>> keep_of(model.runs.size());  // of runs that lose triangles
   std::vector<std::string> names;
   std::optional<std::size_t> last;
-  for (const Leaf& leaf : leaves_of({raw}, candidate, kMostLeaves, true)) {
-    for (const std::uint32_t i : leaf.triangles) keep[i] = 0;
+  for (const Leaf& leaf : leaves_of(model, candidate, kMostLeaves, true)) {
+    for (const std::uint32_t i : leaf.triangles) {
+      if (i < keep.size()) {
+        keep[i] = 0;
+        continue;
+      }
+      const std::size_t k = run_of(model.runs, i);
+      keep_of[k].resize(model.runs[k].count(), 1);
+      keep_of[k][i - model.runs[k].first] = 0, lose[k] = 1;
+    }
     // A door of several materials is several meshes of one name.
     const std::string& name = raw.meshes[leaf.mesh].name;
     if (names.empty() || names.back() != name || last == leaf.mesh) names.push_back(name);
     last = leaf.mesh;
   }
-  if (names.empty() || std::ranges::count(keep, 1) == 0) return {};  // a model of doors alone
-  keep_triangles(raw, keep);
+  // In the order in which they are stored: a run that loses triangles at its place is stored there.
+  std::vector<std::uint8_t> kept;
+  for (std::size_t m = 0; m < raw.meshes.size(); ++m) {
+    const auto first = keep.begin() + raw.ranges[m].first_triangle;
+    kept.insert(kept.end(), first, first + raw.ranges[m].triangle_count);
+    for (auto [k, end] = model.runs_of(m); k < end; ++k) kept.insert(kept.end(), keep_of[k].begin(), keep_of[k].end());
+  }
+  const bool left = std::ranges::count(lose, 0) > 0 || std::ranges::count(kept, 1) > 0;
+  if (names.empty() || !left) return {};  // a model of doors alone
+  store_placed(raw, lose);
+  keep_triangles(raw, kept);
   return names;
 }
 

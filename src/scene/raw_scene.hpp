@@ -13,6 +13,20 @@
 
 namespace vantage {
 
+// A mesh that several nodes share, in its own frame. Every position belongs to a triangle.
+struct SharedMesh {
+  std::vector<Float3> positions;
+  std::vector<Float3> normals;         // empty, or one per position
+  std::vector<Float2> texcoords;       // empty, or one per position
+  std::vector<std::uint32_t> colours;  // empty, or one per position
+  std::vector<Triangle> triangles;     // into `positions`
+};
+
+struct PlacedShared {
+  std::uint32_t mesh = 0;  // index into RawScene::shared
+  MeshPlace place;
+};
+
 struct RawScene {
   std::vector<glm::dvec3> positions;
   std::vector<Float3> normals;         // empty, or one per position
@@ -21,6 +35,10 @@ struct RawScene {
   std::vector<Triangle> triangles;
   std::vector<MeshRange> ranges;
   std::vector<MeshInfo> meshes;
+  // Meshes that are stored once, beside the arrays above, and where they stand: what each range has of them besides its
+  // own triangles. Empty if nothing is shared.
+  std::vector<SharedMesh> shared;
+  std::vector<std::vector<PlacedShared>> placed;
   std::vector<Material> materials;
   std::vector<Image> images;
   std::vector<glm::dvec3> search_positions;
@@ -46,7 +64,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
 // Keeps the triangles whose `keep` is not 0, one for each, and removes meshes that have none left.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep);
 
-// Removes meshes without triangles; sets the other meshes' counts from their ranges.
+// Removes meshes without triangles, shared ones counted; sets the other meshes' counts from their ranges.
 void drop_empty_meshes(RawScene& raw);
 
 // Local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten not below the

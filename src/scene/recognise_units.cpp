@@ -14,6 +14,7 @@
 #include "scene/columns.hpp"
 #include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
+#include "scene/shared_meshes.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
@@ -428,6 +429,10 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
 void turn_faces(RawScene& raw) {
   for (Triangle& t : raw.triangles) std::swap(t[1], t[2]);
   for (Float3& n : raw.normals) n = without_minus_zero({-n.x, -n.y, -n.z});
+  for (SharedMesh& mesh : raw.shared) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (Float3& n : mesh.normals) n = without_minus_zero({-n.x, -n.y, -n.z});
+  }
 }
 
 void reinterpret_axes(RawScene& raw, Unit unit, UpAxis up) {
@@ -437,6 +442,8 @@ void reinterpret_axes(RawScene& raw, Unit unit, UpAxis up) {
   const auto point = [&](const glm::dvec3& p) { return with_up(up, p) * metres; };
   for (glm::dvec3& p : raw.positions) p = point(p);
   for (glm::dvec3& p : raw.search_positions) p = point(p);
+  for (auto& range : raw.placed)
+    for (PlacedShared& placed : range) placed.place = reinterpreted(placed.place, unit, up);
   if (turn)
     for (Float3& n : raw.normals) n = without_minus_zero(to_float3(with_up(up, to_glm(n))));
   raw.coarsest_input_spacing_m *= metres;

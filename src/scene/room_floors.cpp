@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "scene/columns.hpp"
+#include "scene/shared_meshes.hpp"
 
 namespace vantage {
 namespace {
@@ -121,12 +122,10 @@ class Level {
     std::vector<char> cells(columns_ * rows_, 0);
     for (std::size_t m = 0; m < raw_.meshes.size(); ++m) {
       if (!wanted(raw_.meshes[m])) continue;
-      for (std::size_t i = 0; i < raw_.ranges[m].triangle_count; ++i) {
-        const Triangle& t = raw_.triangles[raw_.ranges[m].first_triangle + i];
-        const glm::dvec3 &a = raw_.positions[t[0]], &b = raw_.positions[t[1]], &c = raw_.positions[t[2]];
-        if (!(std::max({a.z, b.z, c.z}) >= low && std::min({a.z, b.z, c.z}) <= high)) continue;
+      for_each_placed(raw_, m, [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        if (!(std::max({a.z, b.z, c.z}) >= low && std::min({a.z, b.z, c.z}) <= high)) return;
         const glm::dvec3 n = cross(b - a, c - a);
-        if (!(std::abs(n.z) >= least_up * length(n)) || n.z == 0) continue;
+        if (!(std::abs(n.z) >= least_up * length(n)) || n.z == 0) return;
         const auto [left, right] = range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), corner_.x, columns_);
         const auto [bottom, top] = range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), corner_.y, rows_);
         for (std::size_t row = bottom; row < top; ++row)
@@ -139,7 +138,7 @@ class Level {
             const double z = a.z - (n.x * (p.x - a.x) + n.y * (p.y - a.y)) / n.z;
             if (z >= low && z <= high) cells[row * columns_ + column] = 1;
           }
-      }
+      });
     }
     return cells;
   }
@@ -207,6 +206,7 @@ void append(RawScene& raw, const std::vector<glm::dvec3>& corners) {
                                                  .role = Role::blocking,
                                                  .diffuse = raw.options.default_diffuse,
                                                  .triangle_count = count});
+  if (!raw.placed.empty()) raw.placed.emplace(raw.placed.begin() + glass);
 }
 
 }  // namespace

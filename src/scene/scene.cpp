@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/scene.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "scene/raw_scene.hpp"
@@ -39,22 +38,11 @@ Box Scene::bounds() const noexcept {
   return box;
 }
 std::span<const MeshInfo> Scene::meshes() const noexcept { return data_->meshes; }
-std::size_t Scene::triangle_count() const noexcept { return data_->triangles.size(); }
+std::size_t Scene::triangle_count() const noexcept { return data_->triangle_count(); }
 std::span<const Room> Scene::rooms() const noexcept { return data_->rooms; }
 bool Scene::has_search_area() const noexcept { return !data_->search_triangles.empty(); }
 std::span<const std::string> Scene::notes() const noexcept { return data_->notes; }
 const std::string& Scene::defaults_json() const noexcept { return data_->defaults_json; }
 const SceneOptions& Scene::options() const noexcept { return data_->options; }
-
-std::span<const Triangle> SceneData::opaque_triangles() const {
-  std::size_t count = triangles.size();
-  for (std::size_t m = meshes.size(); m > 0 && meshes[m - 1].glass; --m) count = ranges[m - 1].first_triangle;
-  return std::span(triangles).first(count);
-}
-
-std::uint32_t SceneData::mesh_of(std::uint32_t triangle) const {
-  const auto after = std::ranges::upper_bound(ranges, triangle, {}, &MeshRange::first_triangle);
-  return static_cast<std::uint32_t>(after - ranges.begin()) - 1;
-}
 
 }  // namespace vantage

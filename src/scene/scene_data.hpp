@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,22 +36,46 @@ struct Material {
 };
 
 // A mesh is a run of triangles; the MeshInfo of the same index has its name and role.
-struct MeshRange {
+struct MeshRange {  // triangles by their numbers in the scene
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t material = 0;  // index into SceneData::materials
 };
 
+// Where a node puts a mesh that several nodes share.
+struct MeshPlace {
+  Vec3 x, y, z, origin;               // columns of survey_from_mesh, affine
+  Vec3 normal_x, normal_y, normal_z;  // of the map of normals, up to a positive length
+  bool mirrored = false;              // turns right-handed axes into left-handed ones
+  Vec3 operator()(const Float3& p) const { return x * p.x + y * p.y + z * p.z + origin; }
+  friend bool operator==(const MeshPlace&, const MeshPlace&) = default;
+};
+
+// Normal of a shared mesh where it stands; unit, or (0, 0, 0) if the file has none.
+Float3 placed_normal(const MeshPlace& place, const Float3& normal);
+
+// A run of the scene's triangles that are stored elsewhere: number t is stored as t − first_triangle + first_stored.
+struct MeshInstance {
+  static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFu;
+  std::uint32_t first_triangle = 0, triangle_count = 0, first_stored = 0;
+  std::uint32_t place = kNoPlace;  // index into SceneData::places, or kNoPlace: stored in the local frame
+};
+
 struct SceneData {
   Vec3 origin;  // survey frame; local = survey − origin, subtracted in double before rounding to float
-  // Surveyed and blocking meshes. Triangle number = the scene's primitive id.
-  std::vector<Float3> positions;       // local frame
-  std::vector<Float3> normals;         // empty, or one per position; (0,0,0) if the file has none
-  std::vector<Float2> texcoords;       // empty, or one per position
-  std::vector<std::uint32_t> colours;  // empty, or one per position, 0xAABBGGRR, linear; white if the file has none
-  std::vector<Triangle> triangles;     // no degenerate, no non-finite triangle: dropped on load, counted in notes
-  std::vector<MeshRange> ranges;       // consecutive: ranges[m].first_triangle ascends; those of glass come last
-  std::vector<MeshInfo> meshes;        // as long as ranges
-  std::vector<Material> materials;     // at least one
+  // Surveyed and blocking meshes. Triangle number = the scene's primitive id. Read positions and normals by corners()
+  // and corner_normals(): what several nodes share is stored once, in the mesh's own frame, behind everything else.
+  std::vector<Float3> positions;        // local frame
+  std::vector<Float3> normals;          // empty, or one per position; (0,0,0) if the file has none
+  std::vector<Float2> texcoords;        // empty, or one per position
+  std::vector<std::uint32_t> colours;   // empty, or one per position, 0xAABBGGRR, linear; white if the file has none
+  std::vector<Triangle> triangles;      // no degenerate, no non-finite triangle: dropped on load, counted in notes
+  std::vector<MeshInstance> instances;  // empty: all triangles are stored by their numbers. Otherwise consecutive
+  std::vector<MeshPlace> places;
+  std::vector<std::uint32_t> instance_at;  // the instance of every 2^kBlockBits-th triangle
+  static constexpr int kBlockBits = 10;
+  std::vector<MeshRange> ranges;    // consecutive: ranges[m].first_triangle ascends; those of glass come last
+  std::vector<MeshInfo> meshes;     // as long as ranges
+  std::vector<Material> materials;  // at least one
   std::vector<Image> images;
   // Marked search area, survey frame in double; uvs are empty if the file has none.
   std::vector<Vec3> search_positions;
@@ -64,8 +89,37 @@ struct SceneData {
   SceneOptions options = {};  // how the file was read
 
   std::uint32_t mesh_of(std::uint32_t triangle) const;  // by binary search over ranges
-  std::span<const Triangle> opaque_triangles() const;   // those that stop rays: all but the last, of glass
-  bool has_glass() const { return opaque_triangles().size() < triangles.size(); }
+  bool shares() const { return !instances.empty(); }
+  std::uint32_t triangle_count() const {
+    return shares() ? instances.back().first_triangle + instances.back().triangle_count
+                    : static_cast<std::uint32_t>(triangles.size());
+  }
+  std::uint32_t opaque_count() const;                  // triangles that stop rays: all but the last, of glass
+  std::span<const Triangle> opaque_triangles() const;  // REQUIRES: !shares()
+  bool has_glass() const { return opaque_count() < triangle_count(); }
+
+  // Local frame. A shared mesh is placed in double and rounded once, as any other when it is loaded, so that a corner
+  // has the same bits whether its mesh is shared or not.
+  std::array<Float3, 3> corners(std::uint32_t triangle) const {
+    if (shares()) [[unlikely]]
+      return placed_corners(triangle);
+    const Triangle& v = triangles[triangle];
+    return {positions[v[0]], positions[v[1]], positions[v[2]]};
+  }
+  // Local frame; unit, or (0, 0, 0) if the file has none. REQUIRES: !normals.empty().
+  std::array<Float3, 3> corner_normals(std::uint32_t triangle) const;
+  // Indices of its corners' texture coordinates and colours.
+  Triangle attributes(std::uint32_t triangle) const;
+  const MeshInstance& instance_of(std::uint32_t triangle) const;  // REQUIRES: shares()
+  // Corner of a stored triangle, local frame.
+  Float3 placed(const MeshPlace& place, const Float3& stored) const;
+
+  // REQUIRES: consecutive from triangle 0 on.
+  void set_instances(std::vector<MeshInstance> all);
+  std::array<Float3, 3> placed_corners(std::uint32_t triangle) const;  // of corners(). REQUIRES: shares()
 };
+
+// The same scene with every mesh stored where it stands, for those who need flat arrays. Shares `scene` if it is.
+std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scene);
 
 }  // namespace vantage

@@ -29,6 +29,7 @@ Settings settings(const SceneOptions& options) {
       .add("up", options.up ? std::optional<std::string>(to_string(*options.up)) : std::nullopt, {"up", false})
       .add("wall_layers", options.wall_layers, {"wall-layer", false})
       .add("wall_height_m", options.wall_height_m, {"wall-height", false})
+      .add("shared_meshes", to_string(options.shared_meshes), {"shared-meshes", false})
       .add("allow_outside", options.allow_outside, {options.allow_outside ? "allow-outside" : "", false})
       .take();
 }

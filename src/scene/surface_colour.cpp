@@ -58,7 +58,7 @@ LinearColour material_colour(const SceneData& scene, const Material& material, c
 
 std::uint32_t surface_colour(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle,
                              const Float2& barycentric) {
-  const Triangle& corners = scene.triangles[triangle];
+  const Triangle corners = scene.attributes(triangle);
   const float weights[3] = {1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y};
   Float2 texcoord;
   if (!scene.texcoords.empty()) {

@@ -40,4 +40,14 @@ UpAxis up_axis_from_string(const std::string& text) {
   throw Error(Errc::invalid_argument, "\"" + text + "\" is no axis that can point up; use x, y or z");
 }
 
+const char* to_string(SharedMeshes shared) noexcept {
+  return shared == SharedMeshes::automatic ? "auto" : shared == SharedMeshes::always ? "always" : "never";
+}
+
+SharedMeshes shared_meshes_from_string(const std::string& text) {
+  for (const SharedMeshes shared : {SharedMeshes::automatic, SharedMeshes::always, SharedMeshes::never})
+    if (text == to_string(shared)) return shared;
+  throw Error(Errc::invalid_argument, "\"" + text + "\" does not say when to share meshes; use auto, always or never");
+}
+
 }  // namespace vantage

@@ -89,6 +89,12 @@ void add_scene(Rows& rows) {
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.scene.default_diffuse = parse_number(text, what, {.low = 0, .high = 1});
               })
+      .custom(
+          "shared-meshes", "WHEN",
+          "Store a mesh that several nodes place once: auto, in scenes of more than 8 million triangles; always; never",
+          [](SiteOptions& o, const std::string& text, const std::string& what) {
+            o.scene.shared_meshes = named(what, [&] { return shared_meshes_from_string(text); });
+          })
       .custom("allow-outside", "", "Let the scene name buffers and images outside its own folder",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.scene.allow_outside = parse_flag(text, what);

@@ -9,11 +9,10 @@
 namespace vantage {
 
 ModelSurface::ModelSurface(const Scene& scene)
-    : scene_(scene), origin_(to_glm(scene.data().origin)), tree_(scene.data(), scene.data().opaque_triangles()) {}
+    : scene_(scene), origin_(to_glm(scene.data().origin)), tree_(scene.data(), scene.data().opaque_count()) {}
 
 glm::dvec3 ModelSurface::corner(std::uint32_t triangle, std::size_t k) const {
-  const SceneData& data = scene_.data();
-  return to_glm(data.positions[data.triangles[triangle][k]]);
+  return to_glm(scene_.data().corners(triangle)[k]);
 }
 
 glm::dvec3 ModelSurface::normal(std::uint32_t triangle) const {

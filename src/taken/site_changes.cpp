@@ -224,7 +224,7 @@ class ChangeFinder {
     const MeshRange& range = data.ranges[mesh];
     Box whole;
     for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
-      for (const std::uint32_t v : data.triangles[t]) whole.extend(data.origin + widen(data.positions[v]));
+      for (const Float3& p : data.corners(t)) whole.extend(data.origin + widen(p));
     cells.for_clusters([&](const std::vector<SolidCell>& cluster) {
       SeenThrough opening{.mesh = data.meshes[mesh].name};
       for (const SolidCell& cell : cluster) {

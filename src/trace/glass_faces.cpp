@@ -2,7 +2,6 @@
 #include "trace/glass_faces.hpp"
 
 #include <cstdint>
-#include <span>
 
 #include "shared/trace_types.h"
 #include "trace/triangle_neighbours.hpp"
@@ -10,7 +9,8 @@
 namespace vantage {
 
 std::vector<bool> faces_of_solids(const SceneData& scene) {
-  const std::span<const Triangle> glass = std::span(scene.triangles).subspan(scene.opaque_triangles().size());
+  std::vector<Triangle> glass;  // no other mesh shares it, so all of it is stored where it stands
+  for (std::uint32_t t = scene.opaque_count(); t < scene.triangle_count(); ++t) glass.push_back(scene.attributes(t));
   const std::vector<std::uint32_t> neighbours = triangle_neighbours(scene.positions, glass);
   std::vector<bool> closed(glass.size(), true);
   std::vector<std::uint32_t> open;

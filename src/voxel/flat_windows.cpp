@@ -39,9 +39,8 @@ dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
 
 // Local frame.
 Corners corners_of(const SceneData& scene, std::uint32_t t) {
-  const Triangle& corner = scene.triangles[t];
-  return {point_of(scene.positions[corner[0]]), point_of(scene.positions[corner[1]]),
-          point_of(scene.positions[corner[2]])};
+  const auto p = scene.corners(t);
+  return {point_of(p[0]), point_of(p[1]), point_of(p[2])};
 }
 
 bool is_small(const Corners& c, double at_most) {
@@ -152,10 +151,9 @@ class LargeFinder {
   void for_each(const Found& found) const {
     tbb::parallel_for(std::size_t{0}, larges_.size(), [&](std::size_t k) {
       const std::uint32_t t = larges_[k];
-      TriangleCells(cells_.transform.corners(scene_.positions, scene_.triangles[t]), cells_.a_side, margin_)
-          .for_each([&](const Cell& c) {
-            if (const auto cell = number_.find(Cells::key(c)); cell != number_.end()) found(cell->second, t);
-          });
+      TriangleCells(cells_.transform.corners(scene_.corners(t)), cells_.a_side, margin_).for_each([&](const Cell& c) {
+        if (const auto cell = number_.find(Cells::key(c)); cell != number_.end()) found(cell->second, t);
+      });
     });
   }
 

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <sstream>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "scene/positions.hpp"
@@ -30,32 +32,50 @@ struct Slab {
   std::uint64_t weight;  // area, as an integer so that sums do not depend on the order
 };
 
-using Points = std::array<glm::dvec3, 3>;
-
-Points points_of(std::span<const Float3> positions, const Triangle& t) {
-  return {to_glm(positions[t[0]]), to_glm(positions[t[1]]), to_glm(positions[t[2]])};
+// Slabs at the same heights weigh together.
+void merge(std::vector<Slab>& slabs) {
+  std::ranges::sort(slabs, {}, [](const Slab& s) { return std::pair(s.low, s.high); });
+  std::size_t out = 0;
+  for (const Slab& s : slabs)
+    if (out > 0 && slabs[out - 1].low == s.low && slabs[out - 1].high == s.high)
+      slabs[out - 1].weight += s.weight;
+    else
+      slabs[out++] = s;
+  slabs.resize(out);
 }
 
-std::vector<Slab> slabs_of(std::span<const Float3> positions, std::span<const std::span<const Triangle>> surveyed,
-                           int axis, double min, double thickest, double area_unit) {
-  tbb::enumerable_thread_specific<std::vector<Slab>> collected;
-  for (const auto& mesh : surveyed)
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.size(), 4096), [&](const tbb::blocked_range<std::size_t>&
-                                                                                     range) {
-      std::vector<Slab>& slabs = collected.local();
-      for (std::size_t t = range.begin(); t != range.end(); ++t) {
-        const Points p = points_of(positions, mesh[t]);
-        const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
-                     high = std::max({p[0][axis], p[1][axis], p[2][axis]});
-        if (high - low > thickest) continue;
-        const glm::dvec3 n = cross(p[1] - p[0], p[2] - p[0]);
-        const double along = n[axis], squared = dot(n, n);
-        if (along * along < squared * (1 - max_tilt * max_tilt)) continue;
-        slabs.push_back({low - min, high - min, static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
-      }
-    });
+std::vector<Slab> slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, int axis, double min,
+                           double thickest, double area_unit) {
+  constexpr std::size_t least_merged = std::size_t{1} << 18;
+  struct Slabs {
+    std::vector<Slab> slabs;
+    std::size_t merge_at = least_merged;
+  };
+  tbb::enumerable_thread_specific<Slabs> collected;
+  for (const MeshRange& mesh : surveyed)
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+          Slabs& own = collected.local();
+          for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
+            const auto corners = scene.corners(t);
+            const std::array<glm::dvec3, 3> p{to_glm(corners[0]), to_glm(corners[1]), to_glm(corners[2])};
+            const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
+                         high = std::max({p[0][axis], p[1][axis], p[2][axis]});
+            if (high - low > thickest) continue;
+            const glm::dvec3 n = cross(p[1] - p[0], p[2] - p[0]);
+            const double along = n[axis], squared = dot(n, n);
+            if (along * along < squared * (1 - max_tilt * max_tilt)) continue;
+            own.slabs.push_back(
+                {low - min, high - min, static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
+          }
+          if (own.slabs.size() < own.merge_at) return;
+          merge(own.slabs);
+          own.merge_at = std::max(least_merged, 2 * own.slabs.size());
+        });
   std::vector<Slab> all;
-  for (const auto& slabs : collected) all.insert(all.end(), slabs.begin(), slabs.end());
+  for (const Slabs& some : collected) all.insert(all.end(), some.slabs.begin(), some.slabs.end());
+  merge(all);
   return all;
 }
 
@@ -117,7 +137,7 @@ double face_clearance(double reach_m, double voxel_size_m) {
   return std::min(std::max(16 * 0x1p-24 * reach_m, 1e-3 * voxel_size_m), voxel_size_m / 8);
 }
 
-GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangle>> surveyed, double user_size_m) {
+GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m) {
   if (!(user_size_m > 0) || !std::isfinite(user_size_m)) {
     std::ostringstream what;
     what << "the user size of voxels must be positive and finite, in metres; it is " << user_size_m;
@@ -125,9 +145,18 @@ GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangl
   }
   GridFit fit;
   Box bounds;
-  for (const auto& mesh : surveyed)
-    for (const Triangle& t : mesh)
-      for (const std::uint32_t v : t) bounds.extend({scene.positions[v].x, scene.positions[v].y, scene.positions[v].z});
+  for (const MeshRange& mesh : surveyed)
+    bounds = tbb::parallel_reduce(
+        tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096), bounds,
+        [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
+          for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+            for (const Float3& p : scene.corners(t)) box.extend(widen(p));
+          return box;
+        },
+        [](Box a, const Box& b) {
+          if (!b.empty()) a.extend(b.min), a.extend(b.max);
+          return a;
+        });
   if (bounds.empty()) {
     fit.inverse_size = static_cast<float>(1 / user_size_m);
     return fit;
@@ -164,7 +193,7 @@ GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangl
   for (int axis = 0; axis < 3; ++axis) {
     fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * cube);
     const double min = fit.min[axis];
-    const auto slabs = slabs_of(scene.positions, surveyed, axis, min, 4 * clearance, extent * extent * 0x1p-30);
+    const auto slabs = slabs_of(scene, surveyed, axis, min, 4 * clearance, extent * extent * 0x1p-30);
     if (weight_near_faces(slabs, voxel, clearance) == 0) continue;
     const double slack = std::min(low[axis] - min, min + cube - high[axis]) - 0.25 * margin;
     const double most = std::min(slack, voxel / 2);

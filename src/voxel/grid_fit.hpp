@@ -25,7 +25,7 @@ struct GridFit {
 // A plane on a face would mark the voxels on both sides of it, while rounding scatters its points between them. The
 // cube is therefore moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
 // `face_clearance` of a face. If there are too many planes for that, their area within it is minimised.
-GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangle>> surveyed, double user_size_m);
+GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m);
 
 // Distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's side, at least a
 // thousandth and at most an eighth of a voxel. A hit's position carries the roundings of t, t·d and o + t·d, its cell

@@ -13,31 +13,43 @@ namespace {
 constexpr double cells_a_piece = 1 << 16;
 // Least number of steps, for work of a second or more.
 constexpr double steps = 64, least_cells_a_step = 1 << 25;
+constexpr std::uint32_t triangles_a_chunk = 1 << 16;
 constexpr double own_cells = 4;  // fixed cost of a triangle, in cells
 
 }  // namespace
 
-TriangleWalk::TriangleWalk(std::span<const Float3> positions, std::span<const std::span<const Triangle>> meshes,
-                           const GridTransform& grid)
-    : positions_(positions), meshes_(meshes) {
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    Piece open{m, 0, 0, 0};
+TriangleWalk::TriangleWalk(const SceneData& scene, std::span<const MeshRange> meshes, const GridTransform& grid)
+    : scene_(scene) {
+  struct Chunk {
+    std::size_t mesh;
+    std::uint32_t first, end;
+    double area = 0;
+    std::vector<Piece> pieces = {};
+  };
+  std::vector<Chunk> chunks;
+  for (std::size_t m = 0; m < meshes.size(); ++m)
+    for (std::uint32_t t = 0; t < meshes[m].triangle_count; t += triangles_a_chunk)
+      chunks.push_back({m, meshes[m].first_triangle + t,
+                        meshes[m].first_triangle + std::min(meshes[m].triangle_count, t + triangles_a_chunk)});
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t k) {
+    Chunk& chunk = chunks[k];
+    Piece open{chunk.mesh, chunk.first, chunk.first, 0};
     const auto close = [&] {
-      if (open.end > open.first) pieces_.push_back(open);
-      open = {m, open.end, open.end, 0};
+      if (open.end > open.first) chunk.pieces.push_back(open);
+      open = {chunk.mesh, open.end, open.end, 0};
     };
-    for (std::size_t t = 0; t < meshes[m].size(); ++t) {
-      const auto c = grid.corners(positions, meshes[m][t]);
+    for (std::uint32_t t = chunk.first; t < chunk.end; ++t) {
+      const auto c = grid.corners(scene.corners(t));
       const glm::dvec3 a = glm::make_vec3(c[0].data());
       const double area = 0.5 * length(cross(glm::make_vec3(c[1].data()) - a, glm::make_vec3(c[2].data()) - a));
-      area_ += area;
+      chunk.area += area;
       if (area > 2 * cells_a_piece) {
         close();
         // Caps the pieces; an excessive area is rejected before it is walked.
         const auto parts = static_cast<std::int64_t>(std::min(std::ceil(area / cells_a_piece), 1e6));
         for (std::int64_t part = 0; part < parts; ++part)
-          pieces_.push_back({m, t, t + 1, area / static_cast<double>(parts), part, parts});
-        open = {m, t + 1, t + 1, 0};
+          chunk.pieces.push_back({chunk.mesh, t, t + 1, area / static_cast<double>(parts), part, parts});
+        open = {chunk.mesh, t + 1, t + 1, 0};
         continue;
       }
       open.end = t + 1;
@@ -45,6 +57,10 @@ TriangleWalk::TriangleWalk(std::span<const Float3> positions, std::span<const st
       if (open.area > cells_a_piece) close();
     }
     close();
+  });
+  for (const Chunk& chunk : chunks) {
+    area_ += chunk.area;
+    pieces_.insert(pieces_.end(), chunk.pieces.begin(), chunk.pieces.end());
   }
   for (const Piece& piece : pieces_) total_ += piece.area;
   step_ = std::max(total_ / steps, least_cells_a_step);

@@ -17,9 +17,8 @@ namespace vantage {
 
 class TriangleWalk {
  public:
-  // Borrows positions and triangles; `grid` is the finest grid that will be walked.
-  TriangleWalk(std::span<const Float3> positions, std::span<const std::span<const Triangle>> meshes,
-               const GridTransform& grid);
+  // Borrows the scene; `meshes` are some of its ranges, and `grid` is the finest grid that will be walked.
+  TriangleWalk(const SceneData& scene, std::span<const MeshRange> meshes, const GridTransform& grid);
 
   // Area of all triangles in faces of cells, a lower bound on the cells except for slivers. Coincident triangles count
   // several times.
@@ -38,9 +37,8 @@ class TriangleWalk {
       tbb::parallel_for(first, end, [&](std::size_t p) {
         const Piece& piece = pieces_[p];
         auto visit = make_visit(piece.mesh);
-        for (std::size_t t = piece.first; t < piece.end; ++t)
-          TriangleCells(grid.corners(positions_, meshes_[piece.mesh][t]), cells_per_side)
-              .for_each(visit, piece.part, piece.parts);
+        for (std::uint32_t t = piece.first; t < piece.end; ++t)
+          TriangleCells(grid.corners(scene_.corners(t)), cells_per_side).for_each(visit, piece.part, piece.parts);
       });
       for (; first < end; ++first) done += pieces_[first].area;
       progress(done / total_);
@@ -51,13 +49,13 @@ class TriangleWalk {
  private:
   // Consecutive triangles of a mesh; or, of a large triangle, part number `part` of `parts`.
   struct Piece {
-    std::size_t mesh, first, end;
+    std::size_t mesh;
+    std::uint32_t first, end;
     double area;
     std::int64_t part = 0, parts = 1;
   };
 
-  std::span<const Float3> positions_;
-  std::span<const std::span<const Triangle>> meshes_;
+  const SceneData& scene_;
   std::vector<Piece> pieces_;
   double area_ = 0;
   double total_ = 0;  // of the pieces, with about a cell extra per triangle

@@ -108,11 +108,10 @@ std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks) {
 
 }  // namespace
 
-std::array<std::array<double, 3>, 3> GridTransform::corners(std::span<const Float3> positions,
-                                                            const Triangle& triangle) const {
+std::array<std::array<double, 3>, 3> GridTransform::corners(const std::array<Float3, 3>& triangle) const {
   std::array<std::array<double, 3>, 3> result;
   for (int c = 0; c < 3; ++c) {
-    const Float3& p = positions[triangle[c]];
+    const Float3& p = triangle[c];
     result[c] = {(p.x - min[0]) * inverse_size, (p.y - min[1]) * inverse_size, (p.z - min[2]) * inverse_size};
   }
   return result;
@@ -132,10 +131,9 @@ std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std:
   }
 }
 
-std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
-                                       std::span<const std::span<const Triangle>> triangles, const GridTransform& grid,
-                                       int depth, const Progress& progress) {
-  const TriangleWalk walk(positions, triangles, grid);
+std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const MeshRange> triangles,
+                                       const GridTransform& grid, int depth, const Progress& progress) {
+  const TriangleWalk walk(scene, triangles, grid);
   check_area(walk);
   VoxelBricks result;
   const int shift = static_cast<int>(brick_bits);
@@ -170,12 +168,10 @@ std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
   return result;
 }
 
-std::vector<std::span<const Triangle>> surveyed_triangles(const SceneData& scene) {
-  std::vector<std::span<const Triangle>> result;
+std::vector<MeshRange> surveyed_ranges(const SceneData& scene) {
+  std::vector<MeshRange> result;
   for (std::size_t m = 0; m < scene.ranges.size(); ++m)
-    if (scene.meshes[m].role == Role::surveyed && scene.ranges[m].triangle_count > 0)
-      result.push_back(std::span<const Triangle>(scene.triangles)
-                           .subspan(scene.ranges[m].first_triangle, scene.ranges[m].triangle_count));
+    if (scene.meshes[m].role == Role::surveyed && scene.ranges[m].triangle_count > 0) result.push_back(scene.ranges[m]);
   return result;
 }
 

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t no_brick = empty_slot;
 struct GridTransform {
   std::array<double, 3> min{};
   double inverse_size = 1;
-  std::array<std::array<double, 3>, 3> corners(std::span<const Float3> positions, const Triangle& triangle) const;
+  std::array<std::array<double, 3>, 3> corners(const std::array<Float3, 3>& triangle) const;
   // The same grid in cells of 2^shift voxels; exact.
   GridTransform coarser(int shift) const { return {min, inverse_size / static_cast<double>(1 << shift)}; }
 };
@@ -35,15 +35,14 @@ struct VoxelBricks {
   std::vector<BrickSlot> slots;
   std::uint64_t voxels = 0;
 };
-// Empty if stopped.
-std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
-                                       std::span<const std::span<const Triangle>> triangles, const GridTransform& grid,
-                                       int depth, const Progress& progress = {});
+// Of some ranges of the scene's triangles. Empty if stopped.
+std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const MeshRange> triangles,
+                                       const GridTransform& grid, int depth, const Progress& progress = {});
 
 // Index of the brick with these brick coordinates, or no_brick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-// Triangles of surveyed meshes, one span per mesh.
-std::vector<std::span<const Triangle>> surveyed_triangles(const SceneData& scene);
+// Surveyed meshes.
+std::vector<MeshRange> surveyed_ranges(const SceneData& scene);
 
 }  // namespace vantage

@@ -18,12 +18,11 @@ namespace {
 template <class T, class Before>
 std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& grid, std::span<const T> of_mesh,
                                        T last, Before before, const Progress& progress) {
-  std::vector<std::span<const Triangle>> triangles;
+  std::vector<MeshRange> triangles;
   std::vector<T> own;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (scene.meshes[m].role != Role::surveyed || of_mesh[m] == last) continue;
-    triangles.push_back(
-        std::span(scene.triangles).subspan(scene.ranges[m].first_triangle, scene.ranges[m].triangle_count));
+    triangles.push_back(scene.ranges[m]);
     own.push_back(of_mesh[m]);
   }
   if (own.empty()) return std::vector<T>{};
@@ -35,7 +34,7 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
     }
   };
   const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
-  const bool whole = TriangleWalk(scene.positions, triangles, transform)
+  const bool whole = TriangleWalk(scene, triangles, transform)
                          .for_each(transform, std::int64_t{1} << grid.depth(), progress, [&](std::size_t mesh) {
                            return [&, asked = own[mesh]](const TriangleCells::Cell& c) {
                              const std::uint32_t voxel_index = grid.find(

@@ -23,15 +23,15 @@ VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
 }
 
 std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_size_m, const Progress& progress) {
-  const auto surveyed = surveyed_triangles(scene);
+  const std::vector<MeshRange> surveyed = surveyed_ranges(scene);
   const GridFit fit = fit_grid(scene, surveyed, user_size_m);
   VoxelGrid grid;
   grid.depth_ = fit.depth;
   grid.inverse_size_ = fit.inverse_size;
   grid.voxel_size_ = 1.0 / fit.inverse_size;
   grid.min_ = fit.min;
-  std::optional<VoxelBricks> marked = mark_bricks(
-      scene.positions, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth, progress);
+  std::optional<VoxelBricks> marked =
+      mark_bricks(scene, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth, progress);
   if (!marked) return std::nullopt;
   grid.size_ = marked->voxels;
   grid.bricks_ = std::move(marked->bricks);
@@ -95,8 +95,11 @@ std::vector<std::uint64_t> voxelize(std::span<const Float3> positions, std::span
   // A size that is the reciprocal of a float stands for that float.
   double inverse = 1 / voxel_size;
   if (1.0 / static_cast<float>(inverse) == voxel_size) inverse = static_cast<float>(inverse);
-  const std::array<std::span<const Triangle>, 1> meshes{triangles};
-  const VoxelBricks marked = *mark_bricks(positions, meshes, {min, inverse}, depth);
+  SceneData scene;
+  scene.positions.assign(positions.begin(), positions.end());
+  scene.triangles.assign(triangles.begin(), triangles.end());
+  const std::array all{MeshRange{0, scene.triangle_count(), 0}};
+  const VoxelBricks marked = *mark_bricks(scene, all, {min, inverse}, depth);
   std::vector<std::uint64_t> keys;
   keys.reserve(marked.voxels);
   for (const VoxelBrick& brick : marked.bricks)

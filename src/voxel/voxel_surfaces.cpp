@@ -73,7 +73,7 @@ std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transfor
   std::vector<Part> parts;
   for (const std::uint32_t t : triangles) {
     ClippedPolygon polygon;
-    for (const auto& corner : transform.corners(scene.positions, scene.triangles[t]))
+    for (const auto& corner : transform.corners(scene.corners(t)))
       polygon.add(Point(corner[0], corner[1], corner[2]) - low);
     clip_to_unit_cube(polygon);
     if (polygon.empty()) continue;

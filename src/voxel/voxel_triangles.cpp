@@ -81,8 +81,7 @@ class BrickFinder {
   template <class Found>
   void for_each(const Found& found) const {
     for_each_surveyed(scene_, [&](std::uint32_t t) {
-      for_each_brick(grid_, fine_.corners(scene_.positions, scene_.triangles[t]), margin_,
-                     [&](std::uint32_t brick) { found(brick, t); });
+      for_each_brick(grid_, fine_.corners(scene_.corners(t)), margin_, [&](std::uint32_t brick) { found(brick, t); });
     });
   }
 
@@ -131,7 +130,7 @@ class Finder {
  private:
   template <class Found>
   void by_voxels(std::uint32_t t, const Found& found) const {
-    const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
+    const auto corners = fine_.corners(scene_.corners(t));
     TriangleCells(corners, voxels_a_side(grid_), margin_).for_each([&](const TriangleCells::Cell& c) {
       const std::uint32_t voxel_index = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
@@ -141,7 +140,7 @@ class Finder {
 
   template <class Found>
   void by_bricks(std::uint32_t t, const Found& found) const {
-    const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
+    const auto corners = fine_.corners(scene_.corners(t));
     TriangleReach reach(corners, voxels_a_side(grid_), margin_);
     for_each_brick(grid_, corners, margin_, [&](std::uint32_t brick) {
       for (std::uint32_t i = first_[brick]; i < first_[brick + 1]; ++i)
@@ -205,7 +204,7 @@ VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const 
         find_brick(grid_->slots(), cell[0] >> brick_shift, cell[1] >> brick_shift, cell[2] >> brick_shift);
     for (std::uint32_t k = bricks.triangles.offset[brick]; k < bricks.triangles.offset[brick + 1]; ++k) {
       const std::uint32_t t = bricks.triangles.triangle[k];
-      TriangleReach reach(fine.corners(scene_->positions, scene_->triangles[t]), voxels_a_side(*grid_), margin);
+      TriangleReach reach(fine.corners(scene_->corners(t)), voxels_a_side(*grid_), margin);
       if (reach.touches(cell)) found[i].push_back(t);
     }
   });

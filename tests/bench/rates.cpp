@@ -35,13 +35,16 @@ void RatesOptions::add(CLI::App& command) {
   command.add_flag("--unsorted", unsorted,
                    "Also ray_query over triangles in the file's order, where that is not the default");
   command.add_option("--glass", glass, "Nodes of glass");
+  command.add_option("--shared-meshes", shared_meshes,
+                     "Store meshes that nodes share once: auto, always, never; if so, also with each where it stands");
   command.add_option("--detection", detection_m,
                      "Also with echoes limited to this range at normal incidence on R = 0.5, in metres, and, if the "
                      "scene has glass, weakened by it");
 }
 
 void run_rates(const RatesOptions& options) {
-  const Scene scene = Scene::load(options.site.scene, {.glass = options.glass});
+  const Scene scene = Scene::load(
+      options.site.scene, {.glass = options.glass, .shared_meshes = shared_meshes_from_string(options.shared_meshes)});
   Network network = options.site.stations();
   if (options.first > 0 && options.first < network.size()) network.resize(options.first);
   TracedSite site = options.site.traced(scene, network);
@@ -79,6 +82,11 @@ void run_rates(const RatesOptions& options) {
       site.scene.scanners[0].limits = std::make_shared<const LimitModel>(limits);
       if (glass) add(info, "-glass");
       site.scene.scanners[0].limits = nullptr;
+    }
+    if (scene.data().shares()) {
+      const auto stored = std::exchange(site.scene.scene, flattened(site.scene.scene));
+      add(info, "-flat");
+      site.scene.scene = stored;
     }
     if (options.unsorted && info.engine == Engine::ray_query) {
       site.scene.sort_triangles = false;

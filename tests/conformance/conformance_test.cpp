@@ -120,12 +120,9 @@ TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
   for (std::size_t k = 0; k < chunk.primitive.size(); ++k) {
     if (chunk.primitive[k] == ReferenceHit::none) continue;
     ++hits;
-    const Triangle& t = site.scene->triangles[chunk.primitive[k]];
+    const auto p = site.scene->corners(chunk.primitive[k]);
     const double u = chunk.barycentric[k].x, v = chunk.barycentric[k].y;
-    const auto mix = [&](auto member) {
-      return (1 - u - v) * site.scene->positions[t[0]].*member + u * site.scene->positions[t[1]].*member +
-             v * site.scene->positions[t[2]].*member;
-    };
+    const auto mix = [&](auto member) { return (1 - u - v) * p[0].*member + u * p[1].*member + v * p[2].*member; };
     ASSERT_NEAR(mix(&Float3::x), chunk.position[k].x, 1e-4) << "ray " << k;
     ASSERT_NEAR(mix(&Float3::y), chunk.position[k].y, 1e-4) << "ray " << k;
     ASSERT_NEAR(mix(&Float3::z), chunk.position[k].z, 1e-4) << "ray " << k;

@@ -12,6 +12,10 @@ class RandomSitesConformance : public testing::TestWithParam<EngineUnderTest> {}
 
 TEST_P(RandomSitesConformance, EveryWayOfCountingAgrees) { expect_every_way_agrees(GetParam().make, 5, 7); }
 
+TEST_P(RandomSitesConformance, EveryWayOfCountingAgreesWhereMeshesAreShared) {
+  expect_every_way_agrees(GetParam().make, 1, 4, random_placed_site);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engines, RandomSitesConformance, testing::ValuesIn(engines_under_test()),
                          [](const auto& engine) { return engine.param.name; });
 

@@ -9,7 +9,8 @@
 #include "scan/limit_model.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
-#include "scene/raw_scene.hpp"
+#include "scene/positions.hpp"
+#include "scene/shared_meshes.hpp"
 #include "support/box.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/built_in_scenes.hpp"
@@ -71,7 +72,27 @@ class Builder {
     make_glass();
   }
 
-  std::shared_ptr<const SceneData> finish() { return finish_scene(std::move(raw_), "the boiler house"); }
+  // All that was added, as one mesh.
+  SharedMesh mesh() const {
+    SharedMesh mesh;
+    mesh.normals = raw_.normals;
+    mesh.triangles = raw_.triangles;
+    for (const glm::dvec3& p : raw_.positions) mesh.positions.push_back(to_float3(p));
+    return mesh;
+  }
+  // Places a mesh, which is stored once for all that add it.
+  void shared(const std::string& name, double diffuse, const SharedMesh& mesh, const std::vector<MeshPlace>& places) {
+    if (raw_.shared.empty()) raw_.shared.push_back(mesh);
+    raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()), 0, 0});
+    raw_.meshes.push_back({name, Role::surveyed, diffuse});
+    raw_.placed.resize(raw_.ranges.size());
+    for (const MeshPlace& place : places) raw_.placed.back().push_back({0, place});
+  }
+
+  std::shared_ptr<const SceneData> finish() {
+    if (!raw_.placed.empty()) raw_.placed.resize(raw_.ranges.size());
+    return finish_scene(std::move(raw_), "the site");
+  }
 
  private:
   RawScene raw_;
@@ -103,6 +124,35 @@ std::shared_ptr<const SceneData> boiler_house() {
   b.glass("slanted pane", [](double u, double v) { return std::pair(Vec3{u - 1.3, 1.1 * u - 0.3, 2.8 * v}, Vec3{}); });
   b.box("block", Role::blocking, {-3.62, -3.4, 0.2}, {-3.6, -1.2, 2.6});
   b.make_glass();
+  return b.finish();
+}
+
+// A pump on a wavy floor, stored once and placed upright, turned, tilted and larger, and mirrored; and a second mesh
+// among them that is stored where it stands.
+std::shared_ptr<const SceneData> pump_hall() {
+  Builder b;
+  b.sheet("floor", Role::surveyed, 0.4, 12, 12, [](double u, double v) {
+    const double x = 14 * u - 7, y = 14 * v - 7;
+    return std::pair(Vec3{x, y, 0.09 * std::sin(0.8 * x) * std::cos(0.6 * y) - 0.15}, Vec3{});
+  });
+  Builder pump;
+  pump.sheet("pump", Role::surveyed, 0.7, 18, 9, [](double u, double v) {
+    const Vec3 n{std::sin(pi * v) * std::cos(2 * pi * u), std::sin(pi * v) * std::sin(2 * pi * u), std::cos(pi * v)};
+    return std::pair(Vec3{0.2, 0.1, 0.83} + Vec3{0.9 * n.x, 0.55 * n.y, 0.7 * n.z}, n);
+  });
+  pump.box("base", Role::surveyed, {-0.7, -0.5, 0.03}, {0.9, 0.6, 0.21});
+  const auto place = [](double x, double y, double z, double turn, double tilt, const glm::dvec3& scale) {
+    const glm::dquat turned = glm::angleAxis(turn, glm::dvec3(0, 0, 1)) * glm::angleAxis(tilt, glm::dvec3(1, 0, 0));
+    glm::dmat4 matrix(glm::mat3_cast(turned));
+    for (int c = 0; c < 3; ++c) matrix[c] = matrix[c] * scale[c];
+    matrix[3] = glm::dvec4(x, y, z, 1);
+    return place_of(matrix);
+  };
+  b.shared("pumps", 0.7, pump.mesh(),
+           {place(2.6, 0.4, 0.02, 0, 0, {1, 1, 1}), place(-2.31, 1.17, 0.1, pi / 2, 0, {1, 1, 1}),
+            place(0.43, 3.3, 0.4, 0.77, 0.31, {1.3, 0.8, 1.1}), place(-0.8, -3.4, 0.05, 2.1, 0, {-1, 1, 1})});
+  b.box("cabinet", Role::surveyed, {-4.63, -2.71, 0.22}, {-4.02, -1.04, 1.57}, 255);
+  b.shared("pump in the corner", 0.5, pump.mesh(), {place(4.9, -4.2, 0.11, 4, 0, {0.9, 0.9, 0.9})});
   return b.finish();
 }
 
@@ -173,6 +223,8 @@ const std::vector<TestSite>& sites() {
                             {{0.21, -8.07, 1.5}, {8.11, 0.4, 1.5}, {1.1, 0.7, 1.5}, {-8.3, -8.2, 1.5}}));
     all.push_back(make_site("boiler-house", boiler_house(), 0.06, 0.6,
                             {{0.11, -0.52, 1.61}, {4.92, 0.31, 1.83}, {-4.3, -3.2, 1.4}, {1.7, 0.4, 1.31}}));
+    all.push_back(make_site("pump-hall", pump_hall(), 0.07, 0.6,
+                            {{0.13, 0.22, 1.63}, {-5.1, 4.7, 1.81}, {5.2, 1.2, 1.44}, {2.7, 0.52, 0.86}}));
     return all;
   }();
   return made;

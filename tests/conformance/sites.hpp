@@ -29,7 +29,7 @@ struct TestSite {
   const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy, bool limited = false) const;
 };
 
-// three-walls, four-walls, boiler-house. Made once.
+// three-walls, four-walls, boiler-house, pump-hall, whose pumps share a mesh. Made once.
 const std::vector<TestSite>& sites();
 
 }  // namespace vantage::test

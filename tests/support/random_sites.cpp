@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
+#include "scene/shared_meshes.hpp"
 #include "support/trace_scenes.hpp"
 
 namespace vantage::test {
@@ -51,6 +53,38 @@ std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float
       if (r + 1 < rows) triangles.insert(triangles.end(), {b, d, e});
     }
   return triangles;
+}
+
+// The site of a scene, with a scanner and heads. `surveyed`: corners of triangles, three each; place(extent): a
+// coordinate.
+template <class Place>
+RandomSite with_scanner(RandomStream& random, std::uint64_t seed, double scale, std::shared_ptr<const SceneData> scene,
+                        const std::vector<Float3>& surveyed, const Place& place) {
+  Scanner scanner;
+  scanner.azimuth_step = Angle::degrees(0.8 + random.uniform());
+  scanner.zenith_step = Angle::degrees(0.8 + random.uniform());
+  scanner.horizontal_angle = Angle::degrees(seed % 3 == 0 ? 230 : 360);
+  scanner.vertical_angle = Angle::degrees(seed % 4 == 0 ? 360 : 300);
+  scanner.heading = Angle::degrees(360 * random.uniform());
+  scanner.min_range_m = 0.1 * scale;
+  scanner.max_range_m = seed % 5 == 0 ? 2 * scale : 40 * scale;
+  scanner.noise = rtc360_noise();
+  for (double& d : scanner.noise.distances_m) d *= scale / 10;
+  for (double& d : scanner.noise.sigma_m)
+    d *= scale * (seed % 7 == 0 ? 20 : 1);  // also a reach beyond the nearest range
+  RandomSite site;
+  site.scene = trace_scene(std::move(scene), scanner, (0.08 + 0.15 * random.uniform()) * scale, seed);
+  for (std::uint32_t k = 0; k < 7; ++k) {
+    Float3 head{place(2.2), place(2.2), place(1.2)};
+    if (k == 4) head = surveyed[random.bits() % surveyed.size()];  // at a corner
+    if (k == 5) {                                                  // in the plane of a triangle
+      const std::size_t t = random.bits() % (surveyed.size() / 3) * 3;
+      head = {2 * surveyed[t].x - surveyed[t + 1].x, 2 * surveyed[t].y - surveyed[t + 1].y,
+              2 * surveyed[t].z - surveyed[t + 1].z};
+    }
+    site.stations.push_back({head, k});
+  }
+  return site;
 }
 
 }  // namespace
@@ -97,41 +131,68 @@ RandomSite random_site(std::uint64_t seed) {
   if (seed % 2) builder.mesh(Role::blocking, blocking, 0.7);
   builder.mesh(Role::surveyed, surveyed, 0.4);
   if (seed % 2 == 0) builder.mesh(Role::blocking, blocking, 0.7);
-  const auto scene = builder.finish();
+  return with_scanner(random, seed, scale, builder.finish(), surveyed, place);
+}
 
-  Scanner scanner;
-  scanner.azimuth_step = Angle::degrees(0.8 + random.uniform());
-  scanner.zenith_step = Angle::degrees(0.8 + random.uniform());
-  scanner.horizontal_angle = Angle::degrees(seed % 3 == 0 ? 230 : 360);
-  scanner.vertical_angle = Angle::degrees(seed % 4 == 0 ? 360 : 300);
-  scanner.heading = Angle::degrees(360 * random.uniform());
-  scanner.min_range_m = 0.1 * scale;
-  scanner.max_range_m = seed % 5 == 0 ? 2 * scale : 40 * scale;
-  scanner.noise = rtc360_noise();
-  for (double& d : scanner.noise.distances_m) d *= scale / 10;
-  for (double& d : scanner.noise.sigma_m)
-    d *= scale * (seed % 7 == 0 ? 20 : 1);  // also a reach beyond the nearest range
-  RandomSite site;
-  site.scene = trace_scene(scene, scanner, (0.08 + 0.15 * random.uniform()) * scale, seed);
-  for (std::uint32_t k = 0; k < 7; ++k) {
-    Float3 head{place(2.2), place(2.2), place(1.2)};
-    if (k == 4) head = surveyed[random.bits() % surveyed.size()];  // at a corner
-    if (k == 5) {                                                  // in the plane of a triangle
-      const std::size_t t = random.bits() % (surveyed.size() / 3) * 3;
-      head = {2 * surveyed[t].x - surveyed[t + 1].x, 2 * surveyed[t].y - surveyed[t + 1].y,
-              2 * surveyed[t].z - surveyed[t + 1].z};
-    }
-    site.stations.push_back({head, k});
+RandomSite random_placed_site(std::uint64_t seed) {
+  RandomStream random(seed, 2);
+  const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;
+  const auto place = [&](double extent) {
+    return static_cast<float>(offset + scale * extent * (2 * random.uniform() - 1));
+  };
+  // In a unit of their own, one with its origin at some distance.
+  const double units[] = {1, 1000, 1 / 0.0254};
+  const double unit = units[random.bits() % 3] * scale;
+  const auto s = static_cast<float>(unit);
+  std::vector<Float3> ball = bumpy_ball(random, {0.3f * s, -0.2f * s, 0.1f * s}, 0.5f * s);
+  for (int k = 0; k < 60; ++k) {
+    const auto near = [&] { return between(random, -0.6, 0.6) * s; };
+    const Float3 corner{near(), near(), near()};
+    for (int c = 0; c < 3; ++c)
+      ball.push_back({corner.x + 0.3f * near(), corner.y + 0.3f * near(), corner.z + 0.3f * near()});
   }
-  return site;
+  std::vector<Float3> panel = quad({2 * s, 7 * s, 0}, {s, 0, 0}, {0, 0, 0.9f * s});
+  const auto small = bumpy_ball(random, {2.5f * s, 7 * s, 0.4f * s}, 0.3f * s);
+  panel.insert(panel.end(), small.begin(), small.end());
+
+  const auto somewhere = [&](const Vec3& middle, double most_unequal) {
+    glm::dquat turn(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    glm::dmat4 matrix(glm::mat3_cast(glm::normalize(turn)));
+    if (random.bits() % 3 == 0) matrix = glm::dmat4(1);  // along the axes
+    for (int c = 0; c < 3; ++c)
+      matrix[c] = matrix[c] *
+                  (scale / unit * std::pow(most_unequal, random.uniform() - 0.5) * (random.bits() % 4 == 0 ? -1 : 1));
+    const glm::dvec3 moved = glm::dmat3(matrix) * glm::dvec3(middle.x, middle.y, middle.z);
+    matrix[3] = glm::dvec4(glm::dvec3(place(1.5), place(1.5), place(0.8)) - moved, 1);
+    return place_of(matrix);
+  };
+  std::vector<MeshPlace> balls, panels;
+  for (int k = 0; k < 5; ++k) balls.push_back(somewhere({}, k == 4 ? 12 : 2));
+  for (int k = 0; k < 3; ++k) panels.push_back(somewhere({2.5 * unit, 7 * unit, 0.4 * unit}, 1));
+  std::vector<Float3> surveyed, blocking;
+  for (int k = 0; k < 4; ++k) {
+    const Float3 corner{place(1.5), place(1.5), place(0.8)};
+    const float side = static_cast<float>(scale);
+    const auto wall = quad(corner, {side * 0.7f, side * 0.6f, side * 0.1f}, {0, 0, side * 0.9f});
+    (k == 3 ? blocking : surveyed).insert((k == 3 ? blocking : surveyed).end(), wall.begin(), wall.end());
+  }
+  SceneBuilder builder;
+  builder.mesh(Role::surveyed, surveyed, 0.4);
+  builder.placed(Role::surveyed, ball, balls, 0.7);
+  builder.mesh(Role::blocking, blocking, 0.6);
+  builder.placed(seed % 2 ? Role::surveyed : Role::blocking, panel, panels, 0.3);
+  const auto scene = builder.finish();
+  for (std::uint32_t t = 0; t < scene->triangle_count(); t += 7)
+    for (const Float3& corner : scene->corners(t)) surveyed.push_back(corner);
+  return with_scanner(random, seed, scale, scene, surveyed, place);
 }
 
 RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make,
-                                   std::uint64_t first, std::uint64_t last) {
+                                   std::uint64_t first, std::uint64_t last, RandomSite (*site_of)(std::uint64_t seed)) {
   const auto [from, to] = seeds(first, last);
   std::uint64_t points = 0, skipped_rays = 0, all_rays = 0, sampled_rays = 0;
   for (std::uint64_t seed = from; seed <= to; ++seed) {
-    RandomSite site = random_site(seed);
+    RandomSite site = site_of(seed);
     std::vector<std::uint32_t> everything(site.scene.grid->size());
     std::iota(everything.begin(), everything.end(), 0u);
     for (const bool noisy : {false, true}) {

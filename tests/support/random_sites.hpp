@@ -18,6 +18,8 @@ struct RandomSite {
 // Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; seven heads
 // anywhere, also on surfaces.
 RandomSite random_site(std::uint64_t seed);
+// Walls, and folded meshes that are stored once and placed turned, mirrored and scaled unequally.
+RandomSite random_placed_site(std::uint64_t seed);
 
 // Rays traced by exact evaluations.
 struct RaysTraced {
@@ -28,6 +30,7 @@ struct RaysTraced {
 // goal, with and without noise. `make` makes the engine. Uses seeds `first` to `last`, or those of
 // VANTAGE_SEEDS=first..last.
 RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make,
-                                   std::uint64_t first, std::uint64_t last);
+                                   std::uint64_t first, std::uint64_t last,
+                                   RandomSite (*site_of)(std::uint64_t seed) = random_site);
 
 }  // namespace vantage::test

@@ -103,17 +103,16 @@ class RayTest {
 
  private:
   std::array<Vec3, 3> corners(std::uint32_t triangle) const {
-    const Triangle& t = s_.scene->triangles[triangle];
-    return {widen(s_.scene->positions[t[0]]), widen(s_.scene->positions[t[1]]), widen(s_.scene->positions[t[2]])};
+    const auto p = s_.scene->corners(triangle);
+    return {widen(p[0]), widen(p[1]), widen(p[2])};
   }
 
   void shade(const Crossing& c, const Vec3& d, ReferenceHit& hit) const {
     const std::array<Vec3, 3> corner = corners(hit.triangle);
     Vec3 n;
     if (!s_.scene->normals.empty()) {
-      const Triangle& t = s_.scene->triangles[hit.triangle];
-      n = widen(s_.scene->normals[t[0]]) * (1 - c.u - c.v) + widen(s_.scene->normals[t[1]]) * c.u +
-          widen(s_.scene->normals[t[2]]) * c.v;
+      const auto normals = s_.scene->corner_normals(hit.triangle);
+      n = widen(normals[0]) * (1 - c.u - c.v) + widen(normals[1]) * c.u + widen(normals[2]) * c.v;
     }
     if (length(n) == 0) n = cross(corner[1] - corner[0], corner[2] - corner[0]);
     n = unit(n);
@@ -213,8 +212,9 @@ std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) con
     double radius;
   };
   std::vector<Sphere> spheres;
-  for (const Triangle& t : scene.opaque_triangles()) {
-    const Vec3 a = widen(scene.positions[t[0]]), b = widen(scene.positions[t[1]]), c = widen(scene.positions[t[2]]);
+  for (std::uint32_t t = 0; t < scene.opaque_count(); ++t) {
+    const auto p = scene.corners(t);
+    const Vec3 a = widen(p[0]), b = widen(p[1]), c = widen(p[2]);
     const Vec3 centre = (a + b + c) * (1.0 / 3) - origin;
     spheres.push_back(
         {centre, std::max({length(a - origin - centre), length(b - origin - centre), length(c - origin - centre)})});

@@ -18,27 +18,60 @@ class SceneBuilder {
  public:
   // A mesh of separate triangles, three corners each.
   SceneBuilder& mesh(Role role, const std::vector<Float3>& corners, double diffuse = 0.5) {
-    const auto first = static_cast<std::uint32_t>(scene_.triangles.size()),
-               count = static_cast<std::uint32_t>(corners.size() / 3);
-    scene_.ranges.push_back({first, count, 0});
+    const auto count = static_cast<std::uint32_t>(corners.size() / 3);
+    add_range(role, diffuse, count);
+    runs_.push_back({next_ - count, count, static_cast<std::uint32_t>(scene_.triangles.size())});
+    store(corners);
+    for (const Float3& corner : corners) scene_.local_bounds.extend(widen(corner));
+    return *this;
+  }
+  // A mesh of separate triangles in its own frame, which is stored once, at each of the places.
+  SceneBuilder& placed(Role role, const std::vector<Float3>& corners, const std::vector<MeshPlace>& places,
+                       double diffuse = 0.5) {
+    const auto count = static_cast<std::uint32_t>(corners.size() / 3);
+    for (const MeshPlace& place : places) {
+      add_range(role, diffuse, count);
+      const auto number = static_cast<std::uint32_t>(scene_.places.size());
+      runs_.push_back({next_ - count, count, static_cast<std::uint32_t>(shared_.size()), number});  // until finish()
+      scene_.places.push_back(place);
+      for (const Float3& corner : corners) scene_.local_bounds.extend(widen(scene_.placed(place, corner)));
+    }
+    shared_.push_back(corners);
+    return *this;
+  }
+  std::shared_ptr<const SceneData> finish() {
+    std::vector<std::uint32_t> first_stored;
+    for (const std::vector<Float3>& corners : shared_) {
+      first_stored.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
+      store(corners);
+    }
+    for (MeshInstance& run : runs_)
+      if (run.place != MeshInstance::kNoPlace) run.first_stored = first_stored[run.first_stored];
+    if (!shared_.empty()) scene_.set_instances(std::move(runs_));
+    scene_.materials.emplace_back();
+    return std::make_shared<const SceneData>(std::move(scene_));
+  }
+
+ private:
+  void add_range(Role role, double diffuse, std::uint32_t count) {
+    scene_.ranges.push_back({next_, count, 0});
     scene_.meshes.push_back({"mesh", role, diffuse, count});
+    next_ += count;
+  }
+  void store(const std::vector<Float3>& corners) {
     for (std::uint32_t k = 0; k < corners.size(); ++k) {
       if (k % 3 == 0) {
         const auto base = static_cast<std::uint32_t>(scene_.positions.size());
         scene_.triangles.push_back({base, base + 1, base + 2});
       }
       scene_.positions.push_back(corners[k]);
-      scene_.local_bounds.extend({corners[k].x, corners[k].y, corners[k].z});
     }
-    return *this;
-  }
-  std::shared_ptr<const SceneData> finish() {
-    scene_.materials.emplace_back();
-    return std::make_shared<const SceneData>(std::move(scene_));
   }
 
- private:
   SceneData scene_;
+  std::uint32_t next_ = 0;  // number of the next triangle
+  std::vector<MeshInstance> runs_;
+  std::vector<std::vector<Float3>> shared_;
 };
 
 // Two triangles over the parallelogram at `corner`, spanned by `u` and `v`.

@@ -7,6 +7,7 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodeQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TriangleCorners { uvec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhPlacements { BvhPlacement at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TileStarts { TileStart at[]; };
 
 #define bvh_nodes NodeQuarters(parameters.traversal[bvh_nodes_array])

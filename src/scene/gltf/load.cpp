@@ -8,9 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <new>
+#include <set>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "core/text.hpp"
 #include "import/import.hpp"
@@ -25,6 +29,7 @@
 #include "scene/raw_scene.hpp"
 #include "scene/recognise_units.hpp"
 #include "scene/room_floors.hpp"
+#include "scene/shared_meshes.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/scene_builder.hpp"
 
@@ -41,6 +46,14 @@ constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
 constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100, kSearchVertex = 24 + 24 + 3 * 16 + 8,
                  kSearchTriangle = 3 * 12;
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
+// Likewise of a mesh that is stored once: corners, corners in order, whether it is kept.
+constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
+// Of the scene, above which SharedMeshes::automatic shares; of a mesh, below which it does not: a tree of trees pays
+// for larger ones alone.
+constexpr double kManyTriangles = 8e6;
+constexpr std::uint64_t kFewTriangles = 256;
+// Triangles of shared meshes that tell the unit and axis of a large file.
+constexpr std::size_t kRecognised = 4'000'000;
 
 // A mesh to read: one primitive, placed by one node.
 struct Job {
@@ -52,6 +65,7 @@ struct Job {
   double detail_mm = 0, accuracy_mm = 0;  // 0: any
   const MaterialInfo* material = nullptr;
   bool glass = false, mirror = false;
+  bool shared = false;  // stored once
 };
 
 // Whether a member of an object is this text. Comparing JSON with text would allocate where nothing may be thrown.
@@ -59,6 +73,16 @@ bool is_text(const nlohmann::json& object, const char* key, std::string_view tex
   const auto member = object.find(key);
   const auto* const found = member == object.end() ? nullptr : member->get_ptr<const std::string*>();
   return found && *found == text;
+}
+
+// Whether a primitive's positions are numbers that float holds.
+bool is_exact(const File& file, int mesh, std::size_t index) {
+  const tinygltf::Primitive& primitive = file.model().meshes[static_cast<std::size_t>(mesh)].primitives[index];
+  const auto position = primitive.attributes.find("POSITION");
+  const auto& accessors = file.model().accessors;
+  if (position == primitive.attributes.end() || static_cast<std::size_t>(position->second) >= accessors.size())
+    return false;
+  return !accessors[static_cast<std::size_t>(position->second)].normalized;
 }
 
 // Whether the transform turns right-handed axes into left-handed ones.
@@ -110,9 +134,10 @@ class Loader {
   RawScene load() {
     const auto placed = flatten_scene(file_, options_, budget_, raw_.notes);
     std::vector<Job> jobs = list_jobs(placed);
+    choose_shared(jobs);
     reserve(jobs);
     for (const Job& job : jobs) read(job);
-    if (raw_.triangles.empty() && raw_.search_triangles.empty() && skipped_.points_or_lines > 0)
+    if (raw_.ranges.empty() && raw_.search_triangles.empty() && skipped_.points_or_lines > 0)
       throw file_.malformed("it holds points or lines alone; a survey is planned on surfaces: export triangles");
     settle_axes();
     find_doors();
@@ -163,7 +188,9 @@ class Loader {
     Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
     // A mesh of OBJ, STL or PLY was in no unit and had no axis up.
     const bool glTF = !is_text(file_.document().at("asset"), "generator", "vantage-import-mesh");
-    if (!prepared()) axes = recognise(raw_, unit, up, glTF);
+    if (!prepared())
+      axes =
+          raw_.shared.empty() ? recognise(raw_, unit, up, glTF) : recognise(excerpt(raw_, kRecognised), unit, up, glTF);
     if (!axes.question.empty()) throw file_.malformed(axes.question, axes.choices);
     if (!axes.note.empty()) raw_.notes.push_back(axes.note);
     reinterpret_axes(raw_, axes.unit, axes.up);
@@ -240,8 +267,37 @@ class Loader {
     return material.*kind.made;
   }
 
+  // Marks the primitives that are stored once: those of which that makes less and that nothing but the node changes.
+  void choose_shared(std::vector<Job>& jobs) const {
+    if (options_.shared_meshes == SharedMeshes::never) return;
+    const bool always = options_.shared_meshes == SharedMeshes::always;
+    double triangles = 0;
+    std::map<std::pair<int, std::size_t>, std::size_t> uses;
+    bool roles[2] = {};
+    const auto shareable = [&](const Job& job) {
+      return !job.glass && (job.role == Role::surveyed || job.role == Role::blocking) &&
+             materials_.cutoffs[job.material->index] == 0 && is_exact(file_, job.placed->mesh, job.primitive);
+    };
+    for (const Job& job : jobs) {
+      if (job.role == Role::ignore || job.role == Role::search) continue;
+      const std::size_t places = job.placed->world_from_mesh.size();
+      triangles += static_cast<double>(places) *
+                   static_cast<double>(primitive_size(file_, job.placed->mesh, job.primitive).triangles);
+      if (!job.glass) roles[job.role == Role::surveyed] = true;
+      if (shareable(job)) uses[{job.placed->mesh, job.primitive}] += places;
+    }
+    if (roles[0] && roles[1]) return;  // blocking triangles may have to be cut where they stand
+    if (!always && triangles <= kManyTriangles) return;
+    for (Job& job : jobs)
+      job.shared = shareable(job) && uses[{job.placed->mesh, job.primitive}] > 1 &&
+                   (always || primitive_size(file_, job.placed->mesh, job.primitive).triangles >= kFewTriangles);
+  }
+
   // Allocates room for all meshes, after checking that it is available.
   void reserve(const std::vector<Job>& jobs) {
+    double shared_bytes = 0, places = 0;
+    std::uint64_t largest_shared = 0;
+    std::set<std::tuple<int, std::size_t, std::uint32_t>> shared;
     double vertices = 0, triangles = 0, search_vertices = 0, search_triangles = 0;  // products of the file's claims
     std::uint64_t largest = 0;
     bool normals = false, colours = false, texcoords = false, roles[4] = {};
@@ -249,6 +305,15 @@ class Loader {
       if (job.role == Role::ignore) continue;
       const PrimitiveSize size = primitive_size(file_, job.placed->mesh, job.primitive);
       const auto instances = static_cast<double>(job.placed->world_from_mesh.size());
+      if (job.shared) {
+        constexpr double kAttributes = 2 * (sizeof(Float3) + sizeof(Float2) + sizeof(std::uint32_t));
+        places += instances;
+        if (!shared.emplace(job.placed->mesh, job.primitive, job.material->index).second) continue;
+        shared_bytes += (kSharedVertex + kAttributes) * static_cast<double>(size.vertices) +
+                        kSharedTriangle * static_cast<double>(size.triangles);
+        largest_shared = std::max(largest_shared, size.triangles);
+        continue;
+      }
       const bool search = job.role == Role::search;
       (search ? search_vertices : vertices) += instances * static_cast<double>(size.vertices);
       (search ? search_triangles : triangles) += instances * static_cast<double>(size.triangles);
@@ -261,12 +326,14 @@ class Loader {
     const bool both =
         roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
     const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles +
-                         kSearchVertex * search_vertices + kSearchTriangle * search_triangles;
+                         kSearchVertex * search_vertices + kSearchTriangle * search_triangles + shared_bytes +
+                         3 * places * (sizeof(MeshPlace) + sizeof(MeshInstance)) +
+                         kSharedTriangleSorted * static_cast<double>(largest_shared);
     const auto whole = [](double value) { return static_cast<std::uint64_t>(std::min(value, 1e18)); };
     const std::string what = number(whole(triangles + search_triangles)) + " triangles on " +
                              number(whole(vertices + search_vertices)) + " vertices, instances counted,";
     budget_.keep(whole(bytes), what);
-    budget_.require(kTriangleRead * largest, what);
+    budget_.require(kTriangleRead * std::max(largest, largest_shared), what);
     raw_.positions.reserve(whole(vertices));
     raw_.triangles.reserve(whole(triangles));
     if (normals) raw_.normals.reserve(whole(vertices));
@@ -307,11 +374,9 @@ class Loader {
     std::vector<std::string> names;
     for (std::size_t m = 0; m < raw_.meshes.size(); ++m) {
       if (!(raw_.meshes[m].*is)) continue;
-      const MeshRange& range = raw_.ranges[m];
-      for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {
-        const auto corner = [&](std::size_t c) { return raw_.positions[raw_.triangles[t][c]]; };
-        area += 0.5 * length(cross(corner(1) - corner(0), corner(2) - corner(0)));
-      }
+      for_each_placed(raw_, m, [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        area += 0.5 * length(cross(b - a, c - a));
+      });
       if (std::ranges::find(names, raw_.meshes[m].name) == names.end()) names.push_back(raw_.meshes[m].name);
     }
     if (names.empty()) return std::nullopt;
@@ -350,6 +415,7 @@ class Loader {
 
   void read(const Job& job) {
     if (job.role == Role::ignore) return;
+    if (job.shared) return place_shared(job);
     const auto primitive = read_primitive(file_, job.placed->mesh, job.primitive, skipped_);
     if (!primitive || primitive->triangles.empty()) return;
     const std::size_t instances = job.placed->world_from_mesh.size();
@@ -363,10 +429,17 @@ class Loader {
       for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh) append_search(*primitive, world_from_mesh);
       return;
     }
+    add_range(job, primitive->triangles.size() * instances);
+    for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
+      append(*primitive, *job.material, world_from_mesh);
+  }
+
+  // Adds a mesh, whose own triangles are the next.
+  void add_range(const Job& job, std::size_t triangles) {
     const Marks& marks = job.placed->marks;
     may_be_door_.push_back(!job.placed->pattern_role && !marks.role && !job.placed->door && !marks.door);
-    raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
-                           static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
+    raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()), static_cast<std::uint32_t>(triangles),
+                           job.material->index});
     raw_.meshes.push_back({.name = job.placed->name,
                            .role = *job.role,
                            .diffuse = job.diffuse,
@@ -378,35 +451,81 @@ class Loader {
                            .mirror = job.mirror,
                            .detail_m = job.detail_mm * 1e-3,
                            .accuracy_m = job.accuracy_mm * 1e-3});
-    for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
-      append(*primitive, *job.material, world_from_mesh);
+    if (!raw_.placed.empty()) raw_.placed.resize(raw_.ranges.size());
   }
 
-  void append_triangles(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::size_t first_vertex,
+  // Adds a mesh of which only the places are its own.
+  void place_shared(const Job& job) {
+    const auto [known, first] =
+        shared_.emplace(std::tuple(job.placed->mesh, job.primitive, job.material->index), Shared{});
+    if (first) known->second = read_shared(job);
+    const Shared& shared = known->second;
+    if (!shared.index) return;
+    const std::size_t triangles = raw_.shared[*shared.index].triangles.size();
+    const std::vector<glm::dmat4>& places = job.placed->world_from_mesh;
+    placed_triangles_ += static_cast<double>(triangles) * static_cast<double>(places.size());
+    if (placed_triangles_ + static_cast<double>(raw_.triangles.size()) > static_cast<double>(kMostTriangles))
+      throw file_.malformed("node " + quoted(job.placed->name) + ": more than 2^31 triangles; split the scene");
+    add_range(job, 0);
+    raw_.placed.resize(raw_.ranges.size());
+    for (const glm::dmat4& world_from_mesh : places) {
+      raw_.placed.back().push_back({*shared.index, place_of(world_from_mesh)});
+      mirrored_meshes_ += raw_.placed.back().back().place.mirrored ? 1 : 0;
+      note_spacing(shared.farthest, world_from_mesh);
+    }
+  }
+
+  struct Shared {
+    std::optional<std::uint32_t> index;  // in raw_.shared; empty: it has no triangles
+    double farthest = 0;                 // its largest float32 coordinate
+  };
+  Shared read_shared(const Job& job) {
+    Shared shared;
+    const auto primitive = read_primitive(file_, job.placed->mesh, job.primitive, skipped_);
+    if (!primitive || primitive->triangles.empty()) return shared;
+    // Read as if it stood in the survey frame, then moved out of there.
+    RawScene alone;
+    std::swap(raw_, alone);
+    append(*primitive, *job.material, std::nullopt);
+    std::swap(raw_, alone);
+    SharedMesh mesh{
+        {}, std::move(alone.normals), std::move(alone.texcoords), std::move(alone.colours), std::move(alone.triangles)};
+    for (const glm::dvec3& p : alone.positions) mesh.positions.push_back(to_float3(p));
+    if (primitive->position->is_float()) shared.farthest = farthest_of(*primitive->position);
+    shared.index = static_cast<std::uint32_t>(raw_.shared.size());
+    raw_.shared.push_back(std::move(mesh));
+    return shared;
+  }
+
+  // Without a transform, as they are in the file.
+  using Transform = std::optional<glm::dmat4>;
+
+  void append_triangles(const Primitive& primitive, const Transform& world_from_mesh, std::size_t first_vertex,
                         std::vector<Triangle>& out) {
     const auto offset = static_cast<std::uint32_t>(first_vertex);
-    const bool mirrored = mirrors(glm::dmat3(world_from_mesh));
+    const bool mirrored = world_from_mesh && mirrors(glm::dmat3(*world_from_mesh));
     mirrored_meshes_ += mirrored ? 1 : 0;
     for (const Triangle& t : primitive.triangles)
       out.push_back(mirrored ? Triangle{t[0] + offset, t[2] + offset, t[1] + offset}
                              : Triangle{t[0] + offset, t[1] + offset, t[2] + offset});
   }
 
-  void append_positions(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::vector<glm::dvec3>& out) {
+  void append_positions(const Primitive& primitive, const Transform& world_from_mesh, std::vector<glm::dvec3>& out) {
     const std::size_t first = out.size();
     out.resize(first + primitive.position->count());
     in_blocks(primitive.position->count(), [&](std::size_t begin, std::size_t n, double* values) {
       primitive.position->read(begin, n, values);
-      for (std::size_t i = 0; i < n; ++i)
-        out[first + begin + i] = transformed(world_from_mesh, glm::make_vec3(values + 3 * i));
+      for (std::size_t i = 0; i < n; ++i) {
+        const glm::dvec3 p = glm::make_vec3(values + 3 * i);
+        out[first + begin + i] = world_from_mesh ? transformed(*world_from_mesh, p) : p;
+      }
     });
-    if (primitive.position->is_float()) measure_spacing(*primitive.position, world_from_mesh);
+    if (world_from_mesh && primitive.position->is_float())
+      note_spacing(farthest_of(*primitive.position), *world_from_mesh);
   }
 
-  // Measures the spacing of float32 values at this primitive's coordinates, scaled by the node.
-  void measure_spacing(const Accessor& position, const glm::dmat4& world_from_mesh) {
-    double scale = 0;
-    for (int c = 0; c < 3; ++c) scale = std::max(scale, length(glm::dvec3(world_from_mesh[c])));
+  // The largest coordinate.
+  static double farthest_of(const Accessor& position) {
     double farthest = 0;
     std::mutex mutex;
     in_blocks(position.count(), [&](std::size_t begin, std::size_t n, double* values) {
@@ -417,21 +536,32 @@ class Loader {
       const std::scoped_lock lock(mutex);
       farthest = std::max(farthest, block);
     });
+    return farthest;
+  }
+
+  // Notes the spacing of float32 values at a primitive's coordinates, scaled by the node.
+  void note_spacing(double farthest, const glm::dmat4& world_from_mesh) {
+    double scale = 0;
+    for (int c = 0; c < 3; ++c) scale = std::max(scale, length(glm::dvec3(world_from_mesh[c])));
     if (farthest * scale > 1e9) return;  // dropped as broken later
     const double spacing = std::ldexp(1.0, std::ilogb(std::max(farthest, 1e-30)) - 23) * scale;
     raw_.coarsest_input_spacing_m = std::max(raw_.coarsest_input_spacing_m, spacing);
   }
 
-  void append(const Primitive& primitive, const MaterialInfo& material, const glm::dmat4& world_from_mesh) {
+  void append(const Primitive& primitive, const MaterialInfo& material, const Transform& world_from_mesh) {
     const std::size_t first = raw_.positions.size(), count = primitive.position->count();
     append_triangles(primitive, world_from_mesh, first, raw_.triangles);
     append_positions(primitive, world_from_mesh, raw_.positions);
     extend(raw_.normals, primitive.normal != nullptr, first + count, Float3{});
     if (primitive.normal) {
-      const glm::dmat3 map = normal_map(glm::dmat3(world_from_mesh));
+      const glm::dmat3 map = world_from_mesh ? normal_map(glm::dmat3(*world_from_mesh)) : glm::dmat3(1);
       in_blocks(count, [&](std::size_t begin, std::size_t n, double* values) {
         primitive.normal->read(begin, n, values);
         for (std::size_t i = 0; i < n; ++i) {
+          if (!world_from_mesh) {
+            raw_.normals[first + begin + i] = to_float3(glm::make_vec3(values + 3 * i));
+            continue;
+          }
           const glm::dvec3 normal = map * glm::make_vec3(values + 3 * i);
           const double size = length(normal);
           if (!(size > 0) || !std::isfinite(size)) continue;  // stays (0, 0, 0): no normal
@@ -579,6 +709,8 @@ class Loader {
   std::vector<std::string> doors_;         // that are open
   std::vector<std::uint8_t> may_be_door_;  // per mesh
   std::size_t mirrored_meshes_ = 0;
+  std::map<std::tuple<int, std::size_t, std::uint32_t>, Shared> shared_;  // by mesh, primitive and material
+  double placed_triangles_ = 0;                                           // of shared meshes, at each place
   bool search_without_uv_ = false;
 };
 

@@ -203,9 +203,10 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
 
   std::optional<Picture> picture;
   const WholeScans way = rays.whole_scans();
-  if (way == WholeScans::drawn ||
-      (way == WholeScans::faster && Picture::pays(rays.scene().opaque_triangles().size(), selected_rays)))
-    picture.emplace(rays, station, ends);
+  // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
+  const bool drawn = way == WholeScans::drawn ||
+                     (way == WholeScans::faster && Picture::pays(rays.scene().opaque_count(), selected_rays));
+  if (drawn && !rays.scene().shares()) picture.emplace(rays, station, ends);
   if (picture && !picture->drawable()) picture.reset();
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   const std::size_t parts = picture ? picture->strips() : tiles.size();

@@ -21,7 +21,7 @@ GlassPanes::GlassPanes(std::shared_ptr<const SceneData> scene, std::shared_ptr<c
     : scene_(std::move(scene)),
       planes_(std::move(planes)),
       caster_(scene_, planes_, RayCaster::Of::glass),
-      first_(static_cast<std::uint32_t>(scene_->opaque_triangles().size())),
+      first_(scene_->opaque_count()),
       of_solid_(faces_of_solids(*scene_)) {}
 
 bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -14,7 +15,8 @@
 
 namespace vantage {
 
-// Planes of a scene's triangles. Immutable; safe to use from any thread.
+// Planes of a scene's triangles: a table, or made on demand where triangles are shared, since the table of all their
+// places may not fit. Immutable; safe to use from any thread.
 class Planes {
  public:
   explicit Planes(std::shared_ptr<const SceneData> scene);
@@ -24,7 +26,7 @@ class Planes {
     double x, y, z, height;  // unit normal, and the plane's offset from the head along it
   };
   Seen seen(std::uint32_t triangle, const Float3& o) const {
-    const Plane& p = planes_[triangle];
+    const Plane p = plane(triangle);
     return {p.x, p.y, p.z, p.offset - (p.x * o.x + p.y * o.y + p.z * o.z)};
   }
 
@@ -71,7 +73,7 @@ class Planes {
   template <unsigned n>
   [[gnu::always_inline]] void beside(std::uint32_t triangle, const Float3& o, const float* x, const float* y,
                                      const float* z, const float* t, std::int32_t* is_beside) const {
-    const Ball& ball = balls_[triangle];
+    const Ball ball = shared_ ? ball_of(scene_->corners(triangle)) : balls_[triangle];
     const float cx = ball.x - o.x, cy = ball.y - o.y, cz = ball.z - o.z;
     for (unsigned i = 0; i < n; ++i) {
       const float dx = t[i] * x[i] - cx, dy = t[i] * y[i] - cy, dz = t[i] * z[i] - cz;
@@ -85,7 +87,7 @@ class Planes {
   }
 
   Vec3 normal(std::uint32_t triangle) const {  // unit
-    const Plane& p = planes_[triangle];
+    const Plane p = plane(triangle);
     return {p.x, p.y, p.z};
   }
 
@@ -101,8 +103,16 @@ class Planes {
     float x, y, z, square;  // middle of the corners; 1.5 times their largest distance from it, and a rounding, squared
   };
   static constexpr float ball_doubt = 0x1p-34f;  // of a squared distance, for all roundings
+
+  static Plane plane_of(const std::array<Float3, 3>& corners);
+  static Ball ball_of(const std::array<Float3, 3>& corners);
+  Plane plane(std::uint32_t triangle) const {
+    return shared_ ? plane_of(scene_->corners(triangle)) : planes_[triangle];
+  }
+
   std::shared_ptr<const SceneData> scene_;
-  std::vector<Plane> planes_;
+  bool shared_;
+  std::vector<Plane> planes_;  // per triangle, unless shared_
   std::vector<Ball> balls_;
 };
 

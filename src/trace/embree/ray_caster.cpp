@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -23,34 +21,48 @@ constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 struct Context {
   embree::Context rtc;  // first member: Embree passes its address to the filters
   const Planes& planes;
+  const SceneTree& tree;
   Float3 origin;
   float start;
   float* t;  // by the ray's id; initially the ray's end
   std::uint32_t* primitive;
-  std::uint32_t first = 0;  // triangle of the tree
   std::vector<RayCaster::Crossing>* all = nullptr;
+  // Directions by the ray's id, as Embree is given them; null: where nothing is shared.
+  const float *x = nullptr, *y = nullptr, *z = nullptr;
 };
 
 // Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle. A ray goes on
-// if it returns false.
-template <unsigned n, class Take>
+// if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
+template <unsigned n, bool placed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
                                          const Context& context, const Take& take) {
   const unsigned all = args->N;
-  unsigned primitive = RayBundle::no_hit;
+  alignas(32) float own_x[n], own_y[n], own_z[n];
+  const float *x = own_x, *y = own_y, *z = own_z;
+  if constexpr (placed) {
+    for (unsigned k = 0; k < n; ++k) {
+      const bool valid = args->valid[first + k] != 0;
+      const unsigned id = valid ? RTCRayN_id(args->ray, all, first + k) : 0;
+      own_x[k] = valid ? context.x[id] : 1, own_y[k] = valid ? context.y[id] : 1, own_z[k] = valid ? context.z[id] : 1;
+    }
+  } else {
+    x = &RTCRayN_dir_x(args->ray, all, first);
+    y = &RTCRayN_dir_y(args->ray, all, first);
+    z = &RTCRayN_dir_z(args->ray, all, first);
+  }
+  std::uint32_t primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
   alignas(32) std::int32_t beside[n]{};
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    const unsigned proposed = context.first + RTCHitN_primID(args->hit, all, i);
+    const std::uint32_t proposed =
+        context.tree.number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
     if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = proposed;
-      context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin,
-                                  &RTCRayN_dir_x(args->ray, all, first), &RTCRayN_dir_y(args->ray, all, first),
-                                  &RTCRayN_dir_z(args->ray, all, first), t);
-      context.planes.beside<n>(primitive, context.origin, &RTCRayN_dir_x(args->ray, all, first),
-                               &RTCRayN_dir_y(args->ray, all, first), &RTCRayN_dir_z(args->ray, all, first), t, beside);
+      context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin, x, y, z,
+                                  t);
+      context.planes.beside<n>(primitive, context.origin, x, y, z, t, beside);
     }
     if (beside[k] == 0 && take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
       RTCRayN_tfar(args->ray, all, i) = t[k] * beyond;
@@ -60,12 +72,21 @@ template <unsigned n, class Take>
   }
 }
 
+template <bool placed, class Take>
+[[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Context& context,
+                                         const Take& take) {
+  unsigned first = 0;
+  for (; first + packet <= args->N; first += packet) judge<packet, placed>(args, first, context, take);
+  for (; first < args->N; ++first) judge<1, placed>(args, first, context, take);
+}
+
 template <class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Take& take) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
-  unsigned first = 0;
-  for (; first + packet <= args->N; first += packet) judge<packet>(args, first, context, take);
-  for (; first < args->N; ++first) judge<1>(args, first, context, take);
+  if (context.x)
+    judge<true>(args, context, take);
+  else
+    judge<false>(args, context, take);
 }
 
 VANTAGE_TARGET_CLONES
@@ -104,38 +125,19 @@ void note_all(const RTCFilterFunctionNArguments* args) {
 }  // namespace
 
 RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of)
-    : scene_(std::move(scene)), planes_(std::move(planes)), device_(embree::new_device()) {
-  const std::span<const Triangle> opaque = scene_->opaque_triangles();
-  const std::span<const Triangle> triangles =
-      of == Of::opaque ? opaque : std::span(scene_->triangles).subspan(opaque.size());
-  first_ = of == Of::opaque ? 0 : static_cast<std::uint32_t>(opaque.size());
-  RTCDevice device = device_.get();
-  tree_.reset(rtcNewScene(device));
-  rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(tree_.get(), RTC_BUILD_QUALITY_MEDIUM);
-  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  // Vertices are copied, since Embree reads past the end of a shared buffer.
-  if (!scene_->positions.empty()) {
-    void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Float3), scene_->positions.size());
-    embree::check(device, "taking the scene's vertices");
-    std::memcpy(vertices, scene_->positions.data(), scene_->positions.size() * sizeof(Float3));
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
-                               sizeof(Triangle), triangles.size());
-  }
-  rtcSetGeometryIntersectFilterFunction(geometry.get(), of == Of::opaque ? keep_least : note_all);
-  rtcSetGeometryOccludedFilterFunction(geometry.get(), note);
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometry(tree_.get(), geometry.get());
-  rtcCommitScene(tree_.get());
-  embree::check(device, "building the tree over " + std::to_string(triangles.size()) + " triangles");
-}
+    : scene_(std::move(scene)),
+      planes_(std::move(planes)),
+      device_(embree::new_device()),
+      tree_(device_.get(), *scene_, of == Of::opaque ? 0 : scene_->opaque_count(),
+            of == Of::opaque ? scene_->opaque_count() : scene_->triangle_count(),
+            {of == Of::opaque ? keep_least : note_all, note}, of == Of::opaque ? "of rays" : "of glass") {}
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
   constexpr std::size_t stream = 64;
   std::array<std::uint32_t, stream> hit;
-  std::array<float, stream> end;
+  std::array<float, stream> end, x, y, z;
   alignas(64) std::array<RTCRay, stream> rays;
+  const bool shared = scene_->shares();
   for (std::size_t first = 0; first < probes.size(); first += stream) {
     const std::size_t n = std::min(stream, probes.size() - first);
     for (std::size_t i = 0; i < n; ++i) {
@@ -153,9 +155,11 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
                  0xFFFFFFFFu,
                  static_cast<unsigned>(i),
                  0};
+      if (shared) x[i] = rays[i].dir_x, y[i] = rays[i].dir_y, z[i] = rays[i].dir_z;
     }
     hit.fill(RayBundle::no_hit);
-    Context context{{}, *planes_, origin, start, end.data(), hit.data(), first_};
+    Context context{{}, *planes_, tree_, origin, start, end.data(), hit.data()};
+    if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
 #if VANTAGE_EMBREE_MAJOR >= 4
     rtcInitRayQueryContext(&context.rtc);
     RTCOccludedArguments arguments;
@@ -210,7 +214,13 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
   std::copy_n(rays.end, used * packet, rays.t);
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context{{}, *planes_, rays.origin, rays.start, rays.t, rays.primitive, first_, all};
+  Context context{{}, *planes_, tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
+  alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
+  if (scene_->shares()) {
+    for (std::uint32_t i = 0; i < used * packet; ++i)
+      x[i] = safe(rays.x[i]), y[i] = safe(rays.y[i]), z[i] = safe(rays.z[i]);
+    context.x = x, context.y = y, context.z = z;
+  }
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCIntersectArguments arguments;

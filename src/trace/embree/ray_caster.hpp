@@ -10,6 +10,7 @@
 
 #include "core/embree.hpp"
 #include "scene/scene_data.hpp"
+#include "scene/scene_tree.hpp"
 #include "trace/embree/planes.hpp"
 
 namespace vantage {
@@ -88,8 +89,7 @@ class RayCaster {
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   embree::Device device_;
-  embree::Scene tree_;
-  std::uint32_t first_;  // triangle of the tree
+  SceneTree tree_;
 };
 
 }  // namespace vantage

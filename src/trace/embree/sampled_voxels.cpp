@@ -99,9 +99,8 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
         Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} + Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5} * side;
     const std::uint32_t first = lists.offset[i], end = lists.offset[i + 1];
     const auto corners_of = [&](std::uint32_t k) {
-      const Triangle& t = scene.triangles[lists.triangle[k]];
-      return Corners{widen(scene.positions[t[0]]) - middle, widen(scene.positions[t[1]]) - middle,
-                     widen(scene.positions[t[2]]) - middle};
+      const auto p = scene.corners(lists.triangle[k]);
+      return Corners{widen(p[0]) - middle, widen(p[1]) - middle, widen(p[2]) - middle};
     };
     std::vector<ExactPlane> own;
     std::vector<std::pair<std::size_t, std::uint32_t>> of;  // plane and triangle

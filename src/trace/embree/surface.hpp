@@ -60,7 +60,9 @@ class Surface {
  public:
   Surface(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
-  std::uint32_t mesh(std::uint32_t triangle) const { return mesh_[triangle]; }
+  std::uint32_t mesh(std::uint32_t triangle) const {
+    return mesh_.empty() ? scene_->mesh_of(triangle) : mesh_[triangle];
+  }
   bool surveyed(std::uint32_t triangle) const { return (surveyed_[triangle / 64] >> (triangle % 64) & 1) != 0; }
 
   Facet facet(std::uint32_t triangle) const;
@@ -69,8 +71,8 @@ class Surface {
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   std::vector<std::uint64_t> surveyed_;  // a bit per triangle
-  std::vector<std::uint32_t> mesh_;
-  std::vector<double> diffuse_;  // per mesh
+  std::vector<std::uint32_t> mesh_;      // per triangle; empty if the scene shares meshes, and has many
+  std::vector<double> diffuse_;          // per mesh
 };
 
 }  // namespace vantage

@@ -293,10 +293,8 @@ Box SampledVoxelCounter::box_of(const Look& look) const {
 }
 
 SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
-  const SceneData& scene = rays_->scene();
-  const Triangle& t = scene.triangles[triangle];
-  return {relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
-          relative(scene.positions[t[2]], head_)};
+  const auto p = rays_->scene().corners(triangle);
+  return {relative(p[0], head_), relative(p[1], head_), relative(p[2], head_)};
 }
 
 // Drops voxels that one triangle hides whole.
@@ -469,11 +467,12 @@ void SampledVoxelCounter::settle() {
     traced_ += probes_.size();
     // In separate passes, so that many loads are in flight at once.
     const SceneData& scene = rays_->scene();
+    const bool stored = !scene.shares();
     for (const Probe& probe : probes_) {
-      if (probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
+      if (stored && probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
     }
     for (const Probe& probe : probes_) {
-      if (probe.hit == RayBundle::no_hit) continue;
+      if (!stored || probe.hit == RayBundle::no_hit) continue;
       for (const std::uint32_t corner : scene.triangles[probe.hit]) __builtin_prefetch(&scene.positions[corner]);
     }
     std::size_t kept = 0;

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "shared/bvh_types.h"
+#include "shared/ray_query_types.h"
 #include "shared/trace_types.h"
 #include "shared/voxel_types.h"
 #include "trace/vulkan/count_schedule.hpp"
@@ -20,9 +21,13 @@ constexpr double most_staging = 1 << 25;  // commands.cpp
 constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
 double tree(const DeviceLoad& load) {
-  if (load.engine == Engine::compute_bvh) return load.triangles * (tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle));
-  return load.triangles * (word_bytes + structure);
+  if (load.engine == Engine::compute_bvh)
+    return load.triangles * (tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle)) +
+           load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
+  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure);
 }
+
+double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(MeshTransform)); }
 
 double build_only(const DeviceLoad& load) {
   if (load.engine == Engine::compute_bvh) return 0;
@@ -39,7 +44,8 @@ double surfaces(const DeviceLoad& load) {
   const double neighbours = load.engine == Engine::compute_bvh ? 3 * word_bytes : 0;
   const double corners = load.vertices * vertex + load.triangles * (triangle + neighbours);
   if (!load.shaded) return corners;
-  return corners + load.vertices * (load.normals ? vertex : 0) + load.triangles * 2 * word_bytes;
+  return corners + load.vertices * (load.normals ? vertex : 0) +
+         (load.runs > 0 ? load.runs : load.triangles) * 2 * word_bytes;
 }
 
 double tiles(const DeviceLoad& load) {
@@ -64,7 +70,8 @@ double device_bytes(const DeviceLoad& load) {
   const double largest_upload =
       std::max({load.triangles * sizeof(BvhTriangle), load.vertices * vertex, load.bricks * sizeof(VoxelBrick)});
   const double kept = tree(load) + std::min(largest_upload, most_staging);
-  return kept + std::max(build_only(load), grid(load) + surfaces(load) + counts + tiles(load) + lists(load));
+  return kept +
+         std::max(build_only(load), grid(load) + places(load) + surfaces(load) + counts + tiles(load) + lists(load));
 }
 
 }  // namespace vantage::vulkan

@@ -11,7 +11,9 @@ namespace vantage::vulkan {
 struct DeviceLoad {
   Engine engine = Engine::compute_bvh;
   bool software = false;
-  double vertices = 0, triangles = 0, voxels = 0, bricks = 0;
+  double vertices = 0, triangles = 0;  // as stored: those of shared meshes once
+  double runs = 0;                     // of triangles, if meshes are shared (SceneData::instances)
+  double voxels = 0, bricks = 0;
   std::uint32_t rows = 0, columns = 0;  // of the scanner's pattern
   std::uint32_t stations = 0;           // per network
   bool shaded = false;                  // noise or limits, which read the triangle that was hit

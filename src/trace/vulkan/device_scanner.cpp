@@ -7,6 +7,7 @@
 
 #include "trace/noise_reach.hpp"
 #include "trace/vulkan/groups.hpp"
+#include "trace/vulkan/placed_meshes.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::vulkan {
@@ -39,7 +40,7 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
 void DeviceScanner::upload_limits(Device& device, Commands& commands, const SceneData& scene) {
   std::vector<LimitModel::Limits> distinct;
   std::vector<PointLimits> limits;
-  std::vector<std::uint32_t> of_triangle(scene.triangles.size());
+  std::vector<std::uint32_t> of_mesh;
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
     const LimitModel::Limits& own = scanner_.limits->meshes[m];
     const auto found = std::ranges::find(distinct, own);
@@ -49,10 +50,12 @@ void DeviceScanner::upload_limits(Device& device, Commands& commands, const Scen
       limits.push_back(
           {own.least_cosine_square, own.largest_footprint_square, own.largest_sigma, own.largest_reach_square});
     }
-    std::fill_n(of_triangle.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, index);
+    of_mesh.push_back(index);
   }
   limits_ = make_device_buffer<PointLimits>(device, commands, limits, "point limits");
-  limits_of_ = make_device_buffer<std::uint32_t>(device, commands, of_triangle, "limits of triangles");
+  limits_of_ = make_device_buffer<std::uint32_t>(
+      device, commands, per_surface<std::uint32_t>(scene, [&](std::size_t m) { return of_mesh[m]; }),
+      "limits of triangles");
 }
 
 void DeviceScanner::write(Commands& commands, const TraceParameters& shared) const {

@@ -28,6 +28,7 @@ class DeviceScene {
  private:
   void write_parameters();
   void upload_glass();
+  void upload_places();
 
   Device& device_;
   Commands& commands_;
@@ -36,7 +37,7 @@ class DeviceScene {
   bool watertight_;
   TraceParameters parameters_{};  // except for each scanner's own part
   DeviceDemands demands_;
-  Buffer bricks_, slots_, normal_table_, glass_nodes_, glass_corners_;
+  Buffer bricks_, slots_, normal_table_, glass_nodes_, glass_corners_, runs_, run_at_, places_;
   Buffer positions_, triangles_, neighbours_, diffuse_, normals_;  // filled on first use
 };
 

@@ -48,8 +48,9 @@ BoundPipeline Kernels::get(const TraceSet& set, bool turned, Kernel kernel, std:
     const Source source = source_of(kernel, traversal_);
     std::vector<ComputePipeline::Constant> values;
     for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, constants[k]});
-    values.push_back({turned_constant, turned});  // these two have no effect on kernels without them
+    values.push_back({turned_constant, turned});  // these have no effect on kernels without them
     values.push_back({glass_constant, glass_});
+    values.push_back({shared_constant, shared_});
     pipeline = ComputePipeline(device_, source.shader, source.push_bytes, values, set_, source.name);
   }
   return {&pipeline, set.handle()};

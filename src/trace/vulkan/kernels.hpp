@@ -31,10 +31,10 @@ enum class Kernel {
 
 class Kernels {
  public:
-  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. All other arguments
-  // must outlive it.
-  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass)
-      : device_(device), traversal_(traversal), set_(set), glass_(glass) {}
+  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. `shared`: whether
+  // meshes are shared. All other arguments must outlive it.
+  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass, bool shared)
+      : device_(device), traversal_(traversal), set_(set), glass_(glass), shared_(shared) {}
 
   // `constants`: the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass, an
   // engine that has one.
@@ -46,7 +46,7 @@ class Kernels {
   const Device& device_;
   const Traversal& traversal_;
   const TraceSet& set_;
-  bool glass_;
+  bool glass_, shared_;
   std::map<std::tuple<Kernel, std::array<bool, 4>, bool>, ComputePipeline> pipelines_;
 };
 

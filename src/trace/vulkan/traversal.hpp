@@ -11,6 +11,7 @@
 #include "scene/scene_data.hpp"
 #include "shared/trace_types.h"
 #include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/placed_meshes.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage::vulkan {
@@ -18,9 +19,10 @@ namespace vantage::vulkan {
 // Input of a structure. Borrowed for the call.
 struct TraversalScene {
   std::span<const Float3> positions;
-  std::span<const Triangle> triangles;
-  std::span<const std::uint32_t> ids;  // per triangle, for Hit::id: its number, with surveyed_bit if its points count
-  bool sort = true;                    // as TraceScene::sort_triangles
+  std::span<const Triangle> triangles;  // those that are stored where they stand
+  std::span<const std::uint32_t> ids;   // per triangle, for Hit::id: its number, with surveyed_bit if its points count
+  bool sort = true;                     // as TraceScene::sort_triangles
+  const PlacedMeshes& placed;           // empty unless the engine has VulkanEngine::places_meshes
 };
 
 // Made for one scene on one device.
@@ -61,6 +63,8 @@ struct VulkanEngine {
   Engine engine;
   DeviceNeeds needs;
   std::unique_ptr<Traversal> (*build)(Device& device, Commands& commands, const TraversalScene& scene);
+  // Whether it keeps meshes that nodes share once. Other engines are given every mesh where it stands.
+  bool places_meshes = false;
 };
 
 }  // namespace vantage::vulkan

@@ -66,7 +66,9 @@ std::optional<std::uint64_t> free_device_memory(std::uint32_t device) {
 }
 
 std::unique_ptr<Tracer> make_vulkan_tracer(const VulkanEngine& engine, std::optional<std::uint32_t> device,
-                                           const TraceScene& scene) {
+                                           const TraceScene& given) {
+  TraceScene scene = given;
+  if (!engine.places_meshes) scene.scene = flattened(scene.scene);
   const auto instance = Instance::get(validation_wanted(scene));
   const auto devices = instance->physical_devices();
   std::vector<std::string> refusals;

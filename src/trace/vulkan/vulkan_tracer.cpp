@@ -27,22 +27,29 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       traversal_(build_traversal(engine)),
       scanners_(make_scanners()),
       device_scene_(device_, commands_, scene_, *traversal_, scanners_),
-      kernels_(device_, *traversal_, scanners_.front().set(), weakens_through_glass(scene_)),
+      kernels_(device_, *traversal_, scanners_.front().set(), weakens_through_glass(scene_), scene_.scene->shares()),
       exact_sizer_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
                    static_cast<double>(rays_per_dispatch())),
       sampled_sizer_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {}
 
 std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& engine) {
   const SceneData& scene = *scene_.scene;
-  const std::span<const Triangle> triangles = scene.opaque_triangles();
-  std::vector<std::uint32_t> ids(scene.triangles.size());
-  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
-    const std::uint32_t bit = scene.meshes[m].role == Role::surveyed ? surveyed_bit : 0;
-    for (std::uint32_t t = 0; t < scene.ranges[m].triangle_count; ++t)
-      ids[scene.ranges[m].first_triangle + t] = (scene.ranges[m].first_triangle + t) | bit;
+  std::vector<std::uint32_t> ids;  // of triangles that are stored where they stand, as they are stored
+  const auto add = [&](std::uint32_t first, std::uint32_t count) {
+    if (first >= scene.opaque_count()) return;
+    const std::uint32_t bit = scene.meshes[scene.mesh_of(first)].role == Role::surveyed ? surveyed_bit : 0;
+    for (std::uint32_t t = first; t < first + count; ++t) ids.push_back(t | bit);
+  };
+  if (scene.shares()) {
+    for (const MeshInstance& run : scene.instances)
+      if (run.place == MeshInstance::kNoPlace) add(run.first_triangle, run.triangle_count);
+  } else {
+    for (const MeshRange& mesh : scene.ranges) add(mesh.first_triangle, mesh.triangle_count);
   }
-  return engine.build(device_, commands_,
-                      {scene.positions, triangles, std::span(ids).first(triangles.size()), scene_.sort_triangles});
+  const PlacedMeshes placed = placed_meshes(scene);
+  return engine.build(
+      device_, commands_,
+      {scene.positions, std::span(scene.triangles).first(ids.size()), ids, scene_.sort_triangles, placed});
 }
 
 std::vector<DeviceScanner> VulkanTracer::make_scanners() {

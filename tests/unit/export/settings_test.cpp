@@ -102,6 +102,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false},
     {"wall_layers", [](SceneOptions& o) { o.wall_layers = {"A-WALL"}; }, false},
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
+    {"shared_meshes", [](SceneOptions& o) { o.shared_meshes = SharedMeshes::always; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
 static_assert(member_count<SceneOptions>() == 19);
 

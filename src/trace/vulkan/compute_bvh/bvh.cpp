@@ -10,7 +10,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <utility>
+
+#include "core/glm.hpp"
 
 namespace vantage {
 namespace {
@@ -19,10 +23,10 @@ constexpr std::uint32_t max_leaf = 2;
 constexpr int bins = 32;
 // From this depth on, items are halved by count.
 constexpr std::uint32_t max_sah_depth = 34;
-// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and n < bvh_leaf_first_mask. An
-// inner node thus has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most
-// one child for each of these, one of the node's own, and an end mark.
-constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask) - 1;
+// Halving n items takes bit_width(n − 1) steps until each part is a leaf of one, and n < bvh_leaf_first_mask. An inner
+// node thus has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most one
+// child for each of these, one of the node's own, and an end mark.
+constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask);
 static_assert(max_leaf == 2 && max_sah_depth + most_halvings < bvh_stack_size);
 constexpr std::size_t parallel_grain = 8192;
 
@@ -83,19 +87,25 @@ BvhNode node_of(const Children& c, float widening) {
 
 struct Item {
   Bounds3 box;
-  std::uint32_t triangle;
+  std::uint32_t triangle;  // or a placement, counted on from the triangles
   float centre(std::size_t axis) const { return 0.5f * (box.min[axis] + box.max[axis]); }
 };
 
 // A subtree over items [begin, end) may use node slots [slot, slot + end − begin), which no other subtree uses.
 class Builder {
  public:
-  Builder(std::vector<Item>& items, float widening) : items_(items), widening_(widening), nodes_(items.size()) {}
+  // Items from number `triangles` on are placements.
+  Builder(std::vector<Item>& items, std::size_t triangles, float widening)
+      : items_(items), triangles_(triangles), widening_(widening), nodes_(items.size()) {}
 
   // Builds the subtree and returns its child word.
   std::uint32_t build(std::size_t begin, std::size_t end, std::uint32_t slot, std::uint32_t depth) {
     const std::size_t count = end - begin;
-    if (count <= max_leaf)
+    const auto places = [&](const Item& item) { return item.triangle >= triangles_; };
+    if (count == 1 && places(items_[begin]))
+      return bvh_leaf_bit | bvh_placement_count << bvh_leaf_count_shift |
+             (items_[begin].triangle - static_cast<std::uint32_t>(triangles_));
+    if (count <= max_leaf && std::none_of(at(begin), at(end), places))
       return bvh_leaf_bit | static_cast<std::uint32_t>(count - 1) << bvh_leaf_count_shift |
              static_cast<std::uint32_t>(begin);
     const std::size_t middle = split(begin, end, depth);
@@ -210,6 +220,7 @@ class Builder {
   std::vector<Item>::iterator at(std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); }
 
   std::vector<Item>& items_;
+  std::size_t triangles_;
   float widening_;
   std::vector<BvhNode> nodes_;
 };
@@ -234,14 +245,13 @@ std::vector<BvhNode> compact(const std::vector<BvhNode>& sparse, std::uint32_t r
   return dense;
 }
 
-}  // namespace
-
-Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
+// The tree over boxes of triangles, and of placements behind them.
+Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::span<const Triangle> triangles,
               std::span<const std::uint32_t> ids) {
-  assert(triangles.size() == ids.size() && triangles.size() < bvh_leaf_first_mask);
-  std::vector<Item> items(triangles.size());
+  assert(triangles.size() == ids.size() && items.size() < bvh_leaf_first_mask);
   tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
-    for (const std::uint32_t vertex : triangles[k]) items[k].box.extend(positions[vertex]);
+    if (k < triangles.size())
+      for (const std::uint32_t vertex : triangles[k]) items[k].box.extend(positions[vertex]);
     items[k].triangle = static_cast<std::uint32_t>(k);
   });
 
@@ -249,21 +259,156 @@ Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> trian
   for (const auto& item : items) all.extend(item.box);
 
   Bvh bvh;
-  Builder builder(items, widening_of(all));
-  if (items.size() <= max_leaf) {
+  Builder builder(items, triangles.size(), widening_of(all));
+  const std::uint32_t root = builder.build(0, items.size(), 0, 0);
+  if (root & bvh_leaf_bit) {
     // The root must be a node: one child holds everything; no ray enters the other's empty box.
-    const std::uint32_t leaf = bvh_leaf_bit | static_cast<std::uint32_t>(items.size() - 1) << bvh_leaf_count_shift;
-    bvh.nodes = {node_of({all, Bounds3(), leaf, leaf}, widening_of(all))};
+    bvh.nodes = {node_of({all, Bounds3(), root, root}, widening_of(all))};
   } else {
-    const std::uint32_t root = builder.build(0, items.size(), 0, 0);
     bvh.nodes = compact(builder.nodes(), root);
   }
   bvh.triangles.resize(items.size());
   tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
     const std::uint32_t t = items[k].triangle;
+    if (t >= triangles.size()) return;  // no leaf refers to it
     const Float3 a = positions[triangles[t][0]], b = positions[triangles[t][1]], c = positions[triangles[t][2]];
     bvh.triangles[k] = {{a.x, a.y, a.z}, ids[t], {b.x, b.y, b.z}, 0, {c.x, c.y, c.z}, 0};
   });
+  return bvh;
+}
+
+struct WideBox {
+  glm::dvec3 centre, half;
+};
+
+// Some hundred boxes of a tree, or fewer, that together hold all of it. They fit a turned mesh better than one.
+std::vector<WideBox> boxes_within(const Bvh& bvh) {
+  constexpr std::size_t enough = 128;
+  std::vector<std::uint32_t> open{0};
+  std::vector<WideBox> closed;
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const BvhNode& node = bvh.nodes[open[k]];
+    const auto child = [&](std::uint32_t word, const vec3& centre, const vec3& half) {
+      if (half.x < 0) return;
+      if (!(word & bvh_leaf_bit) && open.size() + closed.size() < k + enough)
+        open.push_back(word);
+      else
+        closed.push_back({{centre.x, centre.y, centre.z}, {half.x, half.y, half.z}});
+    };
+    child(node.child0, node.centre0, node.half0);
+    child(node.child1, node.centre1, node.half1);
+  }
+  return closed;
+}
+
+// The box around a placed mesh, in the local frame, as far as any of its triangles' own boxes reach.
+WideBox box_of(const vulkan::MeshPlacement& place, std::span<const WideBox> boxes) {
+  const glm::dmat3 local_from_mesh = place.linear();
+  glm::dmat3 sizes;
+  for (int c = 0; c < 3; ++c) sizes[c] = abs(local_from_mesh[c]);
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (const WideBox& box : boxes) {
+    const glm::dvec3 centre = local_from_mesh * box.centre + place.origin(), half = sizes * box.half;
+    low = min(low, centre - half), high = max(high, centre + half);
+  }
+  return {(low + high) * 0.5, (high - low) * 0.5};
+}
+
+Bounds3 bounds_of(const WideBox& box, double doubt) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Bounds3 bounds;
+  for (int k = 0; k < 3; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    bounds.min[at] = std::nextafter(static_cast<float>(box.centre[k] - box.half[k] - doubt), -infinity);
+    bounds.max[at] = std::nextafter(static_cast<float>(box.centre[k] + box.half[k] + doubt), infinity);
+  }
+  return bounds;
+}
+
+// Boxes of placements hold what rays find there. In the mesh's frame, a triangle's own box is widened by 2^-19 of the
+// largest coordinate of the mesh or of the ray's origin, of all axes alike (lib/triangle_hit.glsl). Rays from as far as
+// twice the scene's size are allowed for; those from further away use larger boxes. The factor of 4 that is left is
+// for lengths instead of coordinates, and for the roundings that move the ray, 2^-22 of the same lengths.
+void bound_placements(std::span<Item> items, std::span<const Float3> positions, std::span<const Triangle> triangles,
+                      const vulkan::PlacedMeshes& placed, std::span<const std::vector<WideBox>> boxes) {
+  if (items.empty()) return;
+  std::vector<WideBox> own(placed.placements.size());
+  tbb::parallel_for(std::size_t{0}, own.size(),
+                    [&](std::size_t k) { own[k] = box_of(placed.placements[k], boxes[placed.placements[k].mesh]); });
+  double size = 0;
+  for (const WideBox& box : own) size = std::max(size, length(abs(box.centre) + box.half));
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) {
+      const Float3& p = positions[v];
+      size = std::max(size, length(glm::dvec3(p.x, p.y, p.z)));
+    }
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const vulkan::MeshPlacement& place = placed.placements[k];
+    items[k].box = bounds_of(own[k], 0x1p-17 * place.condition() * (size + length(place.origin())));
+  }
+}
+
+// Appends a mesh's tree and returns its root.
+std::uint32_t append(Bvh& bvh, const Bvh& mesh) {
+  const auto root = static_cast<std::uint32_t>(bvh.nodes.size()),
+             first = static_cast<std::uint32_t>(bvh.triangles.size());
+  assert(bvh.triangles.size() + mesh.triangles.size() < bvh_leaf_first_mask);
+  for (BvhNode node : mesh.nodes) {
+    for (std::uint32_t* const child : {&node.child0, &node.child1}) *child += *child & bvh_leaf_bit ? first : root;
+    bvh.nodes.push_back(node);
+  }
+  bvh.triangles.insert(bvh.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+  return root;
+}
+
+}  // namespace
+
+Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
+              std::span<const std::uint32_t> ids) {
+  std::vector<Item> items(triangles.size());
+  return tree_over(items, positions, triangles, ids);
+}
+
+Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
+                     std::span<const std::uint32_t> ids, const vulkan::PlacedMeshes& placed) {
+  std::vector<Bvh> meshes(placed.meshes.size());
+  std::vector<std::vector<WideBox>> boxes(meshes.size());
+  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+    std::vector<std::uint32_t> own(placed.meshes[m].size());
+    std::iota(own.begin(), own.end(), 0u);
+    meshes[m] = build_bvh(positions, placed.meshes[m], own);
+    boxes[m] = boxes_within(meshes[m]);
+  });
+
+  std::vector<Item> items(triangles.size() + placed.placements.size());
+  bound_placements(std::span(items).subspan(triangles.size()), positions, triangles, placed, boxes);
+  std::vector<BvhPlacement> placements(placed.placements.size());
+  tbb::parallel_for(std::size_t{0}, placements.size(), [&](std::size_t k) {
+    const vulkan::MeshPlacement& place = placed.placements[k];
+    const glm::dmat3 inverse = glm::inverse(place.linear());
+    const glm::dvec3 origin = place.origin();
+    const auto row = [&](int r) {
+      return vec3{static_cast<float>(inverse[0][r]), static_cast<float>(inverse[1][r]),
+                  static_cast<float>(inverse[2][r])};
+    };
+    placements[k] = {
+        .row0 = row(0),
+        .root = 0,
+        .row1 = row(1),
+        .base = place.base_id,
+        .row2 = row(2),
+        .widening = meshes[place.mesh].nodes.front().widening,
+        .origin = {static_cast<float>(origin.x), static_cast<float>(origin.y), static_cast<float>(origin.z)},
+        .unused = 0};
+  });
+  Bvh bvh = tree_over(items, positions, triangles, ids);
+  std::vector<std::uint32_t> roots;
+  for (Bvh& mesh : meshes) {
+    roots.push_back(append(bvh, mesh));
+    mesh = Bvh();  // frees its memory
+  }
+  for (std::size_t k = 0; k < placements.size(); ++k) placements[k].root = roots[placed.placements[k].mesh];
+  bvh.placements = std::move(placements);
   return bvh;
 }
 

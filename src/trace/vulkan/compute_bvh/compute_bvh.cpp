@@ -10,9 +10,11 @@ namespace {
 class ComputeBvh final : public Traversal {
  public:
   ComputeBvh(Device& device, Commands& commands, const TraversalScene& scene) {
-    const Bvh bvh = build_bvh(scene.positions, scene.triangles, scene.ids);
+    const Bvh bvh = build_placed_bvh(scene.positions, scene.triangles, scene.ids, scene.placed);
     nodes_ = make_device_buffer<BvhNode>(device, commands, bvh.nodes, "BVH nodes");
     triangles_ = make_device_buffer<BvhTriangle>(device, commands, bvh.triangles, "BVH triangles");
+    if (!bvh.placements.empty())
+      placements_ = make_device_buffer<BvhPlacement>(device, commands, bvh.placements, "BVH placements");
   }
 
   TraceShaders shaders() const override {
@@ -23,6 +25,7 @@ class ComputeBvh final : public Traversal {
     Binding binding;
     binding.arrays[bvh_nodes_array] = nodes_.address();
     binding.arrays[bvh_triangles_array] = triangles_.address();
+    binding.arrays[bvh_placements_array] = placements_.address();
     return binding;
   }
   bool is_watertight() const override { return true; }  // lib/triangle_hit.glsl
@@ -32,7 +35,7 @@ class ComputeBvh final : public Traversal {
   }
 
  private:
-  Buffer nodes_, triangles_;
+  Buffer nodes_, triangles_, placements_;
 };
 
 }  // namespace
@@ -41,6 +44,7 @@ const VulkanEngine compute_bvh_engine{
     Engine::compute_bvh, DeviceNeeds::compute,
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<ComputeBvh>(device, commands, scene);
-    }};
+    },
+    true};
 
 }  // namespace vantage::vulkan

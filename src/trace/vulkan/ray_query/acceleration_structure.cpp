@@ -11,6 +11,11 @@
 namespace vantage::vulkan {
 namespace {
 
+// Structures lie side by side in buffers of this size, since a device allows few allocations; larger ones lie alone.
+constexpr VkDeviceSize storage_bytes = VkDeviceSize{1} << 26, storage_alignment = 256;
+
+constexpr VkBufferUsageFlags build_input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+
 VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR structure) {
   VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
                                                    nullptr, structure};
@@ -19,10 +24,11 @@ VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR stru
 
 }  // namespace
 
-AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructureTypeKHR type,
-                                                          const VkAccelerationStructureGeometryKHR& geometry,
-                                                          std::uint32_t count, const char* name) {
-  VkAccelerationStructureBuildGeometryInfoKHR info{};
+AccelerationStructure::Build AccelerationStructure::build_of(VkAccelerationStructureTypeKHR type,
+                                                             const VkAccelerationStructureGeometryKHR& geometry,
+                                                             std::uint32_t count) const {
+  Build build{.info = {}, .geometry = geometry, .count = count, .bytes = 0, .scratch = 0};
+  VkAccelerationStructureBuildGeometryInfoKHR& info = build.info;
   info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
   info.type = type;
   info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
@@ -34,54 +40,52 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   device_.vk().vkGetAccelerationStructureBuildSizesKHR(
       device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
 
-  Level level;
-  level.storage = Buffer(device_, sizes.accelerationStructureSize, Buffer::Where::device, name,
-                         VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
-  VkAccelerationStructureCreateInfoKHR create{};
-  create.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
-  create.buffer = level.storage.handle();
-  create.size = sizes.accelerationStructureSize;
-  create.type = type;
-  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
-  check(device_.vk().vkCreateAccelerationStructureKHR(device_.handle(), &create, nullptr, &structure), name);
-  level.handle = UniqueAccelerationStructure(device_, structure);
-
-  const VkDeviceSize alignment = device_.scratch_alignment();
-  const Buffer scratch(device_, sizes.buildScratchSize + alignment, Buffer::Where::device,
-                       "acceleration structure scratch");
-  info.dstAccelerationStructure = structure;
-  info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
-  const VkAccelerationStructureBuildRangeInfoKHR range{count, 0, 0, 0};
-  // Submits separately and waits, so that later work sees the finished structure and the scratch can be freed.
-  commands_.run([&](const Recorder& r) { r.build(info, range); });
-  return level;
+  build.bytes = (sizes.accelerationStructureSize + storage_alignment - 1) / storage_alignment * storage_alignment;
+  build.scratch = sizes.buildScratchSize;
+  return build;
 }
 
-AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, std::span<const Float3> positions,
-                                             std::span<const Triangle> triangles, std::span<const std::uint32_t> ids,
-                                             bool sort)
-    : device_(device), commands_(commands) {
-  std::vector<std::uint32_t> order;
-  if (sort && device.abilities().software()) {
-    order = median_sort(positions, triangles);
-  } else {
-    order.resize(triangles.size());
-    std::iota(order.begin(), order.end(), 0u);
+UniqueAccelerationStructure AccelerationStructure::run(Build build, VkDeviceSize still, Buffer& scratch,
+                                                       const char* name) {
+  if (storage_.empty() || used_ + build.bytes > storage_.back().size()) {
+    storage_.emplace_back(device_, std::max(build.bytes, std::min(still, storage_bytes)), Buffer::Where::device,
+                          "acceleration structures", VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
+    used_ = 0;
   }
-  std::vector<Triangle> sorted(order.size());
-  std::vector<std::uint32_t> sorted_ids(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    sorted[k] = triangles[order[k]];
-    sorted_ids[k] = ids[order[k]];
-  }
-  ids_ = make_device_buffer<std::uint32_t>(device, commands, sorted_ids, "primitive ids");
+  VkAccelerationStructureCreateInfoKHR create{};
+  create.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
+  create.buffer = storage_.back().handle();
+  create.offset = used_;
+  create.size = build.bytes;
+  create.type = build.info.type;
+  used_ += build.bytes;
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
+  check(device_.vk().vkCreateAccelerationStructureKHR(device_.handle(), &create, nullptr, &structure), name);
+  UniqueAccelerationStructure made(device_, structure);
 
-  const VkBufferUsageFlags input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
-  const Buffer vertices = make_device_buffer<Float3>(device, commands, positions, "vertices of the build", input);
-  const Buffer indices = make_device_buffer<Triangle>(device, commands, sorted, "indices of the build", input);
-  std::vector<VkAccelerationStructureInstanceKHR> instances;
-  for (std::size_t first = 0; first < sorted.size(); first += blas_triangles) {
-    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(blas_triangles, sorted.size() - first));
+  const VkDeviceSize alignment = device_.scratch_alignment();
+  if (!scratch || scratch.size() < build.scratch + alignment) {
+    scratch = Buffer();  // frees the old one first, so that both never coexist
+    scratch = Buffer(device_, build.scratch + alignment, Buffer::Where::device, "acceleration structure scratch");
+  }
+  build.info.pGeometries = &build.geometry;
+  build.info.dstAccelerationStructure = structure;
+  build.info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
+  const VkAccelerationStructureBuildRangeInfoKHR range{build.count, 0, 0, 0};
+  // Submits separately and waits, so that later work sees the finished structure and can use the scratch.
+  commands_.run([&](const Recorder& r) { r.build(build.info, range); });
+  return made;
+}
+
+void AccelerationStructure::build_parts(const TraversalScene& scene, std::span<const Triangle> triangles,
+                                        std::span<Part> parts) {
+  const Buffer vertices =
+      make_device_buffer<Float3>(device_, commands_, scene.positions, "vertices of the build", build_input);
+  const Buffer indices =
+      make_device_buffer<Triangle>(device_, commands_, triangles, "indices of the build", build_input);
+  std::vector<Build> builds;
+  VkDeviceSize still = 0;
+  for (const Part& part : parts) {
     VkAccelerationStructureGeometryKHR geometry{};
     geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
     geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
@@ -91,29 +95,86 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
     t.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
     t.vertexData.deviceAddress = vertices.address();
     t.vertexStride = sizeof(Float3);
-    t.maxVertex = static_cast<std::uint32_t>(positions.size() - 1);
+    t.maxVertex = static_cast<std::uint32_t>(scene.positions.size() - 1);
     t.indexType = VK_INDEX_TYPE_UINT32;
-    t.indexData.deviceAddress = indices.address() + first * sizeof(Triangle);
-    bottom_.push_back(
-        build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, count, "bottom-level acceleration structure"));
-    VkAccelerationStructureInstanceKHR instance{};
-    instance.transform = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    instance.instanceCustomIndex = static_cast<std::uint32_t>(instances.size()) & 0xFFFFFFu;
-    instance.mask = 0xFF;
-    instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
-    instance.accelerationStructureReference = address_of(device, bottom_.back().handle.get());
-    instances.push_back(instance);
+    t.indexData.deviceAddress = indices.address() + part.first * sizeof(Triangle);
+    builds.push_back(build_of(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, part.count));
+    still += builds.back().bytes;
   }
+  Buffer scratch;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    bottom_.push_back(run(builds[k], still, scratch, "bottom-level acceleration structure"));
+    still -= builds[k].bytes;
+    parts[k].address = address_of(device_, bottom_.back().get());
+  }
+}
+
+AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene)
+    : device_(device), commands_(commands) {
+  // Triangles in the structure's order: those that are stored where they stand, then mesh after mesh, whose ids count
+  // from 0.
+  std::vector<Triangle> sorted;
+  std::vector<std::uint32_t> ids;
+  std::vector<Part> parts;
+  std::vector<std::size_t> first_part;  // of the triangles that stand, of each mesh, and an end
+  const auto add = [&](std::span<const Triangle> triangles, const auto& id_of) {
+    first_part.push_back(parts.size());
+    const std::size_t begin = sorted.size();
+    std::vector<std::uint32_t> order;
+    if (scene.sort && device.abilities().software()) {
+      order = median_sort(scene.positions, triangles);
+    } else {
+      order.resize(triangles.size());
+      std::iota(order.begin(), order.end(), 0u);
+    }
+    for (const std::uint32_t k : order) {
+      sorted.push_back(triangles[k]);
+      ids.push_back(id_of(k));
+    }
+    for (std::size_t first = begin; first < sorted.size(); first += blas_triangles)
+      parts.push_back({static_cast<std::uint32_t>(first),
+                       static_cast<std::uint32_t>(std::min<std::size_t>(blas_triangles, sorted.size() - first))});
+  };
+  add(scene.triangles, [&](std::uint32_t k) { return scene.ids[k]; });
+  for (const auto& mesh : scene.placed.meshes) add(mesh, [](std::uint32_t k) { return k; });
+  first_part.push_back(parts.size());
+  ids_ = make_device_buffer<std::uint32_t>(device, commands, ids, "primitive ids");
+  build_parts(scene, sorted, parts);
+
+  std::vector<VkAccelerationStructureInstanceKHR> instances;
+  std::vector<QueryInstance> records;
+  const auto place = [&](std::size_t mesh, const VkTransformMatrixKHR& matrix, std::uint32_t base) {
+    for (std::size_t k = first_part[mesh]; k < first_part[mesh + 1]; ++k) {
+      VkAccelerationStructureInstanceKHR instance{};
+      instance.transform = matrix;
+      instance.instanceCustomIndex = static_cast<std::uint32_t>(instances.size()) & 0xFFFFFFu;
+      instance.mask = 0xFF;
+      instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
+      instance.accelerationStructureReference = parts[k].address;
+      instances.push_back(instance);
+      records.push_back({parts[k].first, base});
+    }
+  };
+  place(0, {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0);
+  for (const MeshPlacement& placement : scene.placed.placements) {
+    const auto& m = placement.columns;
+    place(placement.mesh + 1, {{{m[0], m[3], m[6], m[9]}, {m[1], m[4], m[7], m[10]}, {m[2], m[5], m[8], m[11]}}},
+          placement.base_id);
+  }
+  if (!scene.placed.placements.empty())
+    instances_ = make_device_buffer<QueryInstance>(device, commands, records, "instances of shared meshes");
   const Buffer instance_buffer =
-      make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", input);
+      make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", build_input);
   VkAccelerationStructureGeometryKHR geometry{};
   geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
   geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
   geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
   geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
   geometry.geometry.instances.data.deviceAddress = instance_buffer.address();
-  top_ = build(VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, geometry, static_cast<std::uint32_t>(instances.size()),
-               "top-level acceleration structure");
+  const Build top =
+      build_of(VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, geometry, static_cast<std::uint32_t>(instances.size()));
+  Buffer scratch;
+  top_ = run(top, top.bytes, scratch, "top-level acceleration structure");
 }
 
 }  // namespace vantage::vulkan

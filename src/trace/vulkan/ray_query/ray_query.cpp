@@ -10,8 +10,7 @@ namespace {
 
 class RayQuery final : public Traversal {
  public:
-  RayQuery(Device& device, Commands& commands, const TraversalScene& scene)
-      : structure_(device, commands, scene.positions, scene.triangles, scene.ids, scene.sort) {}
+  RayQuery(Device& device, Commands& commands, const TraversalScene& scene) : structure_(device, commands, scene) {}
 
   TraceShaders shaders() const override {
     return {shaders::count_ray_query, shaders::scan_ray_query, shaders::sample_probe_ray_query,
@@ -20,6 +19,7 @@ class RayQuery final : public Traversal {
   Binding binding() const override {
     Binding binding;
     binding.arrays[primitive_ids_array] = structure_.primitive_ids();
+    binding.arrays[query_instances_array] = structure_.instances();
     binding.structure = structure_.handle();
     return binding;
   }
@@ -34,6 +34,7 @@ const VulkanEngine ray_query_engine{
     Engine::ray_query, DeviceNeeds::ray_query,
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<RayQuery>(device, commands, scene);
-    }};
+    },
+    true};
 
 }  // namespace vantage::vulkan

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <utility>
 
 #include "core/philox.hpp"
 
@@ -52,11 +54,23 @@ Soup nested_soup() {
 // its stack. A traversal leaves one child there at each inner node.
 class Walk {
  public:
-  explicit Walk(const Bvh& bvh) : bvh_(bvh), seen_(bvh.triangles.size()) { node(0, 1); }
+  // From a node on. Of a tree that places meshes, `placed` has the corners of each placement, where they stand.
+  explicit Walk(const Bvh& bvh, std::uint32_t root = 0, std::span<const std::vector<Float3>> placed = {})
+      : bvh_(bvh), placed_(placed), seen_(bvh.triangles.size()), places_(placed.size()) {
+    node(root, 1);
+  }
   std::uint32_t stack() const { return stack_; }
   bool sees_each_triangle_once() const {
     return std::all_of(seen_.begin(), seen_.end(), [](int times) { return times == 1; });
   }
+  std::vector<std::uint32_t> ids() const {  // ascending
+    std::vector<std::uint32_t> ids;
+    for (std::size_t k = 0; k < seen_.size(); ++k)
+      for (int times = 0; times < seen_[k]; ++times) ids.push_back(bvh_.triangles[k].id);
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  }
+  const std::vector<int>& places() const { return places_; }  // how often each placement is seen
 
  private:
   void node(std::uint32_t at, std::uint32_t on_stack) {
@@ -71,7 +85,10 @@ class Walk {
     boxes_.push_back({centre, half});
     if (word & bvh_leaf_bit) {
       const std::uint32_t first = word & bvh_leaf_first_mask, more = (word >> bvh_leaf_count_shift) & 7u;
-      for (std::uint32_t k = first; k <= first + more; ++k) triangle(k);
+      if (more == bvh_placement_count)
+        place(first);
+      else
+        for (std::uint32_t k = first; k <= first + more; ++k) triangle(k);
     } else {
       node(word, on_stack + 1);
     }
@@ -80,16 +97,23 @@ class Walk {
   void triangle(std::uint32_t k) {
     ++seen_.at(k);
     const BvhTriangle& t = bvh_.triangles[k];
-    for (const auto& [centre, half] : boxes_)
-      for (const vec3& p : {t.a, t.b, t.c}) {
-        EXPECT_LE(std::abs(double{p.x} - double{centre.x}), half.x);
-        EXPECT_LE(std::abs(double{p.y} - double{centre.y}), half.y);
-        EXPECT_LE(std::abs(double{p.z} - double{centre.z}), half.z);
-      }
+    for (const vec3& p : {t.a, t.b, t.c}) inside({p.x, p.y, p.z});
+  }
+  void place(std::uint32_t k) {
+    ++places_.at(k);
+    for (const Float3& p : placed_[k]) inside(p);
+  }
+  void inside(const Float3& p) const {
+    for (const auto& [centre, half] : boxes_) {
+      EXPECT_LE(std::abs(double{p.x} - double{centre.x}), half.x);
+      EXPECT_LE(std::abs(double{p.y} - double{centre.y}), half.y);
+      EXPECT_LE(std::abs(double{p.z} - double{centre.z}), half.z);
+    }
   }
 
   const Bvh& bvh_;
-  std::vector<int> seen_;
+  std::span<const std::vector<Float3>> placed_;
+  std::vector<int> seen_, places_;
   std::vector<std::array<vec3, 2>> boxes_;  // from the root downwards
   std::uint32_t stack_ = 0;
 };
@@ -115,6 +139,53 @@ TEST(Bvh, HoldsEveryTriangleOnceInBoxesThatHoldIt) {
   for (const std::size_t n : {1u, 2u, 3u, 4u, 5u, 100u, 20'000u}) {
     SCOPED_TRACE(n);
     expect_sound(random_soup(n));
+  }
+}
+
+// Two meshes in frames of their own, one placed turned, scaled and mirrored, among some triangles or none.
+TEST(Bvh, PlacesMeshesInBoxesThatHoldThem) {
+  for (const std::size_t n : {0u, 1u, 3u, 200u}) {
+    SCOPED_TRACE(n);
+    Soup soup = random_soup(n);
+    const std::size_t own = soup.triangles.size();
+    const Soup mesh = random_soup(700);
+    vulkan::PlacedMeshes placed;
+    std::vector<Triangle> shared;
+    for (const Triangle& t : mesh.triangles) {
+      const auto first = static_cast<std::uint32_t>(3 * n);
+      shared.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    placed.meshes = {std::span<const Triangle>(shared).first(500), std::span<const Triangle>(shared).subspan(500)};
+    placed.placements = {{0, 1000, {1, 0, 0, 0, 1, 0, 0, 0, 1, 2, -3, 4}},
+                         {0, 1500 | surveyed_bit, {0, 2, 0.5F, -1.5F, 0, 0, 0, 0.25F, 1, 30, 7, -9}},
+                         {1, 2000, {-1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0}}};
+    std::vector<std::vector<Float3>> corners;
+    for (const vulkan::MeshPlacement& place : placed.placements)
+      for (corners.emplace_back(); const Triangle& t : placed.meshes[place.mesh])
+        for (const std::uint32_t v : t) {
+          const Float3& p = soup.positions[v];
+          const glm::dvec3 at = place.linear() * glm::dvec3(p.x, p.y, p.z) + place.origin();
+          corners.back().push_back({static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)});
+        }
+    const Bvh bvh =
+        build_placed_bvh(soup.positions, std::span(soup.triangles).first(own), std::span(soup.ids).first(own), placed);
+    const Walk top(bvh, 0, corners);
+    EXPECT_EQ(top.ids().size(), own);
+    EXPECT_EQ(top.places(), (std::vector<int>{1, 1, 1}));
+    ASSERT_EQ(bvh.placements.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const BvhPlacement& place = bvh.placements[k];
+      EXPECT_EQ(place.base, placed.placements[k].base_id);
+      EXPECT_EQ(place.widening, bvh.nodes.at(place.root).widening);
+      std::vector<std::uint32_t> all(placed.meshes[placed.placements[k].mesh].size());
+      std::iota(all.begin(), all.end(), 0u);
+      EXPECT_EQ(Walk(bvh, place.root).ids(), all) << "numbers within the mesh";
+      // There and back.
+      const glm::dvec3 p(0.3, -0.7, 1.1), at = placed.placements[k].linear() * p;
+      for (const auto& [row, coordinate] : {std::pair(place.row0, p.x), {place.row1, p.y}, {place.row2, p.z}})
+        EXPECT_NEAR(row.x * at.x + row.y * at.y + row.z * at.z, coordinate, 1e-6);
+    }
   }
 }
 

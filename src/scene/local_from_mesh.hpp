@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How engines of two levels see a mesh that nodes share: they move rays into its frame instead of its corners out of
+// it.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "scene/scene_data.hpp"
+
+namespace vantage {
+
+// Columns of the affine map from the mesh to the scene's local frame, in float.
+inline std::array<float, 12> local_from_mesh(const SceneData& scene, const MeshPlace& place) {
+  std::array<float, 12> out{};
+  std::size_t n = 0;
+  for (const Vec3& column : {place.x, place.y, place.z}) {
+    // Embree takes a ray's direction into the mesh's frame; a component below 1e-18 makes it miss every box
+    // (RayCaster::safe). What rounding leaves of a right angle must therefore be 0; it is 1e-9 of a coordinate, less
+    // than float's rounding.
+    const double least = 0x1p-30 * std::sqrt(dot(column, column));
+    for (const double c : {column.x, column.y, column.z}) out[n++] = std::abs(c) < least ? 0 : static_cast<float>(c);
+  }
+  const Vec3 at = place.origin - scene.origin;
+  for (const double c : {at.x, at.y, at.z}) out[n++] = static_cast<float>(c);
+  return out;
+}
+
+}  // namespace vantage

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "scene/local_from_mesh.hpp"
+
+namespace vantage {
+namespace {
+
+embree::Scene new_scene(RTCDevice device) {
+  embree::Scene scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+  return scene;
+}
+
+}  // namespace
+
+SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t first, std::uint32_t end,
+                     const Filters& filters, const std::string& what)
+    : scene_(scene), first_(first), tree_(new_scene(device)) {
+  if (!scene.shares()) {
+    if (end > first) add_triangles(device, tree_.get(), first, end - first, 0, filters);
+  } else {
+    for (MeshInstance run : scene.instances) {
+      const std::uint32_t skipped = std::max(first, run.first_triangle) - run.first_triangle;
+      const std::uint32_t last = std::min(end, run.first_triangle + run.triangle_count);
+      if (run.place != MeshInstance::kNoPlace || run.first_triangle + skipped >= last) continue;
+      run.first_triangle += skipped, run.first_stored += skipped;
+      run.triangle_count = last - run.first_triangle;
+      own_.push_back(run);
+    }
+    if (!own_.empty())  // they are stored one after the other
+      add_triangles(device, tree_.get(), own_.front().first_stored,
+                    own_.back().first_stored + own_.back().triangle_count - own_.front().first_stored,
+                    static_cast<unsigned>(scene.instances.size()), filters);
+    add_instances(device, end, filters);
+  }
+  rtcCommitScene(tree_.get());
+  embree::check(device, "building the tree " + what + " over " + std::to_string(end - first) + " triangles");
+}
+
+std::uint32_t SceneTree::number_of_own(std::uint32_t primitive) const {
+  const std::uint32_t stored = own_.front().first_stored + primitive;
+  const auto after = std::ranges::upper_bound(own_, stored, {}, &MeshInstance::first_stored);
+  const MeshInstance& run = *(after - 1);
+  return stored - run.first_stored + run.first_triangle;
+}
+
+// Those stored from `first` on.
+void SceneTree::add_triangles(RTCDevice device, RTCScene to, std::uint32_t first, std::uint32_t count, unsigned id,
+                              const Filters& filters) {
+  const auto triangles = std::span(scene_.triangles).subspan(first, count);
+  std::uint32_t low = 0, end = static_cast<std::uint32_t>(scene_.positions.size());
+  if (scene_.shares()) {
+    std::uint32_t high = 0;
+    low = end;
+    for (const Triangle& t : triangles)
+      for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
+    end = high + 1;
+  }
+  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  // Vertices are copied, since Embree reads past the end of a shared buffer.
+  void* const vertices =
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), end - low);
+  embree::check(device, "taking the scene's vertices");
+  std::memcpy(vertices, scene_.positions.data() + low, (end - low) * sizeof(Float3));
+  if (low == 0) {
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(Triangle), count);
+  } else {
+    auto* const indices = static_cast<Triangle*>(
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), count));
+    embree::check(device, "taking the triangles of a shared mesh");
+    std::ranges::transform(triangles, indices, [&](const Triangle& t) {
+      return Triangle{t[0] - low, t[1] - low, t[2] - low};
+    });
+  }
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), filters.intersect);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), filters.occluded);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(to, geometry.get(), id);
+}
+
+void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters& filters) {
+  std::map<std::uint32_t, RTCScene> known;  // by first stored triangle
+  for (std::size_t k = 0; k < scene_.instances.size(); ++k) {
+    const MeshInstance& instance = scene_.instances[k];
+    if (instance.place == MeshInstance::kNoPlace || instance.first_triangle < first_ || instance.first_triangle >= end)
+      continue;
+    RTCScene& mesh = known[instance.first_stored];
+    if (!mesh) {
+      shared_.push_back(new_scene(device));
+      mesh = shared_.back().get();
+      add_triangles(device, mesh, instance.first_stored, instance.triangle_count, 0, filters);
+      rtcCommitScene(mesh);
+    }
+    const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(geometry.get(), mesh);
+    const std::array<float, 12> columns = local_from_mesh(scene_, scene_.places[instance.place]);
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(tree_.get(), geometry.get(), static_cast<unsigned>(k));
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene's triangles in Embree: a tree of those that are stored where they stand, and one of each shared mesh, which
+// instances place.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/embree.hpp"
+#include "scene/scene_data.hpp"
+
+namespace vantage {
+
+class SceneTree {
+ public:
+  struct Filters {
+    RTCFilterFunctionN intersect = nullptr, occluded = nullptr;
+  };
+  // Over triangles `first` up to `end` of the scene, which is borrowed. Rays may start and end anywhere
+  // (RTC_SCENE_FLAG_ROBUST). `what`: for messages. Throws Error: out_of_memory, device_failure.
+  SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t first, std::uint32_t end, const Filters& filters,
+            const std::string& what);
+
+  RTCScene get() const { return tree_.get(); }
+  // Number in the scene of a triangle that Embree names.
+  std::uint32_t number(unsigned instance, unsigned primitive) const {
+    return !scene_.shares()                      ? first_ + primitive
+           : instance == RTC_INVALID_GEOMETRY_ID ? number_of_own(primitive)
+                                                 : scene_.instances[instance].first_triangle + primitive;
+  }
+
+ private:
+  std::uint32_t number_of_own(std::uint32_t primitive) const;
+  void add_triangles(RTCDevice device, RTCScene to, std::uint32_t first, std::uint32_t count, unsigned id,
+                     const Filters& filters);
+  void add_instances(RTCDevice device, std::uint32_t end, const Filters& filters);
+
+  const SceneData& scene_;
+  std::uint32_t first_;
+  std::vector<MeshInstance> own_;      // runs of triangles that are stored where they stand
+  std::vector<embree::Scene> shared_;  // of each shared mesh
+  embree::Scene tree_;
+};
+
+}  // namespace vantage
