@@ -61,6 +61,7 @@ std::string name_of(Enum value) {
 inline void from_name(const std::string& text, Engine& value) { value = engine_from_string(text); }
 inline void from_name(const std::string& text, Unit& value) { value = unit_from_string(text); }
 inline void from_name(const std::string& text, UpAxis& value) { value = up_axis_from_string(text); }
+inline void from_name(const std::string& text, Returns& value) { value = returns_from_string(text); }
 template <class Enum>
 void from_name(const std::string& text, Enum& value) {
   std::string known;
@@ -95,6 +96,8 @@ template <>
 struct type_caster<vantage::Unit> : vantage::python::NameCaster<vantage::Unit> {};
 template <>
 struct type_caster<vantage::UpAxis> : vantage::python::NameCaster<vantage::UpAxis> {};
+template <>
+struct type_caster<vantage::Returns> : vantage::python::NameCaster<vantage::Returns> {};
 template <>
 struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<vantage::RegistrationSurfaces> {};
 template <>
