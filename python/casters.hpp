@@ -62,6 +62,7 @@ inline void from_name(const std::string& text, Engine& value) { value = engine_f
 inline void from_name(const std::string& text, Unit& value) { value = unit_from_string(text); }
 inline void from_name(const std::string& text, UpAxis& value) { value = up_axis_from_string(text); }
 inline void from_name(const std::string& text, SharedMeshes& value) { value = shared_meshes_from_string(text); }
+inline void from_name(const std::string& text, Returns& value) { value = returns_from_string(text); }
 template <class Enum>
 void from_name(const std::string& text, Enum& value) {
   std::string known;
@@ -98,6 +99,8 @@ template <>
 struct type_caster<vantage::UpAxis> : vantage::python::NameCaster<vantage::UpAxis> {};
 template <>
 struct type_caster<vantage::SharedMeshes> : vantage::python::NameCaster<vantage::SharedMeshes> {};
+template <>
+struct type_caster<vantage::Returns> : vantage::python::NameCaster<vantage::Returns> {};
 template <>
 struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<vantage::RegistrationSurfaces> {};
 template <>

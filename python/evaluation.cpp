@@ -206,6 +206,16 @@ void add_evaluations(py::module_& m) {
           },
           "Points of each station that count: (n,), read-only.")
       .def_property_readonly(
+          "mixed",
+          [](const py::object& self) {
+            const Evaluation& e = self.cast<const Evaluation&>();
+            if (e.counts.mixed.empty() && e.counts.stations > 0) not_asked_for("mixed", "beam=BeamOptions()");
+            return view<std::uint64_t>(std::span(e.counts.mixed), self, 3);
+          },
+          "Points of each station that lie off all surfaces they were made of, by more than 5 mm: (n, 3), read-only. "
+          "All "
+          "of them,\nthose that count, and those in a surveyed voxel that they did not come from.")
+      .def_property_readonly(
           "voxel_points",
           [](const py::object& self) {
             return view<std::uint32_t>(std::span(field_of(self.cast<const Evaluation&>(), "voxel_points").count), self);

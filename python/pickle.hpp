@@ -19,7 +19,7 @@ namespace vantage::python {
 inline auto members(RegistrationSums& s) { return std::tie(s.centre, s.radius_m, s.heads, s.pairs, s.surface); }
 inline auto members(NetworkCounts& c) {
   return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_weight, c.rays, c.stations, c.points,
-                  c.points_on_surveyed, c.dropped, c.seen, c.shared, c.registration, c.groups,
+                  c.points_on_surveyed, c.dropped, c.mixed, c.seen, c.shared, c.registration, c.groups,
                   c.successive_difference_sum, c.trace_seconds, c.cancelled);
 }
 inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
@@ -48,7 +48,7 @@ inline auto members(VoxelStatus& s) { return std::tie(s.why, s.captured, s.attai
 inline auto members(MissedVoxels& m) { return std::tie(m.ranks, m.points, m.status, m.shares, m.rooms, m.candidates); }
 inline auto members(Scan& s) {
   return std::tie(s.ray, s.position, s.range_m, s.normal, s.reflectivity, s.mesh, s.primitive, s.colour, s.voxel,
-                  s.summary, s.rows, s.columns, s.outputs, s.grid);
+                  s.ghost, s.return_number, s.returns, s.summary, s.rows, s.columns, s.outputs, s.grid);
 }
 
 /// Writes values one after another, or reads them back in the same order. Throws Error malformed_file if bytes end too

@@ -5,18 +5,21 @@
 #include <numeric>
 
 #include "arrays.hpp"
+#include "options.hpp"
 #include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
 
-constexpr std::array<std::pair<const char*, ScanOutput>, 7> kOutputs{{{"position", scan_position},
+constexpr std::array<std::pair<const char*, ScanOutput>, 9> kOutputs{{{"position", scan_position},
                                                                       {"normal", scan_normal},
                                                                       {"reflectivity", scan_reflectivity},
                                                                       {"mesh", scan_ids},
                                                                       {"primitive", scan_ids},
                                                                       {"colour", scan_colour},
-                                                                      {"voxel", scan_voxel}}};
+                                                                      {"voxel", scan_voxel},
+                                                                      {"ghost", scan_ghost},
+                                                                      {"returns", scan_returns}}};
 
 std::uint32_t bits_of(const std::vector<std::string>& names, std::uint32_t bits) {
   for (const std::string& name : names) {
@@ -24,7 +27,7 @@ std::uint32_t bits_of(const std::vector<std::string>& names, std::uint32_t bits)
     if (found == kOutputs.end())
       throw Error(Errc::invalid_argument,
                   "outputs: there is no '" + name +
-                      "'; there are position, normal, reflectivity, mesh, primitive, colour, voxel");
+                      "'; there are position, normal, reflectivity, mesh, primitive, colour, voxel, ghost, returns");
     bits |= found->second;
   }
   return bits;
@@ -51,6 +54,9 @@ void spread(Scan& scan) {
   spread(scan.primitive, scan.ray, rays, nothing);
   spread(scan.colour, scan.ray, rays, std::uint32_t{0});
   spread(scan.voxel, scan.ray, rays, nothing);
+  spread(scan.ghost, scan.ray, rays, std::uint8_t{0});
+  spread(scan.return_number, scan.ray, rays, std::uint8_t{0});
+  spread(scan.returns, scan.ray, rays, std::uint8_t{0});
   scan.ray.resize(rays);
   std::iota(scan.ray.begin(), scan.ray.end(), std::uint64_t{0});
 }
@@ -80,10 +86,12 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
 }
 
 std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
-                                const std::vector<std::string>& outputs, const std::string& crs, py::object progress) {
+                                const std::vector<std::string>& outputs, const std::string& crs,
+                                const std::optional<BeamOptions>& beam, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
-  const std::uint32_t bits = point_cloud_outputs(file, bits_of(outputs, scan_position));
+  const std::uint32_t bits =
+      point_cloud_outputs(file, bits_of(outputs, scan_position)) | (beam ? std::uint32_t{scan_returns} : 0);
   LongCall call(std::move(progress));
   return call.run([&]() -> std::uint64_t {
     Simulator& simulator = self.simulator;
@@ -94,7 +102,8 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
         writer.begin_station({names[k], placed[k].position, simulator.scanners()[setup.scanner], setup});
       const auto all = static_cast<double>(placed.size());
       const ScanSummary scanned = simulator.scan(
-          {placed[k].position, active(placed[k]), setup}, {.outputs = bits, .place = static_cast<std::uint32_t>(k)},
+          {placed[k].position, active(placed[k]), setup},
+          {.outputs = bits, .place = static_cast<std::uint32_t>(k), .beam = beam},
           [&](const ScanChunk& chunk) { writer.write(chunk, static_cast<std::uint16_t>(k + 1)); },
           call.progress(static_cast<double>(k) / all, static_cast<double>(k + 1) / all));
       if (scanned.cancelled) return 0;
@@ -107,13 +116,15 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
 }  // namespace
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
-          bool grid, std::uint32_t place, py::object progress) {
+          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam, py::object progress) {
+  if (grid && beam && beam->returns == Returns::all)
+    throw Error(Errc::invalid_argument, "scan: a grid has one element for each ray; with returns='all' leave it out");
   const Simulator& simulator = self.simulator;
   const std::uint32_t bits = bits_of(outputs, scan_range);
   LongCall call(std::move(progress));
   Scan made = call.run([&] {
-    Scan points{self.simulator.scan_points({.position = position, .setup = setup}, {.outputs = bits, .place = place},
-                                           call.progress())};
+    Scan points{self.simulator.scan_points({.position = position, .setup = setup},
+                                           {.outputs = bits, .place = place, .beam = beam}, call.progress())};
     points.outputs = bits, points.grid = grid;
     if (grid) spread(points);
     return points;
@@ -124,6 +135,22 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
 }
 
 void add_scans(py::module_& m) {
+  const auto beam = Options<BeamOptions>("BeamOptions")
+                        .add("sub_rays", &BeamOptions::sub_rays, "Sub-rays over the footprint, 7 or 19.")
+                        .add("returns", &BeamOptions::returns,
+                             "Returns of a ray that become points: 'first', 'strongest', 'last' or 'all'.")
+                        .add("pulse_m", &BeamOptions::pulse_m,
+                             "Length of a pulse; echoes nearer together than half of it share a return.");
+  py::class_<BeamOptions> options(m, "BeamOptions",
+                                  ("A beam as wide as the scanner's divergence and exit diameter make it. Its sub-rays "
+                                   "are traced on the processor." +
+                                   beam.doc())
+                                      .c_str());
+  options.def(py::init([beam](const py::kwargs& given) { return beam.read(given); }))
+      .def("__repr__", [beam](const BeamOptions& o) { return beam.repr(o); });
+  beam.attributes(options);
+  beam.pickles(options);
+
   py::class_<Scan> type(m, "Scan",
                         "Recording of a scanner at one station: n points, or with grid=True one element for each ray, "
                         "where arrays have\n(rows, columns) in the place of (n,). Arrays are read-only views.");
@@ -166,6 +193,20 @@ void add_scans(py::module_& m) {
           "voxel",
           [](const py::object& self) { return array_of<std::uint32_t>(self, &Scan::voxel, scan_voxel, "voxel"); },
           "Surveyed voxel in which the point counts: (n,); 2^32 - 1 if it does not count.")
+      .def_property_readonly(
+          "ghost",
+          [](const py::object& self) { return array_of<std::uint8_t>(self, &Scan::ghost, scan_ghost, "ghost"); },
+          "1 for a point that was seen in a mirror, and lies behind it: (n,).")
+      .def_property_readonly(
+          "returns",
+          [](const py::object& self) { return array_of<std::uint8_t>(self, &Scan::returns, scan_returns, "returns"); },
+          "Returns of the point's ray: (n,); 0 without a hit.")
+      .def_property_readonly(
+          "return_number",
+          [](const py::object& self) {
+            return array_of<std::uint8_t>(self, &Scan::return_number, scan_returns, "returns");
+          },
+          "Number of the point among the returns of its ray, from 1: (n,). Asked for as 'returns'.")
       .def_readonly("rows", &Scan::rows, "Zenith steps of its scanner.")
       .def_readonly("columns", &Scan::columns, "Azimuth steps of its scanner.")
       .def_property_readonly(
@@ -175,6 +216,14 @@ void add_scans(py::module_& m) {
       .def_property_readonly(
           "points_on_surveyed", [](const Scan& scan) { return scan.summary.points_on_surveyed; },
           "Points that count: on a surveyed mesh and in a surveyed voxel.")
+      .def_property_readonly(
+          "mixed",
+          [](const Scan& scan) {
+            const MixedPoints& mixed = scan.summary.mixed;
+            return std::tuple(mixed.points, mixed.counted, mixed.wrong_voxel);
+          },
+          "Points of a beam that lie off all surfaces they were made of, by more than 5 mm: all, those that count, and "
+          "those in\na surveyed voxel that they did not come from.")
       .def_property_readonly(
           "trace_seconds", [](const Scan& scan) { return scan.summary.trace_seconds; }, "Time spent tracing.")
       .def_property_readonly(
@@ -191,12 +240,12 @@ void add_scans(py::module_& m) {
 void add_clouds(py::module_& m) {
   m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
         py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
-        py::arg("progress") = py::none(),
+        py::arg("beam") = py::none(), py::arg("progress") = py::none(),
         "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
         "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
         "as for `scan`;\nLAS has 'reflectivity' and 'colour', and like E57 always the first, as intensity. crs: of the "
-        "survey frame, such as 'EPSG:25832'; '': none is written. A stopped\ncall writes nothing and returns 0. Raises "
-        "Error: io, invalid_argument.");
+        "survey frame, such as 'EPSG:25832'; '': none is written. beam: as for `scan`; numbers of returns are written "
+        "too. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

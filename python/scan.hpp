@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ void add_scans(py::module_& m);
 void add_clouds(py::module_& m);
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
-          bool grid, std::uint32_t place, py::object progress);
+          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam, py::object progress);
 
 /// Points of a station; with `grid` one element for each ray.
 struct Scan : ScanPoints {

@@ -49,14 +49,16 @@ bool all_surfaces(const std::optional<RegistrationOptions>& registration) {
 }
 
 Evaluation evaluate(Simulators& self, const py::object& stations, bool overlap, bool skip, bool field,
-                    bool surroundings, const std::optional<RegistrationOptions>& registration, py::object progress) {
+                    bool surroundings, const std::optional<RegistrationOptions>& registration,
+                    const std::optional<BeamOptions>& beam, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   LongCall call(std::move(progress));
   return call.run([&] {
     const bool around = surroundings || all_surfaces(registration);
-    return evaluate_stations({.simulator = self.simulator, .surroundings = around ? &self.surroundings() : nullptr},
-                             placed, {.overlap = overlap, .skip = skip, .field = field, .registration = registration},
-                             call.progress());
+    return evaluate_stations(
+        {.simulator = self.simulator, .surroundings = around ? &self.surroundings() : nullptr}, placed,
+        {.overlap = overlap, .skip = skip, .field = field, .beam = beam, .registration = registration},
+        call.progress());
   });
 }
 
@@ -179,20 +181,22 @@ void add_simulators(py::module_& m) {
       .def("scan", &scan, py::arg("position"),
            py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
            py::arg("setup") = StationSetup{}, py::arg("grid") = false, py::arg("place") = 0,
-           py::arg("progress") = py::none(),
+           py::arg("beam") = py::none(), py::arg("progress") = py::none(),
            "Scans one station, whose head is at `position` (x, y, z), survey frame, metres, with this "
-           "setup.\n\noutputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel'; "
-           "row, column\nand range_m are always there. grid: arrays of shape (rows, columns, ...), one element for "
-           "each ray, instead of\n(points, ...). place: the station's in its network, which keys the noise.\nRaises "
-           "Error invalid_argument: a position that is not finite, an unknown output.")
+           "setup.\n\noutputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel', "
+           "'ghost', 'returns';\nrow, column and range_m are always there. grid: arrays of shape (rows, columns, ...), "
+           "one element for each ray,\ninstead of (points, ...). place: the station's in its network, which keys the "
+           "noise. beam: BeamOptions; gives the beam\na width.\nRaises Error invalid_argument: a position that is not "
+           "finite, an unknown output, a beam that is not known.")
       .def("evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
            py::arg("field") = false, py::arg("surroundings") = false, py::arg("registration") = py::none(),
-           py::arg("progress") = py::none(),
+           py::arg("beam") = py::none(), py::arg("progress") = py::none(),
            "Evaluates a network with every ray of every station. stations: heads (n, 3), survey frame, metres, or "
            "`Station`s or\n`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach "
            "no surveyed voxel; counts\ndo not change, but `points` is not counted. field: keep the counts of every "
            "voxel. surroundings: count all surfaces\ntoo, surveyed or not, for scan overlaps. registration: "
-           "RegistrationOptions; predict its error.\nRaises Error invalid_argument.")
+           "RegistrationOptions; predict its error. beam: BeamOptions; counts points of a beam "
+           "with a width, and\nmixed ones (`Evaluation.mixed`).\nRaises Error invalid_argument.")
       .def("evaluate_sampled", &evaluate_sampled, py::arg("networks"), py::kw_only(), py::arg("voxels") = 20'000,
            py::arg("overlap") = true, py::arg("surroundings") = false, py::arg("registration") = py::none(),
            py::arg("progress") = py::none(),

@@ -150,19 +150,20 @@ void add_sites(py::module_& m) {
           "evaluate",
           [](GuardedSite& self, const py::object& stations, std::optional<std::uint64_t> sample_voxels, bool overlap,
              bool skip, bool field, double link, const std::optional<RegistrationOptions>& registration,
-             py::object progress) {
+             const std::optional<BeamOptions>& beam, py::object progress) {
             return evaluate(self, stations,
                             {.sample_voxels = sample_voxels,
                              .overlap = overlap,
                              .skip = skip,
                              .field = field,
+                             .beam = beam,
                              .registration = registration,
                              .link = link},
                             std::move(progress));
           },
           py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = py::none(), py::arg("overlap") = true,
           py::arg("skip") = false, py::arg("field") = false, py::arg("link") = default_link,
-          py::arg("registration") = py::none(), py::arg("progress") = py::none(),
+          py::arg("registration") = py::none(), py::arg("beam") = py::none(), py::arg("progress") = py::none(),
           "Evaluates a network like `vantage evaluate`, with scan overlaps on all surfaces and the round on "
           "site.\n\nstations: in a form that `Simulator.evaluate` takes; heads are put on the ground below. "
           "sample_voxels: size of the sample of voxels; None: every ray.\nlink: least scan overlap of a link. The "

@@ -121,6 +121,9 @@ struct EvaluationOptions {
   bool overlap = true;  ///< Count pairs of stations; without them only coverage is measured.
   bool skip = true;     ///< Leave out rays that cannot reach a surveyed voxel; `NetworkCounts::points` is empty then.
   bool field = false;   ///< Keep the points of every voxel. Takes every ray.
+  /// Gives beams a width in surveyed voxels; `surroundings` keep rays without one. Takes every ray, and no
+  /// `attainable`.
+  std::optional<BeamOptions> beam = std::nullopt;
   std::vector<Objective> measures = {};                            ///< Measures besides coverage and overlap.
   std::vector<Requirement> requirements = {};                      ///< Their objectives are measured too.
   std::optional<RegistrationOptions> registration = std::nullopt;  ///< Predict the error of the registered scans.
@@ -134,7 +137,8 @@ struct EvaluationOptions {
 
 /// Evaluates a network. Scan overlaps take every ray of the coarser `surroundings`, sampled or not. A cancelled
 /// evaluation has `counts.cancelled` set and no values. Throws Error invalid_argument if a measure needs something that
-/// `site` lacks, for registration without overlap, for the field of a sample, and as the simulator does.
+/// `site` lacks, for registration without overlap, for the field of a sample or a beam on one, and as the simulator
+/// does.
 Evaluation evaluate_stations(const EvaluationSite& site, std::span<const PlacedStation> stations,
                              const EvaluationOptions& options = {}, const Progress& progress = {});
 /// Evaluates several networks at a time, on one sample if they are sampled. Throws as above, and if a field is wanted.

@@ -84,16 +84,21 @@ enum ScanOutput : std::uint32_t {
 
 /// Which returns of a beam become points.
 enum class Returns : std::uint8_t { first, strongest, last, all };
+std::string to_string(Returns);
 /// Throws Error invalid_argument and lists them.
 Returns returns_from_string(const std::string& text);
 
 /// A beam as wide as the scanner's, by its divergence and exit diameter: sub-rays over the footprint. Echoes from
-/// surfaces nearer together than half a pulse's length merge into one return between them, a mixed point.
+/// surfaces nearer together than half a pulse's length merge into one return between them, a mixed point. Sub-rays are
+/// traced on the processor, so every engine gives the same result.
 struct BeamOptions {
   std::uint32_t sub_rays = 7;            ///< 7 or 19.
   Returns returns = Returns::strongest;  ///< `all`: up to 15 a ray.
   double pulse_m = 1;                    ///< Length of a pulse, above 0: the speed of light times its duration.
 };
+
+/// Settings of a beam; any of them gives the beam its width.
+const SettingTable<std::optional<BeamOptions>>& beam_settings();
 
 /// How `Simulator::scan` works.
 struct ScanOptions {
@@ -102,7 +107,7 @@ struct ScanOptions {
   /// Colour of a point, 0xAABBGGRR, by its ray's direction in the scanner's frame, e.g. from a picture
   /// (`Panorama::colour`). Called from several threads at once. Empty: the colour of the material.
   std::function<std::uint32_t(Angle zenith, Angle azimuth)> colour = {};
-  /// Gives the beam a width, at the cost of its sub-rays, which are traced on the processor. Empty: a ray without one.
+  /// Gives the beam a width, at the cost of its sub-rays. Empty: a ray without one.
   std::optional<BeamOptions> beam = std::nullopt;
 };
 
@@ -133,14 +138,13 @@ struct ScanSummary {
   std::uint64_t points_on_surveyed = 0;  ///< Points that count: on a surveyed mesh and inside a surveyed voxel.
   std::uint64_t hits_on_surveyed = 0;    ///< Hits on a surveyed mesh, wherever noise then moved the point.
   std::uint64_t ghosts = 0;              ///< Points seen in a mirror (`MeshInfo::mirror`), which never count.
-  /// Points of a beam that lie on none of the surfaces they were made of, by more than 5 mm; and those of them that
-  /// count nevertheless, in a voxel that they do not belong to.
-  std::uint64_t mixed = 0, mixed_counted = 0;
+  MixedPoints mixed;                     ///< Points of a beam between surfaces.
   double trace_seconds = 0;
   bool cancelled = false;
 };
 
-/// The points of one scan, in ray order: rays without a hit are left out. Arrays not asked for are empty.
+/// The points of one scan, in ray order for each number of a return: rays without a hit are left out. Arrays not asked
+/// for are empty.
 struct ScanPoints {
   std::vector<std::uint64_t> ray;  ///< Row ray / columns and column ray % columns of the station's scanner.
   std::vector<Vec3> position;      ///< Survey frame, metres.
@@ -152,6 +156,9 @@ struct ScanPoints {
   std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB.
   std::vector<std::uint32_t> voxel;      ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
   std::vector<std::uint8_t> ghost;       ///< 1: seen in a mirror.
+  /// Number of the return, from 1, and how many its ray has (`scan_returns`). Returns of a ray do not follow each
+  /// other.
+  std::vector<std::uint8_t> return_number, returns;
   ScanSummary summary;
 };
 
@@ -162,6 +169,8 @@ struct EvaluateOptions {
   VoxelField* field = nullptr;  ///< Receives the voxel field, if given.
   /// Fills `NetworkCounts::registration`, if given. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
+  /// Gives the beam a width, at the cost of its sub-rays, none of which are left out. Empty: rays without one.
+  std::optional<BeamOptions> beam = std::nullopt;
 };
 
 /// As the size of a sample: all surveyed voxels.

@@ -15,6 +15,9 @@
 
 namespace vantage {
 
+/// Shares of the mixed points among all points, in words: "1.2 % of the points lie between surfaces, …".
+std::string mixed_text(const MixedPoints& mixed, std::uint64_t points);
+
 /// A header, and a line for each station: its name, ground and head (survey frame, metres, to the millimetre), its
 /// status, and its points on surveyed meshes if `points` has them. If any is turned, or has another scanner than the
 /// first, also heading and tilt in degrees, its scanner and that scanner's step. `scanners` are indexed by
@@ -22,7 +25,7 @@ namespace vantage {
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
                           std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {});
 
-/// A line of a summary: its heading ("captured", "linked", "registered", "on site" or "to do") and its text.
+/// A line of a summary: its heading ("captured", "mixed", "linked", "registered", "on site" or "to do") and its text.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };

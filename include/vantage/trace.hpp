@@ -94,6 +94,18 @@ struct DroppedPoints {
   }
 };
 
+/// Mixed points of one station: returns of a beam with a width (`BeamOptions`) that lie off all surfaces they were made
+/// of, by more than 5 mm. Those in neither of these voxels lie in no surveyed one.
+struct MixedPoints {
+  std::uint64_t points = 0;       ///< All of them, wherever they lie.
+  std::uint64_t counted = 0;      ///< Points that count, in a voxel that one of their echoes came from.
+  std::uint64_t wrong_voxel = 0;  ///< Points in another surveyed voxel. These do not count.
+  friend bool operator==(const MixedPoints&, const MixedPoints&) = default;
+  friend MixedPoints operator+(const MixedPoints& a, const MixedPoints& b) {
+    return {a.points + b.points, a.counted + b.counted, a.wrong_voxel + b.wrong_voxel};
+  }
+};
+
 /// A simulated network's result in the surveyed voxels, reduced to integers. Exact, so independent of engine, order and
 /// chunking.
 struct NetworkCounts {
@@ -111,6 +123,7 @@ struct NetworkCounts {
   std::vector<std::uint64_t> points;  ///< Per station, on all meshes; empty if not counted (rays were skipped).
   std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, points that count.
   std::vector<DroppedPoints> dropped;             ///< Per station; empty if points have no limits, or for a sample.
+  std::vector<MixedPoints> mixed;                 ///< Per station; empty without a beam that has a width.
   std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
   /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
   std::vector<std::uint64_t> shared;

@@ -375,6 +375,8 @@ class Evaluation:
     @property
     def points_on_surveyed(self) -> npt.NDArray[np.uint64]: ...
     @property
+    def mixed(self) -> npt.NDArray[np.uint64]: ...
+    @property
     def voxel_points(self) -> npt.NDArray[np.uint32]: ...
     @property
     def voxel_stations(self) -> npt.NDArray[np.uint64]: ...
@@ -425,6 +427,7 @@ def write_point_cloud(
     *,
     outputs: Sequence[str] = ["reflectivity"],
     crs: str = "",
+    beam: Optional[BeamOptions] = None,
     progress: Optional[Progress] = None,
 ) -> int: ...
 
@@ -511,6 +514,18 @@ def why_missed(
     flat_deg: float = 80.0,
 ) -> MissedVoxels: ...
 
+class BeamOptions:
+    def __init__(
+        self,
+        *,
+        sub_rays: int = 7,
+        returns: Literal["first", "strongest", "last", "all"] = "strongest",
+        pulse_m: float = 1.0,
+    ) -> None: ...
+    sub_rays: int
+    returns: Literal["first", "strongest", "last", "all"]
+    pulse_m: float
+
 class Scan:
     @property
     def row(self) -> npt.NDArray[np.uint32]: ...
@@ -532,6 +547,14 @@ class Scan:
     def colour(self) -> npt.NDArray[np.uint32]: ...
     @property
     def voxel(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def ghost(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def returns(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def return_number(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def mixed(self) -> Tuple[int, int, int]: ...
     @property
     def rows(self) -> int: ...
     @property
@@ -592,6 +615,7 @@ class Simulator:
         setup: StationSetup = ...,
         grid: bool = False,
         place: int = 0,
+        beam: Optional[BeamOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Scan: ...
     def evaluate(
@@ -603,6 +627,7 @@ class Simulator:
         field: bool = False,
         surroundings: bool = False,
         registration: Optional[RegistrationOptions] = None,
+        beam: Optional[BeamOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
     def evaluate_sampled(
@@ -805,6 +830,7 @@ class Site:
         field: bool = False,
         link: float = 0.3,
         registration: Optional[RegistrationOptions] = None,
+        beam: Optional[BeamOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
     def nearest_place(self, head: Sequence[float], reach_m: float = 5.0) -> Optional[PlacedStation]: ...

@@ -22,6 +22,70 @@ float passed_of_pane(float square) {
   return passed;
 }
 
+// The nearest faces of glass on a ray, in order of distance; no_primitive in place of those that are not there.
+const uint faces_at_once = 4u;
+struct Faces {
+  float t[faces_at_once];
+  uint id[faces_at_once];
+};
+
+// Finds them in one walk, since most beams pass two or three: a walk for each face takes as long again.
+Faces walk_faces(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 direction, float t_min, float t_max) {
+  Faces found;
+  for (uint k = 0u; k < faces_at_once; ++k) {
+    found.t[k] = t_max;
+    found.id[k] = no_primitive;
+  }
+  const Shear shear = shear_along(direction);
+  const float widening = widening_of(origin);
+  const vec3 inverse = inverse_of(direction);
+  const NodeRay ray = node_ray(origin, inverse, widening, uintBitsToFloat(nodes.at[2].w));
+  uint stack[bvh_stack_size];
+  stack[0] = bvh_end;
+  uint depth = 1u;
+  uint current = 0u;
+  while (current != bvh_end) {
+    if ((current & bvh_leaf_bit) == 0u) {
+      const uvec4 word0 = nodes.at[4u * current], word1 = nodes.at[4u * current + 1u],
+                  word2 = nodes.at[4u * current + 2u], word3 = nodes.at[4u * current + 3u];
+      const int first_t = floatBitsToInt(t_min), last_t = floatBitsToInt(found.t[faces_at_once - 1u]);
+      const ivec2 way0 = passage_of(ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz), first_t, last_t),
+                  way1 = passage_of(ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz), first_t, last_t);
+      const bool hit0 = way0.x <= way0.y, hit1 = way1.x <= way1.y;
+      const bool first0 = hit0 && (!hit1 || way0.x <= way1.x);
+      stack[depth] = first0 ? word1.w : word0.w;  // kept if both are hit
+      current = first0 ? word0.w : word1.w;
+      if (hit0 && hit1) ++depth;
+      if (!hit0 && !hit1) current = stack[--depth];
+      continue;
+    }
+    const uint first = current & bvh_leaf_first_mask;
+    const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
+    for (uint i = first; i <= end; ++i) {
+      const uvec4 word_a = corners.at[3u * i], word_b = corners.at[3u * i + 1u], word_c = corners.at[3u * i + 2u];
+      const uint last = faces_at_once - 1u;
+      Hit face = Hit(found.t[last], found.id[last], vec2(0));
+      meet_triangle(face, t_min, shear, origin, inverse, widening, uintBitsToFloat(word_a.xyz),
+                    uintBitsToFloat(word_b.xyz), uintBitsToFloat(word_c.xyz), word_a.w);
+      if (face.id == found.id[last]) continue;
+      found.t[last] = face.t;
+      found.id[last] = face.id;
+      for (uint k = last; k > 0u; --k) {
+        const float t = found.t[k - 1u];
+        const uint id = found.id[k - 1u];
+        const bool sooner = found.t[k] < t ||
+                            (found.t[k] == t && (found.id[k] & ~surveyed_bit) < (id & ~surveyed_bit));
+        found.t[k - 1u] = sooner ? found.t[k] : t;
+        found.id[k - 1u] = sooner ? found.id[k] : id;
+        found.t[k] = sooner ? t : found.t[k];
+        found.id[k] = sooner ? id : found.id[k];
+      }
+    }
+    current = stack[--depth];
+  }
+  return found;
+}
+
 // A beam on its way to a hit: the share of its strength that passes there and back, or the pane that
 // returns it.
 struct Passed {
@@ -32,32 +96,39 @@ struct Passed {
 Passed pass_glass(vec3 origin, vec3 direction, float t) {
   Passed passed = Passed(1.0, Hit(t, no_primitive, vec2(0)));
   if (!with_glass || !GIVEN(parameters.glass_nodes)) return passed;
+  NodeQuarters nodes = NodeQuarters(parameters.glass_nodes);
+  TriangleCorners corners = TriangleCorners(parameters.glass_corners);
   precise float kept = t * (1.0 - face_gap_share);
   precise float end = kept - face_gap_m;
-  float start = 0.0;
+  float start = 0.0;  // where faces count again
   while (start < end) {
-    const Hit face = walk(NodeQuarters(parameters.glass_nodes), TriangleCorners(parameters.glass_corners), origin,
-                          direction, start, end, want_nearest, from_the_root);
-    if (face.id == no_primitive) break;
-    const uint triangle = face.id & ~surveyed_bit;
-    const float cosine = exact_dot(flat_normal(stored_of(triangle)), direction);
-    precise float square = cosine * cosine;
-    if (square >= pane_return_square) return Passed(0.0, Hit(face.t, triangle, face.barycentric));
-    float share = passed_of_pane(square);
-    // The bit marks a face of a solid, of which a pane has two.
-    if ((face.id & surveyed_bit) != 0u && share > least_passed) {
-      precise float root = share * exact_inverse_sqrt(share);
-      share = root;
+    const Faces faces = walk_faces(nodes, corners, origin, direction, start, end);
+    for (uint k = 0u; k < faces_at_once; ++k) {
+      if (faces.id[k] == no_primitive) return passed;
+      if (faces.t[k] < start) continue;
+      const uint triangle = faces.id[k] & ~surveyed_bit;
+      const float cosine = exact_dot(flat_normal(stored_of(triangle)), direction);
+      precise float square = cosine * cosine;
+      if (square >= pane_return_square) {
+        const Hit pane = walk(nodes, corners, origin, direction, start, end, want_nearest, from_the_root);
+        return Passed(0.0, Hit(pane.t, triangle, pane.barycentric));
+      }
+      float share = passed_of_pane(square);
+      // The bit marks a face of a solid, of which a pane has two.
+      if ((faces.id[k] & surveyed_bit) != 0u && share > least_passed) {
+        precise float root = share * exact_inverse_sqrt(share);
+        share = root;
+      }
+      precise float left = passed.share * share;
+      passed.share = left;
+      if (left < least_passed) {
+        passed.share = 0.0;
+        return passed;
+      }
+      precise float stretched = faces.t[k] * (1.0 + face_gap_share);
+      precise float next = stretched + face_gap_m;
+      start = next;
     }
-    precise float left = passed.share * share;
-    passed.share = left;
-    if (left < least_passed) {
-      passed.share = 0.0;
-      break;
-    }
-    precise float stretched = face.t * (1.0 + face_gap_share);
-    precise float next = stretched + face_gap_m;
-    start = next;
   }
   return passed;
 }

@@ -28,6 +28,7 @@ struct EvaluateCommandOptions {
   bool exact = false, skip = false, no_overlap = false, with_registration = false, attainable = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
+  std::optional<BeamOptions> beam;
   std::optional<std::string> cartography, rooms, matrix, picture;
   std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
@@ -53,6 +54,7 @@ struct EvaluateCommandOptions {
             ->group("Evaluation");
     sample_option->excludes(exact_flag)->excludes(skip_flag);
     error_option->excludes(exact_flag)->excludes(skip_flag)->excludes(sample_option);
+    add_settings(command, beam_settings(), beam);
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
@@ -152,6 +154,8 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   for (const std::string& file : options.registration_files)
     must_end(file, "--registration-map", ".ply", ".png", ".svg");
 
+  if (options.beam && (options.sampled() || options.attainable))
+    refuse("--returns: a beam with a width takes every ray; leave out --sample, --error and --attainable");
   if (options.cartography && options.sampled()) refuse("--cartography: shows every voxel, and so needs --exact");
   if ((!options.missed.files.empty() || options.rooms) && options.sampled())
     refuse("--missed and --rooms: look at every voxel, and so need --exact");
@@ -169,6 +173,7 @@ EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simu
   EvaluationOptions chosen{.overlap = !options.no_overlap,
                            .skip = options.skip,
                            .field = options.wants_field(),
+                           .beam = options.beam,
                            .link = options.link.value_or(default_link)};
   if (options.sample) chosen.sample_voxels = options.sample->of(simulator.voxel_count());
   if (options.error)
@@ -235,8 +240,9 @@ nlohmann::json stations_json(const std::vector<SiteStation>& stations, const Eva
       const Vec3& to = move->to->position;
       row["move_to"] = {to.x, to.y, to.z};
     }
-    row["dropped"] = nullptr;
+    row["dropped"] = row["mixed"] = nullptr;
     if (!counts.dropped.empty()) row["dropped"] = dropped_json(counts.dropped[k]);
+    if (!counts.mixed.empty()) row["mixed"] = nlohmann::json(mixed_json(counts.mixed[k]));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -10,7 +10,7 @@
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
 #include "core/options_json.hpp"
-#include "core/setting_table.hpp"
+#include "export/run_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -36,7 +36,6 @@ struct ScanCommandOptions {
   std::optional<BeamOptions> beam;
   bool json = false;
 
-  BeamOptions& beam_options() { return beam ? *beam : beam.emplace(); }
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
@@ -58,20 +57,7 @@ struct ScanCommandOptions {
         "Panoramic photograph that colours a station's points, with the azimuth of its middle; the k-th is the k-th "
         "station's",
         [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
-    add_value(command, "--returns", "WHICH",
-              "Give the beam its width, and take the first, strongest or last return of each ray, or all",
-              [this](const std::string& text, const std::string& what) {
-                beam_options().returns = named(what, [&] { return returns_from_string(text); });
-              });
-    add_value(command, "--sub-rays", "N", "Sub-rays of a beam with a width: 7 or 19; 7 otherwise",
-              [this](const std::string& text, const std::string& what) {
-                beam_options().sub_rays = static_cast<std::uint32_t>(parse_count(text, what, 7, 19));
-              });
-    add_value(command, "--pulse", "M",
-              "Length of a pulse: surfaces nearer together than half of it share a return; 1 otherwise",
-              [this](const std::string& text, const std::string& what) {
-                beam_options().pulse_m = parse_number(text, what, positive);
-              });
+    add_settings(command, beam_settings(), beam);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -118,15 +104,14 @@ Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std:
     all.sum.points += one.points;
     all.sum.points_on_surveyed += one.points_on_surveyed;
     all.sum.ghosts += one.ghosts;
-    all.sum.mixed += one.mixed;
-    all.sum.mixed_counted += one.mixed_counted;
+    all.sum.mixed = all.sum.mixed + one.mixed;
     all.sum.trace_seconds += one.trace_seconds;
     auto row = to_json(stations[k], names[k], site.scanners());
     row["points"] = one.points;
     row["points_on_surveyed"] = one.points_on_surveyed;
     row["hits_on_surveyed"] = one.hits_on_surveyed;
     if (one.ghosts > 0) row["ghosts"] = one.ghosts;
-    if (options.beam) row["mixed"] = one.mixed, row["mixed_counted"] = one.mixed_counted;
+    if (options.beam) row["mixed"] = nlohmann::json(mixed_json(one.mixed));
     all.rows.push_back(std::move(row));
   }
   return all;
@@ -145,7 +130,7 @@ nlohmann::json scans_json(Scans scans, const ScanCommandOptions& options, Site& 
                       {"options", options_json(site.settings())},
                       {"version", version()}};
   if (scans.sum.ghosts > 0) json["ghosts"] = scans.sum.ghosts;
-  if (options.beam) json["mixed"] = scans.sum.mixed, json["mixed_counted"] = scans.sum.mixed_counted;
+  if (options.beam) json["mixed"] = nlohmann::json(mixed_json(scans.sum.mixed));
   if (options.output) json["file"] = *options.output;
   return json;
 }
@@ -164,9 +149,7 @@ std::string scans_text(const Scans& scans, const ScanCommandOptions& options, co
   if (scans.sum.ghosts > 0)
     text +=
         fmt::format("{} of the points are ghosts, seen in mirrors: they stand where nothing is\n", scans.sum.ghosts);
-  if (options.beam)
-    text += fmt::format("{} of the points are mixed, between surfaces; {} of them count in a voxel\n", scans.sum.mixed,
-                        scans.sum.mixed_counted);
+  if (options.beam) text += mixed_text(scans.sum.mixed, scans.sum.points) + "\n";
   if (options.output) text += "written to " + *options.output + "\n";
   return text;
 }

@@ -46,6 +46,10 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("targets were given, but the registration error was not requested; request it too");
   if (!options.targets.empty() && !site.clash) refuse("targets were given without the clash checker; give it too");
   if (needs.time && !site.on_site) refuse("a measure needs the time on site; give the rounds on site too");
+  if (options.beam && options.sample_voxels)
+    refuse("a sample is traced by rays without a width; choose either a beam with a width or a sample");
+  if (options.beam && options.attainable)
+    refuse("attainable coverage is measured by rays without a width; choose either it or a beam with a width");
   if (options.field && options.sample_voxels)
     refuse("a sample has no points of every voxel; choose either the field or a sample");
 }
@@ -56,8 +60,11 @@ std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> 
     return simulator.evaluate_sampled(
         networks, {.voxels = *options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
         progress);
-  const EvaluateOptions every_ray{
-      .overlap = options.overlap, .skip = options.skip, .field = field, .registration = needs.registration};
+  const EvaluateOptions every_ray{.overlap = options.overlap,
+                                  .skip = options.skip,
+                                  .field = field,
+                                  .registration = needs.registration,
+                                  .beam = options.beam};
   if (networks.size() == 1) return {simulator.evaluate(networks.front(), every_ray, progress)};
   return simulator.evaluate_each(networks, every_ray, progress);
 }

@@ -125,6 +125,10 @@ ordered_json dropped_json(const std::vector<DroppedPoints>& dropped) {
           {"echo", all.echo}};
 }
 
+ordered_json sum_json(const std::vector<MixedPoints>& mixed) {
+  return mixed_json(std::accumulate(mixed.begin(), mixed.end(), MixedPoints{}));
+}
+
 // `number`: of the entry, from 1.
 ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result,
                         std::span<const Scanner> scanners) {
@@ -196,6 +200,10 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
 
 }  // namespace
 
+ordered_json mixed_json(const MixedPoints& mixed) {
+  return {{"points", mixed.points}, {"counted", mixed.counted}, {"wrong_voxel", mixed.wrong_voxel}};
+}
+
 ordered_json run_parameters(const Simulator& simulator, const PlanResult* result) {
   ordered_json json = {{"version", version()},
                        {"engine", to_string(simulator.engine().engine)},
@@ -247,6 +255,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
                        {"captured_se", nullptr},
                        {"minutes_on_site", nullptr},
                        {"dropped", nullptr},
+                       {"mixed", nullptr},
                        {"voxels", evaluation.voxels},
                        {"goal_density", evaluation.goal_density},
                        {"rays", evaluation.counts.rays},
@@ -271,6 +280,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
   }
   if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
   if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
+  if (!evaluation.counts.mixed.empty()) json["mixed"] = sum_json(evaluation.counts.mixed);
   return json.dump();
 }
 

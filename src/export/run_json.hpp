@@ -12,6 +12,8 @@ namespace vantage {
 // See run_parameters_json(). Equal runs give equal objects: nothing here depends on time or on file names.
 nlohmann::ordered_json run_parameters(const Simulator& simulator, const PlanResult* result);
 
+nlohmann::ordered_json mixed_json(const MixedPoints& mixed);
+
 // Storeys, buildings and rooms with their ground and stations, and floor that nothing leads to.
 nlohmann::ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/text.hpp"
 #include "scene/room_floors.hpp"
@@ -173,10 +174,26 @@ std::vector<std::string> requirements_advice(const Evaluation& evaluation, std::
 
 }  // namespace
 
+std::string mixed_text(const MixedPoints& mixed, std::uint64_t points) {
+  const auto share = [&](std::uint64_t many) {
+    return points > 0 ? static_cast<double>(many) / static_cast<double>(points) : 0;
+  };
+  const auto told = [&](std::uint64_t many) {
+    return many > 0 && share(many) < 0.0005 ? std::string("less than 0.1 %") : percent(share(many));
+  };
+  return told(mixed.points) + " of the points lie between surfaces, off all of them by more than 5 mm; " +
+         told(mixed.wrong_voxel) + " lie in cells that nothing there returned them from, and do not count";
+}
+
 std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<const Requirement> requirements) {
   const std::vector<std::string> names = station_names(evaluation.stations, evaluation.names);
   const std::optional<StationLinks> links = evaluation.links();
   std::vector<SummaryLine> lines{{"captured", captured_text(evaluation)}};
+  const NetworkCounts& counts = evaluation.counts;
+  if (!counts.mixed.empty())
+    lines.push_back(
+        {"mixed", mixed_text(std::accumulate(counts.mixed.begin(), counts.mixed.end(), MixedPoints{}),
+                             std::accumulate(counts.points.begin(), counts.points.end(), std::uint64_t{0}))});
   if (links) lines.push_back({"linked", links_text(*links, names)});
   const auto registered = evaluation.values.find("registration");
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))

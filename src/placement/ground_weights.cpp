@@ -34,8 +34,9 @@ bool ground_is_unmarked(const Scene& scene, const SearchArea& area) {
   if (!area.derived() || !scene.options().surveyed.empty() || !scene.options().weights.empty()) return false;
   // Once the file marks a mesh as surveyed, unmarked meshes are blocking.
   const bool patterns_block = !scene.options().blocking.empty();
+  // Nor does anybody mark panes and mirrors, which are blocking by nature.
   return std::ranges::all_of(scene.meshes(), [&](const MeshInfo& mesh) {
-    return mesh.weight == 1 && (mesh.role == Role::surveyed || patterns_block);
+    return mesh.weight == 1 && (mesh.role == Role::surveyed || mesh.glass || mesh.mirror || patterns_block);
   });
 }
 

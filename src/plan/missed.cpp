@@ -105,7 +105,7 @@ class Judge {
   // Share of an echo's strength that passes glass.
   double passed(const Vec3& head, const Vec3& way, double range) const {
     if (!glass_ || range == 0) return 1;
-    return glass_->share(narrow(head - simulator_.origin()), narrow(way * (1 / range)), static_cast<float>(range));
+    return glass_->share(narrow(head - simulator_.origin()), narrow(way * (1 / range)), 0, static_cast<float>(range));
   }
 
   const Simulator& simulator_;

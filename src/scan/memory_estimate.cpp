@@ -27,6 +27,7 @@ namespace {
 // a bit.
 constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
                  kPlaced = 1.0 / 8, kVoxel = 6, kMaskWord = 8;
+constexpr double kVertex = 12;                      // the CPU engine's tree of glass has a copy of all
 constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
 
 struct SurfaceExtent {
@@ -208,6 +209,8 @@ class Estimator {
         demands_(goals_differ ? sizeof(std::uint32_t) : 0) {
     const Scanner* const largest = &*std::ranges::max_element(scanners, {}, &Scanner::rays);
     const auto noisy = [](const Scanner& scanner) { return !scanner.noise.sigma_m.empty(); };
+    const auto detects = [](const Scanner& scanner) { return scanner.detection_range_m > 0; };
+    const bool limited = std::ranges::any_of(scanners, detects);
     const auto asks = [](const MeshInfo& mesh) { return mesh.detail_m || mesh.accuracy_m; };
     load_ = {.vertices = static_cast<double>(scene_.positions.size()),
              .triangles = static_cast<double>(scene_.triangles.size()),
@@ -215,8 +218,11 @@ class Estimator {
              .rows = static_cast<std::uint32_t>(largest->rows()),
              .columns = static_cast<std::uint32_t>(largest->columns()),
              .stations = static_cast<std::uint32_t>(std::min(stations, mask_bits)),
-             .shaded = std::ranges::any_of(scanners, noisy) || std::ranges::any_of(scene_.meshes, asks),
-             .normals = !scene_.normals.empty()};
+             .shaded = limited || std::ranges::any_of(scanners, noisy) || std::ranges::any_of(scene_.meshes, asks),
+             .normals = !scene_.normals.empty(),
+             .glass = limited ? static_cast<double>(scene_.triangles.size() - scene_.opaque_triangles().size()) : 0};
+    for (const Image& image : scene_.images) textures_ += static_cast<double>(image.rgba.size());
+    follows_mirrors_ = std::ranges::any_of(scene_.meshes, &MeshInfo::mirror);
   }
 
   SimulatorMemory operator()(double user_size_m, const std::vector<ChosenDevice>& devices) const {
@@ -225,10 +231,14 @@ class Estimator {
     const double of_slivers = std::max(slivers.cells_m2 / cell_m2, slivers.voxels);
     const double voxels = (surface_.cells_m2 - slivers.cells_m2) / cell_m2 + of_slivers;
     const double bricks_bytes = kBrickBytes * std::max(0.0, slivers.bricks - of_slivers / kVoxelsOfABrick);
-    const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
-    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
+    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes + textures_,
+           device = 0;
     if (scene_.shares()) host += kPlaced * scene_.triangle_count();
-    if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
+    // Scans follow rays off mirrors on the CPU, whatever the engine.
+    if (follows_mirrors_) host += kTree * load_.triangles;
+    const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
+    if (devices.empty() || std::ranges::any_of(devices, on_cpu))
+      host += kTree * load_.triangles + (load_.glass > 0 ? kVertex * load_.vertices : 0);
     for (const ChosenDevice& each : devices) {
       if (each.engine == Engine::embree) continue;
       vulkan::DeviceLoad load = load_;
@@ -245,7 +255,9 @@ class Estimator {
   const SceneData& scene_;
   SurfaceExtent surface_;
   std::size_t stations_;
-  double demands_;  // bytes per voxel, for point weights
+  double demands_;       // bytes per voxel, for point weights
+  double textures_ = 0;  // bytes
+  bool follows_mirrors_ = false;
   vulkan::DeviceLoad load_;
 };
 

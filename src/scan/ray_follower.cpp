@@ -36,7 +36,8 @@ RayFollower::RayFollower(std::shared_ptr<const SceneData> scene)
     : scene_(std::move(scene)),
       planes_(std::make_shared<Planes>(scene_)),
       caster_(scene_, planes_),
-      surface_(scene_, planes_) {}
+      surface_(scene_, planes_),
+      glass_(scene_->has_glass() ? std::make_unique<const GlassPanes>(scene_, planes_) : nullptr) {}
 
 RayFollower::Seen RayFollower::seen(const Float3& origin, const Float3& direction, float t,
                                     std::uint32_t triangle) const {
@@ -51,20 +52,24 @@ RayFollower::Seen RayFollower::seen(const Float3& origin, const Float3& directio
           {static_cast<float>(weights[0]), static_cast<float>(weights[1])}};
 }
 
-RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end) const {
+RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end,
+                                      float head) const {
   std::array<Vec3, kMostReflections> normals;
   Float3 from = origin;
   Vec3 d = widen(direction);
   float way = 0;  // to the last mirror
+  double passed = 1;
   for (std::size_t reflections = 0; reflections < kMostReflections && way < end; ++reflections) {
     const Float3 narrowed = narrow(d);
     RayBundle ray = one_ray(from, narrowed, reflections == 0 ? start : kOffMirror_m, end - way);
     caster_.cast(ray);
     const std::uint32_t triangle = ray.primitive[0];
     if (triangle == RayBundle::no_hit) break;
+    if (glass_) passed *= glass_->share(from, narrowed, reflections == 0 ? head : kOffMirror_m, ray.t[0]);
     if (!is_mirror(triangle)) {
       Seen last = seen(from, narrowed, ray.t[0], triangle);
       last.t += way;
+      last.passed = passed;
       Vec3 normal = widen(last.normal);
       for (std::size_t k = reflections; k-- > 0;) normal = reflected(normal, normals[k]);
       last.normal = narrow(normal);
@@ -75,7 +80,7 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
     normals[reflections] = planes_->normal(triangle);
     d = reflected(d, normals[reflections]);
   }
-  return {RayBundle::no_hit, 0, 0, 0, {}, {}};
+  return {.triangle = RayBundle::no_hit, .t = 0, .reflectivity = 0, .cosine = 0, .normal = {}, .weights = {}};
 }
 
 double RayFollower::distance_from_plane(std::uint32_t triangle, const Vec3& point) const {
@@ -95,8 +100,9 @@ void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& s
       const float reach = limited && found.triangle != RayBundle::no_hit
                               ? scanner.limits->meshes[mesh(found.triangle)].largest_reach_square
                               : 0;
-      const bool point = found.triangle != RayBundle::no_hit &&
-                         (reach == 0 || PointJudge::detected(static_cast<double>(reach), found.cosine, found.t));
+      const bool point =
+          found.triangle != RayBundle::no_hit &&
+          (reach == 0 || PointJudge::detected(static_cast<double>(reach) * found.passed, found.cosine, found.t));
       float t = std::numeric_limits<float>::infinity();
       if (point) t = noise.enabled() ? noise.displaced(found.t, found.reflectivity, ray, station.place) : found.t;
       raw.primitive[k] = point ? found.triangle : RayBundle::no_hit;

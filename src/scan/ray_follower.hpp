@@ -7,6 +7,7 @@
 #include <span>
 
 #include "scene/scene_data.hpp"
+#include "trace/embree/glass_panes.hpp"
 #include "trace/embree/ray_caster.hpp"
 #include "trace/embree/surface.hpp"
 #include "trace/tracer.hpp"
@@ -29,11 +30,12 @@ class RayFollower {
     double cosine;  // of incidence
     Float3 normal;  // as it looks in the mirrors
     Float2 weights;
+    double passed = 1;  // share of the echo that panes on the way let pass; 0 also if one returns the beam
   };
   // A hit as it looks.
   Seen seen(const Float3& origin, const Float3& direction, float t, std::uint32_t triangle) const;
-  // What a ray from start to end meets that is no mirror. Mirrors send it on.
-  Seen follow(const Float3& origin, const Float3& direction, float start, float end) const;
+  // What a ray from start to end meets that is no mirror. Mirrors send it on. Glass counts from `head` on.
+  Seen follow(const Float3& origin, const Float3& direction, float start, float end, float head = 0) const;
 
   // Puts the points of rays that met a mirror where the scanner does: along the ray, as far as the way was long. Takes
   // out those whose echo is too weak, and those of rays that meet nothing. Sets `ghost` to 1 for the others. REQUIRES:
@@ -45,13 +47,14 @@ class RayFollower {
   bool is_mirror(std::uint32_t triangle) const { return scene_->meshes[mesh(triangle)].mirror; }
   double distance_from_plane(std::uint32_t triangle, const Vec3& point) const;
   const RayCaster& caster() const { return caster_; }
-  const std::shared_ptr<const Planes>& planes() const { return planes_; }
+  const GlassPanes* glass() const { return glass_.get(); }  // null: the scene has none
 
  private:
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   RayCaster caster_;
   Surface surface_;
+  std::unique_ptr<const GlassPanes> glass_;
 };
 
 }  // namespace vantage

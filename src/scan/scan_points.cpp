@@ -26,6 +26,8 @@ void append_hits(ScanPoints& points, const ScanChunk& chunk, const Vec3& origin,
     take(points.colour, chunk.colour, k);
     take(points.voxel, chunk.voxel, k);
     take(points.ghost, chunk.ghost, k);
+    take(points.returns, chunk.returns, k);
+    if (!chunk.returns.empty()) points.return_number.push_back(static_cast<std::uint8_t>(chunk.return_number));
   }
 }
 

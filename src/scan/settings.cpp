@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/setting_list.hpp"
+#include "core/setting_table.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage {
@@ -48,6 +49,36 @@ Settings settings(const SimulatorConfig& config) {
       .add("validation", config.validation, {.decides = false})
       .add("max_rays_per_dispatch", config.max_rays_per_dispatch, {.decides = false})
       .take();
+}
+
+const SettingTable<std::optional<BeamOptions>>& beam_settings() {
+  using Beam = std::optional<BeamOptions>;
+  const auto own = [](Beam& beam) -> BeamOptions& { return beam ? *beam : beam.emplace(); };
+  const auto given = [](const Beam& beam) { return beam.has_value(); };
+  static const SettingTable<Beam> table =
+      SettingRows<Beam>()
+          .group("Beam")
+          .custom(
+              "returns", "WHICH",
+              "Give the beam its width, and take the first, strongest or last return of each ray, or all",
+              [own](Beam& beam, const std::string& text, const std::string& what) {
+                own(beam).returns = named(what, [&] { return returns_from_string(text); });
+              },
+              given)
+          .custom(
+              "sub-rays", "N", "Sub-rays of a beam with a width: 7 or 19; 7 otherwise",
+              [own](Beam& beam, const std::string& text, const std::string& what) {
+                own(beam).sub_rays = static_cast<std::uint32_t>(parse_count(text, what, 7, 19));
+              },
+              given)
+          .custom(
+              "pulse", "M", "Length of a pulse: surfaces nearer together than half of it share a return; 1 otherwise",
+              [own](Beam& beam, const std::string& text, const std::string& what) {
+                own(beam).pulse_m = parse_number(text, what, positive);
+              },
+              given)
+          .take();
+  return table;
 }
 
 }  // namespace vantage

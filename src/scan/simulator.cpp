@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -13,7 +14,9 @@
 #include <thread>
 #include <utility>
 
+#include "core/add_saturating.hpp"
 #include "core/lru_cache.hpp"
+#include "core/part_of.hpp"
 #include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
@@ -23,6 +26,7 @@
 #include "scan/scan_chunk.hpp"
 #include "scan/voxel_sample.hpp"
 #include "scan/wide_beam.hpp"
+#include "trace/field_counts.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
@@ -296,6 +300,12 @@ struct Simulator::Impl {
 
   ScanSummary scan(const Station& station, const ScanOptions& options,
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress);
+  void follow_beams() {
+    if (!wide_beam) wide_beam.emplace(share_scene(), grid);
+  }
+  // As Tracer::count() for a beam that has a width, of any number of stations. Fills `field`.
+  NetworkCounts count_beams(std::span<const TraceStation> stations, std::uint32_t station_count,
+                            const BeamOptions& beam, bool masks, VoxelField& field, const Progress& progress);
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress);
   std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
                                            const Progress& progress);
@@ -321,17 +331,22 @@ struct Simulator::Impl {
   LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
-  std::optional<WideBeam> wide_beam;   // for the first scan with one
+  std::optional<WideBeam> wide_beam;   // made for the first beam with one
   std::unique_ptr<Tracer> tracer;
   std::mutex running;
   std::atomic<std::thread::id> caller;  // holds `running`
 };
 
+namespace {
+constexpr std::array<std::pair<const char*, Returns>, 4> kReturns{
+    {{"first", Returns::first}, {"strongest", Returns::strongest}, {"last", Returns::last}, {"all", Returns::all}}};
+}  // namespace
+
+std::string to_string(Returns returns) {
+  return std::ranges::find(kReturns, returns, &std::pair<const char*, Returns>::second)->first;
+}
 Returns returns_from_string(const std::string& text) {
-  for (const auto& [name, returns] : {std::pair{"first", Returns::first},
-                                      {"strongest", Returns::strongest},
-                                      {"last", Returns::last},
-                                      {"all", Returns::all}})
+  for (const auto& [name, returns] : kReturns)
     if (text == name) return returns;
   throw Error(Errc::invalid_argument, "'" + text + "' is none of first, strongest, last, all");
 }
@@ -431,7 +446,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
   const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, tracer->preferred_scan_rays(from.scanner) / columns);
   if (options.beam) {
     check_beam(*options.beam, scanner);
-    if (!wide_beam) wide_beam.emplace(share_scene(), grid);
+    follow_beams();
   } else if (!mirrors && std::ranges::any_of(data().meshes, &MeshInfo::mirror)) {
     mirrors.emplace(share_scene());
   }
@@ -454,7 +469,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
       for (const WideBeam::Return& one : all) most = std::max(most, one.of);
       for (std::uint8_t number = 1; number <= most; ++number) {
         chunk.return_number = number;
-        wide_beam->fill(own, from, all, number, first, chunk.ray_count, raw, ghost, returns, summary);
+        WideBeam::fill(all, number, first, chunk.ray_count, raw, ghost, returns, summary);
         fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
         if (sink) sink(chunk);
       }
@@ -476,6 +491,44 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
   return summary;
 }
 
+NetworkCounts Simulator::Impl::count_beams(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                           const BeamOptions& beam, bool masks, VoxelField& field,
+                                           const Progress& progress) {
+  for (const TraceStation& station : stations) check_beam(beam, scanners[station.scanner]);
+  follow_beams();
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t voxels = grid->size();
+  field.count.assign(voxels, 0);
+  field.stations.assign(masks ? voxels * mask_words(station_count) : 0, 0);
+  std::vector<std::uint32_t> points(voxels);
+  NetworkCounts sums;
+  sums.points.resize(station_count), sums.points_on_surveyed.resize(station_count), sums.mixed.resize(station_count);
+  if (limited()) sums.dropped.resize(station_count);
+  for (std::size_t k = 0; k < stations.size() && !sums.cancelled; ++k) {
+    const TraceStation& station = stations[k];
+    const std::optional<WideBeam::Totals> own =
+        wide_beam->count(scanners[station.scanner], traced[station.scanner], station, beam, points,
+                         part_of(progress, k, stations.size()));
+    sums.cancelled = !own;
+    if (!own) break;
+    sums.rays += scanners[station.scanner].rays();
+    sums.points[station.place] = own->points;
+    sums.points_on_surveyed[station.place] = own->points_on_surveyed;
+    sums.mixed[station.place] = own->mixed;
+    if (limited()) sums.dropped[station.place] = own->dropped;
+    const std::size_t word = station.place / mask_bits * voxels;
+    for (std::size_t v = 0; v < voxels; ++v) {
+      add_saturating(field.count[v], points[v]);
+      if (masks && points[v] > 0) field.stations[word + v] |= std::uint64_t{1} << station.bit();
+    }
+  }
+  NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal, grid->demands());
+  counts.rays = sums.rays, counts.cancelled = sums.cancelled, counts.trace_seconds = seconds_since(start);
+  counts.points = std::move(sums.points), counts.points_on_surveyed = std::move(sums.points_on_surveyed);
+  counts.dropped = std::move(sums.dropped), counts.mixed = std::move(sums.mixed);
+  return counts;
+}
+
 NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOptions& options,
                                         const Progress& progress) {
   check_registration(options.registration, options.overlap);
@@ -490,14 +543,18 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
                                         options.overlap, options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
     if (limited()) counts.dropped.assign(network.size(), {});
-    if (!options.skip) counts.points.assign(network.size(), 0);
+    if (!options.skip || options.beam) counts.points.assign(network.size(), 0);
+    if (options.beam) counts.mixed.assign(network.size(), {});
     return counts;
   }
   VoxelField own;
-  VoxelField* field = options.registration && !options.field ? &own : options.field;
+  VoxelField* field = (options.registration || options.beam) && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
-  NetworkCounts counts = count_in_passes(
-      *tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, *grid, goal, progress);
+  NetworkCounts counts =
+      options.beam
+          ? count_beams(active, size, *options.beam, options.overlap, *field, progress)
+          : count_in_passes(*tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field},
+                            *grid, goal, progress);
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> voxel_indices(grid->size());
     std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
@@ -522,7 +579,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Networ
   const auto many = static_cast<double>(networks.size());
   for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
-    if (active.empty() || options.registration || networks[k].size() > mask_bits) {
+    if (active.empty() || options.registration || options.beam || networks[k].size() > mask_bits) {
       all[k] = evaluate(
           networks[k], options,
           {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/wide_beam.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -30,6 +34,7 @@ constexpr double kPaneGleam = 100;
 // parallel.
 constexpr double kFarthestApex_m = 100;
 constexpr std::uint32_t kTwistStream = 3;
+constexpr std::uint64_t kPart = 1024;  // rays that a task follows
 
 // Places of sub-rays over the footprint, in units of its radius at 1/e², and their shares of the power of a Gaussian
 // beam: a hexagon's cell each, which together have the footprint's area.
@@ -62,153 +67,268 @@ struct WideBeam::Echo {
   double t, strength, reflectivity;
   std::uint32_t triangle;
   bool ghost;
+  Float3 way;  // of its sub-ray
   RayFollower::Seen seen;
 };
 
 WideBeam::WideBeam(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid)
-    : scene_(std::move(scene)), grid_(std::move(grid)), rays_(scene_) {
-  if (scene_->has_glass()) glass_ = std::make_unique<const GlassPanes>(scene_, rays_.planes());
-}
+    : scene_(std::move(scene)), grid_(std::move(grid)), rays_(scene_) {}
 
-std::vector<WideBeam::Return> WideBeam::returns_of(const Scanner& scanner, const TraceStation& station,
-                                                   const BeamOptions& options, const RayPattern& pattern,
-                                                   std::uint64_t ray, std::uint64_t seed) const {
+// Follows the rays of one station, one after the other.
+class WideBeam::Follower {
+ public:
+  Follower(const WideBeam& beam, const Scanner& scanner, const TraceScanner& traced, const TraceStation& station,
+           const BeamOptions& options)
+      : beam_(beam),
+        scanner_(scanner),
+        pattern_(*traced.pattern),
+        station_(station),
+        options_(options),
+        seed_(traced.noise->seed),
+        noise_(traced.noise),
+        judge_(traced.limits) {}
+
+  // The wanted returns of a ray, until the next call. If the scanner detects none, the strongest one, not `detected`.
+  std::span<const Return> returns_of(std::uint64_t ray);
+
+ private:
+  void find_echoes(std::uint64_t ray);
+  // Makes a return of the echoes from begin to end.
+  Return merged(std::uint64_t ray, std::size_t begin, std::size_t end, double strength) const;
+
+  const WideBeam& beam_;
+  const Scanner& scanner_;
+  const RayPattern& pattern_;
+  const TraceStation& station_;
+  const BeamOptions& options_;
+  std::uint64_t seed_;
+  RangeNoise noise_;
+  PointJudge judge_;
+  // Of the present ray.
+  Float3 axis_{};
+  Float3 apex_{};
+  double behind_ = 0;  // distance from the apex to the head
+  std::vector<Echo> echoes_;
+  std::vector<Return> found_;
+  std::vector<double> strengths_;
+};
+
+void WideBeam::Follower::find_echoes(std::uint64_t ray) {
   const static SubRays seven = make_sub_rays(7), nineteen = make_sub_rays(19);
-  const SubRays& places = options.sub_rays == 7 ? seven : nineteen;
-  const Float3 axis = direction_of(pattern, station, ray);
-  const Vec3 d = widen(axis);
+  const SubRays& places = options_.sub_rays == 7 ? seven : nineteen;
+  axis_ = direction_of(pattern_, station_, ray);
+  const Vec3 d = widen(axis_);
   const Vec3 u = unit(cross(std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0}, d)), v = cross(d, u);
   // Rays of a beam that is as wide as the exit there, and widens, come from an apex behind the head.
-  const double wide = std::max(scanner.beam_divergence.in_radians(), scanner.exit_diameter_m / kFarthestApex_m);
-  const double behind = scanner.exit_diameter_m / wide;
+  const double wide = std::max(scanner_.beam_divergence.in_radians(), scanner_.exit_diameter_m / kFarthestApex_m);
+  behind_ = scanner_.exit_diameter_m / wide;
   // Each footprint is turned by chance, so that no edge meets the same places everywhere.
   const std::uint32_t chance = philox4x32(
-      seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station.place, kTwistStream})[0];
+      seed_, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, kTwistStream})[0];
   const double twist = 2 * pi * chance / 4294967296.0, c = std::cos(twist), s = std::sin(twist);
   RayBundle rays;
-  rays.origin = narrow(widen(station.origin) - d * behind);
-  rays.size = options.sub_rays;
+  rays.origin = apex_ = narrow(widen(station_.origin) - d * behind_);
+  rays.size = options_.sub_rays;
   for (std::uint32_t k = 0; k < rays.size; ++k) {
     const double x = c * places.x[k] - s * places.y[k], y = s * places.x[k] + c * places.y[k];
     const Float3 way = narrow(d + (u * x + v * y) * (wide / 2));
     rays.x[k] = way.x;
     rays.y[k] = way.y;
     rays.z[k] = way.z;
-    rays.end[k] = static_cast<float>(behind) + pattern.max_range;
+    rays.end[k] = static_cast<float>(behind_) + pattern_.max_range;
   }
-  rays.start = static_cast<float>(behind) + pattern.min_range;
-  rays_.caster().cast(rays);
+  rays.start = static_cast<float>(behind_) + pattern_.min_range;
+  beam_.rays_.caster().cast(rays);
   std::array<Passed, kMostSubRays> passed;
   bool behind_glass = false;
-  if (glass_ && scanner.detection_range_m > 0) {
+  const GlassPanes* const glass = scanner_.detection_range_m > 0 ? beam_.rays_.glass() : nullptr;
+  if (glass) {
     RayBundle beams = rays;
-    beams.start = static_cast<float>(behind);
+    beams.start = static_cast<float>(behind_);
     for (std::uint32_t k = 0; k < rays.size; ++k)
       if (rays.primitive[k] != RayBundle::no_hit) beams.end[k] = rays.t[k];
-    behind_glass = glass_->follow(beams, passed);
+    behind_glass = glass->follow(beams, passed);
   }
 
-  // An echo of strength 1 is just detected.
-  const double bright = scanner.detection_range_m > 0
-                            ? scanner.detection_range_m * scanner.detection_range_m / scanner.detection_reflectivity
-                            : 0;
-  std::vector<Echo> echoes;
+  echoes_.clear();
   for (std::uint32_t k = 0; k < rays.size; ++k) {
     const Float3 way{rays.x[k], rays.y[k], rays.z[k]};
-    Echo echo{0, 0, 0, rays.primitive[k], false, {}};
+    Echo echo{0, 0, 0, rays.primitive[k], false, way, {}};
     double gleam = 1;
     if (behind_glass && passed[k].pane != RayBundle::no_hit && passed[k].t >= rays.start) {
       echo.triangle = passed[k].pane;
       echo.t = static_cast<double>(passed[k].t);
-      echo.seen = rays_.seen(rays.origin, way, passed[k].t, echo.triangle);
+      echo.seen = beam_.rays_.seen(rays.origin, way, passed[k].t, echo.triangle);
       echo.reflectivity = places.share[k];
       gleam = kPaneGleam;
     } else {
       if (echo.triangle == RayBundle::no_hit) continue;
-      if (rays_.is_mirror(echo.triangle)) {
-        echo.seen = rays_.follow(rays.origin, way, rays.start, rays.end[k]);
+      if (beam_.rays_.is_mirror(echo.triangle)) {
+        echo.seen = beam_.rays_.follow(rays.origin, way, rays.start, rays.end[k], static_cast<float>(behind_));
         echo.ghost = true;
         if (echo.seen.triangle == RayBundle::no_hit) continue;
         echo.triangle = echo.seen.triangle;
       } else {
-        echo.seen = rays_.seen(rays.origin, way, rays.t[k], echo.triangle);
+        echo.seen = beam_.rays_.seen(rays.origin, way, rays.t[k], echo.triangle);
+        if (behind_glass) echo.seen.passed = passed[k].share;
       }
       echo.t = static_cast<double>(echo.seen.t);
       echo.reflectivity =
-          places.share[k] * (behind_glass ? passed[k].share : 1) * static_cast<double>(echo.seen.reflectivity);
+          places.share[k] * (glass ? echo.seen.passed : 1) * static_cast<double>(echo.seen.reflectivity);
     }
-    echo.t -= behind;
+    echo.t -= behind_;
     echo.strength = gleam * echo.reflectivity / (echo.t * echo.t);
-    if (echo.strength > 0) echoes.push_back(echo);
+    if (echo.strength > 0) echoes_.push_back(echo);
   }
-  std::ranges::sort(echoes, {}, [](const Echo& e) { return std::pair(e.t, e.triangle); });
+  std::ranges::sort(echoes_, {}, [](const Echo& e) { return std::pair(e.t, e.triangle); });
+}
 
-  std::vector<Return> found;
-  std::vector<double> strengths;
-  for (std::size_t begin = 0, end = 0; begin < echoes.size() && found.size() < kMostReturns; begin = end) {
-    double strength = 0, reach = 0, reflectivity = 0;
-    std::size_t strongest = begin;
-    for (; end < echoes.size() && (end == begin || echoes[end].t - echoes[end - 1].t <= options.pulse_m / 2); ++end) {
-      strength += echoes[end].strength;
-      reach += echoes[end].strength * echoes[end].t;
-      reflectivity += echoes[end].reflectivity;
-      if (echoes[end].strength > echoes[strongest].strength) strongest = end;
+WideBeam::Return WideBeam::Follower::merged(std::uint64_t ray, std::size_t begin, std::size_t end,
+                                            double strength) const {
+  double reach = 0, reflectivity = 0;
+  const Echo* main = &echoes_[begin];
+  for (std::size_t k = begin; k < end; ++k) {
+    reach += echoes_[k].strength * echoes_[k].t;
+    reflectivity += echoes_[k].reflectivity;
+    if (echoes_[k].strength > main->strength) main = &echoes_[k];
+  }
+  const auto t = static_cast<float>(reach / strength);
+  double off = std::numeric_limits<double>::infinity();
+  const Vec3 undisturbed = widen(station_.origin) + widen(axis_) * (reach / strength);
+  for (std::size_t k = begin; k < end; ++k)
+    off = std::min(off, echoes_[k].ghost ? 0 : beam_.rays_.distance_from_plane(echoes_[k].triangle, undisturbed));
+  Return made{.ray = ray,
+              .number = 1,
+              .of = 1,
+              .detected = true,
+              .ghost = main->ghost,
+              .mixed = off > kMixed_m,
+              .wrong_voxel = false,
+              .t = t,
+              .reflectivity = static_cast<float>(std::min(reflectivity, 1.0)),
+              .triangle = main->triangle,
+              .voxel = no_voxel,
+              .dropped = {},
+              .point = {},
+              .normal = main->seen.normal,
+              .weights = main->seen.weights};
+  if (noise_.enabled()) made.t = noise_.displaced(t, made.reflectivity, ray, station_.place);
+  made.point = point_at(station_.origin, axis_, made.t);
+  if (made.ghost) return made;
+  const std::uint32_t voxel_index = beam_.grid_->index_of(made.point), mesh = beam_.rays_.mesh(made.triangle);
+  if (voxel_index == no_voxel) return made;
+  made.wrong_voxel =
+      made.mixed && std::none_of(echoes_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 echoes_.begin() + static_cast<std::ptrdiff_t>(end), [&](const Echo& e) {
+                                   const auto from_apex = static_cast<float>(e.t + behind_);
+                                   return beam_.grid_->index_of(point_at(apex_, e.way, from_apex)) == voxel_index;
+                                 });
+  if (made.wrong_voxel || beam_.scene_->meshes[mesh].role != Role::surveyed) return made;
+  if (judge_.enabled()) {
+    made.dropped = judge_.missed(mesh, main->seen.cosine, t, made.reflectivity, 1);
+    made.dropped.echo = 0;  // judged by its strength
+    made.dropped.points = made.dropped.incidence + made.dropped.footprint + made.dropped.noise > 0;
+  }
+  if (made.dropped.points == 0) made.voxel = voxel_index;
+  return made;
+}
+
+std::span<const WideBeam::Return> WideBeam::Follower::returns_of(std::uint64_t ray) {
+  find_echoes(ray);
+  // An echo of strength 1 is just detected.
+  const double bright = scanner_.detection_range_m > 0
+                            ? scanner_.detection_range_m * scanner_.detection_range_m / scanner_.detection_reflectivity
+                            : 0;
+  found_.clear(), strengths_.clear();
+  double strongest_lost = 0;
+  std::pair<std::size_t, std::size_t> lost;
+  for (std::size_t begin = 0, end = 0; begin < echoes_.size() && found_.size() < kMostReturns; begin = end) {
+    double strength = 0;
+    for (; end < echoes_.size() && (end == begin || echoes_[end].t - echoes_[end - 1].t <= options_.pulse_m / 2); ++end)
+      strength += echoes_[end].strength;
+    if (bright == 0 || strength * bright >= 1) {
+      strengths_.push_back(strength);
+      found_.push_back(merged(ray, begin, end, strength));
+    } else if (strength > strongest_lost) {
+      strongest_lost = strength, lost = {begin, end};
     }
-    if (bright > 0 && strength * bright < 1) continue;
-    const Echo& main = echoes[strongest];
-    const double t = reach / strength;
-    double off = std::numeric_limits<double>::infinity();
-    const Vec3 point = widen(station.origin) + d * t;
-    for (std::size_t k = begin; k < end; ++k)
-      off = std::min(off, echoes[k].ghost ? 0 : rays_.distance_from_plane(echoes[k].triangle, point));
-    strengths.push_back(strength);
-    found.push_back({.ray = ray,
-                     .number = 1,
-                     .of = 1,
-                     .ghost = main.ghost,
-                     .mixed = off > kMixed_m,
-                     .t = static_cast<float>(t),
-                     .reflectivity = static_cast<float>(std::min(reflectivity, 1.0)),
-                     .triangle = main.triangle,
-                     .cosine = main.seen.cosine,
-                     .direction = axis,
-                     .normal = main.seen.normal,
-                     .weights = main.seen.weights});
   }
-  if (found.size() > 1 && options.returns != Returns::all) {
-    const auto chosen = options.returns == Returns::first  ? std::ptrdiff_t{0}
-                        : options.returns == Returns::last ? std::ssize(found) - 1
-                                                           : std::ranges::max_element(strengths) - strengths.begin();
-    found = {found[static_cast<std::size_t>(chosen)]};
+  if (found_.empty() && strongest_lost > 0) {
+    found_.push_back(merged(ray, lost.first, lost.second, strongest_lost));
+    Return& lost_one = found_.front();
+    DroppedPoints& dropped = lost_one.dropped;
+    if (lost_one.voxel != no_voxel || dropped.points > 0) dropped.echo = dropped.points = 1;
+    lost_one.detected = false, lost_one.voxel = no_voxel;
+    return found_;
   }
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    found[k].number = static_cast<std::uint8_t>(k + 1);
-    found[k].of = static_cast<std::uint8_t>(found.size());
+  if (found_.size() > 1 && options_.returns != Returns::all) {
+    const auto chosen = options_.returns == Returns::first  ? std::ptrdiff_t{0}
+                        : options_.returns == Returns::last ? std::ssize(found_) - 1
+                                                            : std::ranges::max_element(strengths_) - strengths_.begin();
+    found_ = {found_[static_cast<std::size_t>(chosen)]};
   }
-  return found;
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    found_[k].number = static_cast<std::uint8_t>(k + 1);
+    found_[k].of = static_cast<std::uint8_t>(found_.size());
+  }
+  return found_;
 }
 
 std::vector<WideBeam::Return> WideBeam::returns(const Scanner& scanner, const TraceScanner& traced,
                                                 const TraceStation& station, const BeamOptions& options,
                                                 std::uint64_t first_ray, std::uint64_t ray_count) const {
-  constexpr std::uint64_t kPart = 1024;
   std::vector<std::vector<Return>> parts((ray_count + kPart - 1) / kPart);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
-    for (std::uint64_t ray = first_ray + p * kPart; ray < first_ray + std::min(ray_count, (p + 1) * kPart); ++ray) {
-      const std::vector<Return> own = returns_of(scanner, station, options, *traced.pattern, ray, traced.noise->seed);
-      parts[p].insert(parts[p].end(), own.begin(), own.end());
-    }
+    Follower follower(*this, scanner, traced, station, options);
+    for (std::uint64_t ray = first_ray + p * kPart; ray < first_ray + std::min(ray_count, (p + 1) * kPart); ++ray)
+      for (const Return& own : follower.returns_of(ray))
+        if (own.detected) parts[p].push_back(own);
   });
   std::vector<Return> all;
   for (const std::vector<Return>& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 
-void WideBeam::fill(const TraceScanner& traced, const TraceStation& station, const std::vector<Return>& returns,
-                    std::uint8_t number, std::uint64_t first_ray, std::uint64_t ray_count, Tracer::RawChunk& raw,
-                    std::vector<std::uint8_t>& ghost, std::vector<std::uint8_t>& count, ScanSummary& summary) const {
-  const RangeNoise noise(traced.noise);
-  const PointJudge judge(traced.limits);
+std::optional<WideBeam::Totals> WideBeam::count(const Scanner& scanner, const TraceScanner& traced,
+                                                const TraceStation& station, const BeamOptions& options,
+                                                std::span<std::uint32_t> points, const Progress& progress) const {
+  std::fill(points.begin(), points.end(), 0);
+  constexpr std::uint64_t kBetweenChecks = 256 * kPart;  // of the stop token
+  const std::uint64_t rays = scanner.rays();
+  Totals totals;
+  for (std::uint64_t first = 0; first < rays; first += kBetweenChecks) {
+    if (progress.stopped()) return std::nullopt;
+    const Totals part = tbb::parallel_reduce(
+        tbb::blocked_range<std::uint64_t>(first, std::min(rays, first + kBetweenChecks), kPart), Totals{},
+        [&](const auto& range, Totals sum) {
+          Follower follower(*this, scanner, traced, station, options);
+          for (std::uint64_t ray = range.begin(); ray < range.end(); ++ray)
+            for (const Return& own : follower.returns_of(ray)) {
+              sum.dropped = sum.dropped + own.dropped;
+              if (!own.detected) continue;
+              ++sum.points;
+              sum.mixed = sum.mixed + mixed_points(own);
+              if (own.voxel == no_voxel) continue;
+              ++sum.points_on_surveyed;
+              std::atomic_ref(points[own.voxel]).fetch_add(1, std::memory_order_relaxed);
+            }
+          return sum;
+        },
+        std::plus<>());
+    totals = totals + part;
+    progress(static_cast<double>(std::min(rays, first + kBetweenChecks)) / static_cast<double>(rays));
+  }
+  return totals;
+}
+
+MixedPoints WideBeam::mixed_points(const Return& own) {
+  if (!own.mixed) return {};
+  return {.points = 1, .counted = own.voxel != no_voxel ? 1u : 0u, .wrong_voxel = own.wrong_voxel ? 1u : 0u};
+}
+
+void WideBeam::fill(const std::vector<Return>& returns, std::uint8_t number, std::uint64_t first_ray,
+                    std::uint64_t ray_count, Tracer::RawChunk& raw, std::vector<std::uint8_t>& ghost,
+                    std::vector<std::uint8_t>& count, ScanSummary& summary) {
   raw.range.assign(ray_count, std::numeric_limits<float>::infinity());
   raw.position.assign(ray_count, {});
   raw.normal.assign(ray_count, {});
@@ -221,27 +341,16 @@ void WideBeam::fill(const TraceScanner& traced, const TraceStation& station, con
   for (const Return& own : returns) {
     if (own.number != number) continue;
     const std::uint64_t k = own.ray - first_ray;
-    const float t = noise.enabled() ? noise.displaced(own.t, own.reflectivity, own.ray, station.place) : own.t;
-    const Float3 point = point_at(station.origin, own.direction, t);
-    const std::uint32_t mesh = rays_.mesh(own.triangle);
-    raw.range[k] = t;
-    raw.position[k] = point;
+    raw.range[k] = own.t;
+    raw.position[k] = own.point;
     raw.normal[k] = own.normal;
     raw.reflectivity[k] = own.reflectivity;
     raw.primitive[k] = own.triangle;
     raw.barycentric[k] = own.weights;
+    raw.voxel[k] = own.voxel;
     ghost[k] = own.ghost ? 1 : 0;
     count[k] = own.of;
-    bool counts = !own.ghost && scene_->meshes[mesh].role == Role::surveyed;
-    if (counts && judge.enabled()) {
-      const DroppedPoints dropped = judge.missed(mesh, own.cosine, own.t, own.reflectivity, 1);
-      counts = dropped.incidence + dropped.footprint + dropped.noise == 0;  // the echo was judged by its strength
-    }
-    if (counts) raw.voxel[k] = grid_->index_of(point);
-    if (own.mixed) {
-      ++summary.mixed;
-      summary.mixed_counted += raw.voxel[k] != no_voxel ? 1 : 0;
-    }
+    summary.mixed = summary.mixed + mixed_points(own);
   }
 }
 

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "scan/ray_follower.hpp"
 #include "scene/scene_data.hpp"
-#include "trace/embree/glass_panes.hpp"
 #include "trace/tracer.hpp"
 #include "vantage/simulator.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -25,31 +26,49 @@ class WideBeam {
   struct Return {
     std::uint64_t ray;
     std::uint8_t number, of;  // from 1
-    bool ghost, mixed;
-    float t, reflectivity;   // t without noise
+    bool detected;            // false: all echoes of the ray are too weak, and there is no point
+    bool ghost;
+    bool mixed;              // off all surfaces that it was made of
+    bool wrong_voxel;        // mixed, and in a surveyed voxel that none of its echoes came from
+    float t, reflectivity;   // t with noise
     std::uint32_t triangle;  // of the strongest echo in it
-    double cosine;
-    Float3 direction, normal;
+    std::uint32_t voxel;     // no_voxel if the point does not count
+    DroppedPoints dropped;   // limits for which alone it does not count
+    Float3 point, normal;
     Float2 weights;
   };
-  // Wanted returns of `ray_count` rays, in order of ray and number.
+  // Wanted returns of `ray_count` rays that the scanner detects, in order of ray and number.
   std::vector<Return> returns(const Scanner& scanner, const TraceScanner& traced, const TraceStation& station,
                               const BeamOptions& options, std::uint64_t first_ray, std::uint64_t ray_count) const;
 
   // Fills all arrays of `raw`, and `ghost` and `count`, with return `number` of each ray.
-  void fill(const TraceScanner& traced, const TraceStation& station, const std::vector<Return>& returns,
-            std::uint8_t number, std::uint64_t first_ray, std::uint64_t ray_count, Tracer::RawChunk& raw,
-            std::vector<std::uint8_t>& ghost, std::vector<std::uint8_t>& count, ScanSummary& summary) const;
+  static void fill(const std::vector<Return>& returns, std::uint8_t number, std::uint64_t first_ray,
+                   std::uint64_t ray_count, Tracer::RawChunk& raw, std::vector<std::uint8_t>& ghost,
+                   std::vector<std::uint8_t>& count, ScanSummary& summary);
+
+  // Figures of a station, as in NetworkCounts.
+  struct Totals {
+    std::uint64_t points = 0, points_on_surveyed = 0;
+    DroppedPoints dropped;
+    MixedPoints mixed;
+    friend Totals operator+(const Totals& a, const Totals& b) {
+      return {a.points + b.points, a.points_on_surveyed + b.points_on_surveyed, a.dropped + b.dropped,
+              a.mixed + b.mixed};
+    }
+  };
+  // Counts all rays of a station into `points`, one element for each surveyed voxel. Returns nothing if stopped.
+  std::optional<Totals> count(const Scanner& scanner, const TraceScanner& traced, const TraceStation& station,
+                              const BeamOptions& options, std::span<std::uint32_t> points,
+                              const Progress& progress) const;
 
  private:
   struct Echo;
-  std::vector<Return> returns_of(const Scanner& scanner, const TraceStation& station, const BeamOptions& options,
-                                 const RayPattern& pattern, std::uint64_t ray, std::uint64_t seed) const;
+  class Follower;
+  static MixedPoints mixed_points(const Return& own);
 
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const VoxelGrid> grid_;
   RayFollower rays_;
-  std::unique_ptr<const GlassPanes> glass_;  // null: the scene has none
 };
 
 }  // namespace vantage

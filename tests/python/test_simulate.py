@@ -59,6 +59,35 @@ class Scans(unittest.TestCase):
         np.testing.assert_array_equal(grid.position[hit], points.position)
         self.assertTrue(np.isnan(grid.position[~hit]).all())
 
+    def test_a_beam_with_a_width_has_returns(self):
+        """A wall before another: at its edges rays have two returns, and a short step makes points in between."""
+        corners, triangles = wall()
+        back = np.array(corners) * 4 - (0, 5, 0)
+        scene = vantage.Scene.from_triangles(np.vstack([corners, back]), np.vstack([triangles, np.array(triangles) + 4]))
+        scanner = vantage.Scanner(azimuth_step_deg=0.5, zenith_step_deg=0.5, beam_divergence_mrad=4, exit_diameter_mm=5)
+        simulator = vantage.Simulator(scene, scanner, engine="embree")
+        beam = vantage.BeamOptions(returns="all", sub_rays=19)
+        self.assertEqual((beam.returns, beam.sub_rays, beam.pulse_m), ("all", 19, 1))
+        scan = simulator.scan((0, 0, 0), ["position", "returns", "voxel", "ghost"], beam=beam)
+        self.assertTrue((scan.return_number <= scan.returns).all())
+        self.assertGreater((scan.return_number == 2).sum(), 50)
+        self.assertEqual((scan.return_number == 2).sum(), ((scan.return_number == 1) & (scan.returns == 2)).sum())
+        self.assertEqual(scan.ghost.sum(), 0)
+        self.assertEqual(scan.mixed, (0, 0, 0))
+        merged = vantage.BeamOptions(pulse_m=10)
+        scan = simulator.scan((0, 0, 0), ["position", "voxel"], beam=merged)
+        between = (scan.position[:, 1] > 3.005) & (scan.position[:, 1] < 6.995)
+        self.assertEqual(scan.mixed[0], between.sum())
+        self.assertGreater(scan.mixed[0], 20)
+        found = simulator.evaluate([(0, 0, 0)], beam=merged)
+        np.testing.assert_array_equal(found.mixed, [scan.mixed])
+        self.assertEqual(found.points_on_surveyed[0], (scan.voxel != 2**32 - 1).sum())
+        self.assertEqual(found.to_dict()["mixed"]["points"], scan.mixed[0])
+        with self.assertRaisesRegex(vantage.Error, "beam=BeamOptions"):
+            simulator.evaluate([(0, 0, 0)]).mixed
+        with self.assertRaisesRegex(vantage.Error, "grid"):
+            simulator.scan((0, 0, 0), grid=True, beam=beam)
+
     def test_a_turned_scanner_of_its_own_has_its_pattern_turned(self):
         """Against the closed form once more, with the rotation made from its definition, Rz(heading) Ry(tilt)."""
         coarse, fine = vantage.Scanner(), vantage.Scanner(azimuth_step_deg=0.4, zenith_step_deg=0.5)

@@ -96,7 +96,7 @@ class Stubs(unittest.TestCase):
         self.assertLessEqual(set(defaults), checked)
 
     def test_attributes_are_the_options(self):
-        for name in ("Scanner", "StationSetup", "RegistrationOptions", "OnSiteOptions", "SurveyProblem"):
+        for name in ("Scanner", "StationSetup", "RegistrationOptions", "BeamOptions", "OnSiteOptions", "SurveyProblem"):
             made = getattr(vantage, name)()
             for option, default in _core._defaults[name].items():
                 self.assertEqual(repr(getattr(made, option)), repr(default), f"{name}.{option}")

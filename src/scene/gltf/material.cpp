@@ -127,7 +127,7 @@ double MaterialTable::read_transparency(int index, const Material& material, Mat
 std::int32_t MaterialTable::image(int texture) {
   const auto& textures = file_.model().textures;
   if (texture < 0 || static_cast<std::size_t>(texture) >= textures.size()) {
-    notes_.push_back("texture " + std::to_string(texture) + " does not exist; its material keeps its plain colour");
+    notes_.push_back("texture " + std::to_string(texture) + " does not exist; its material keeps its plain colour and is opaque");
     return -1;
   }
   const int source = textures[static_cast<std::size_t>(texture)].source;
@@ -143,7 +143,7 @@ std::int32_t MaterialTable::image(int texture) {
   }
   if (place < 0)
     notes_.push_back("texture " + std::to_string(texture) +
-                     " cannot be read, its material keeps its plain colour: " + problem);
+                     " cannot be read, its material keeps its plain colour and is opaque: " + problem);
   read_images_.emplace(source, place);
   return place;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -21,14 +22,19 @@ namespace {
 
 // Adds the points of `hits`, which are on surveyed meshes and have their ranges.
 [[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin, const Hits& hits,
-                                                VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift,
-                                                StationTotals& totals) {
+                                                const PaneView* panes, VoxelLookup& voxels, PointBuckets::Local& points,
+                                                std::uint32_t shift, StationTotals& totals) {
   std::array<Passed, RayBundle::capacity> passed;
-  const bool behind_glass = station_rays.glass() && station_rays.glass()->follow(origin, hits, passed);
-  if (station_rays.limited() && (behind_glass || !station_rays.all_count(hits))) {
+  const bool behind_glass = station_rays.glass() && station_rays.glass()->follow(origin, hits, panes, passed);
+  const bool all_count = !station_rays.limited() || station_rays.all_count(hits);
+  if (behind_glass || !all_count) {
     voxels.clear();
     for (std::uint32_t k = 0; k < hits.size; ++k) {
       const Float3 point = hits.point(origin, k);
+      if (all_count && passed[k].share == 1) {
+        voxels.add(point);
+        continue;
+      }
       const DroppedPoints dropped = station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k],
                                                          hits.primitive[k], behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
@@ -47,8 +53,9 @@ namespace {
 }
 
 VANTAGE_TARGET_CLONES
-StationTotals count_tile(const StationRays& station_rays, const TraceStation& station, const SelectedTile& planned,
-                         VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift) {
+StationTotals count_tile(const StationRays& station_rays, const TraceStation& station, const PaneView* panes,
+                         const SelectedTile& planned, VoxelLookup& voxels, PointBuckets::Local& points,
+                         std::uint32_t shift) {
   const RayTile& tile = planned.tile;
   RayBundle rays;
   station_rays.gather(station, tile, planned.end, rays);
@@ -69,7 +76,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     }
   }
   station_rays.find_ranges(station, hits);
-  count_points(station_rays, rays.origin, hits, voxels, points, shift, totals);
+  count_points(station_rays, rays.origin, hits, panes, voxels, points, shift, totals);
   return totals;
 }
 
@@ -135,9 +142,9 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
 }
 
 VANTAGE_TARGET_CLONES
-StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const Picture& picture,
-                          const Picture::Strip& strip, VoxelLookup& voxels, PointBuckets::Local& points,
-                          std::uint32_t shift) {
+StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const PaneView* panes,
+                          const Picture& picture, const Picture::Strip& strip, VoxelLookup& voxels,
+                          PointBuckets::Local& points, std::uint32_t shift) {
   const Surface& surface = station_rays.surface();
   const std::uint32_t rows = station_rays.pattern().rows();
   StationTotals totals;
@@ -146,7 +153,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
   hits.size = 0;
   const auto count = [&]() __attribute__((always_inline)) {
     station_rays.find_ranges(station, hits);
-    count_points(station_rays, station.origin, hits, voxels, points, shift, totals);
+    count_points(station_rays, station.origin, hits, panes, voxels, points, shift, totals);
     hits.size = 0;
   };
   for (std::uint32_t j = 0; j < strip.columns; ++j) {
@@ -208,6 +215,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
                      (way == WholeScans::faster && Picture::pays(rays.scene().opaque_count(), selected_rays));
   if (drawn && !rays.scene().shares()) picture.emplace(rays, station, ends);
   if (picture && !picture->drawable()) picture.reset();
+  const std::unique_ptr<const PaneView> panes = rays.glass() ? rays.glass()->view(station.origin) : nullptr;
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   const std::size_t parts = picture ? picture->strips() : tiles.size();
   // About a tenth of a second between checks of the stop token.
@@ -222,11 +230,11 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
                  Picture::Strip& strip = strips.local();
                  const auto index = static_cast<std::uint32_t>(k);
                  picture->draw(index, strip);
-                 return count_strip(rays, station, *picture, strip, voxels, local, shift);
+                 return count_strip(rays, station, panes.get(), *picture, strip, voxels, local, shift);
                });
     } else {
       totals = totals + add_up(first, end, 16, rays, points, [&](std::size_t k, VoxelLookup& voxels, auto& local) {
-                 return count_tile(rays, station, tiles[k], voxels, local, shift);
+                 return count_tile(rays, station, panes.get(), tiles[k], voxels, local, shift);
                });
     }
     points.flush(field, std::uint64_t{1} << station.bit());

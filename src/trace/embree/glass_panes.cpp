@@ -9,6 +9,12 @@
 #include "trace/glass_faces.hpp"
 
 namespace vantage {
+namespace {
+
+// Where the glass before a hit at this distance ends: a film on the surface is none.
+float before_hit(float t) { return t * (1 - face_gap_share) - face_gap_m; }
+
+}  // namespace
 
 double passed_of_pane(double cosine) {
   constexpr double kIndexSquare = 1.5 * 1.5;
@@ -24,45 +30,78 @@ GlassPanes::GlassPanes(std::shared_ptr<const SceneData> scene, std::shared_ptr<c
       first_(scene_->opaque_count()),
       of_solid_(faces_of_solids(*scene_)) {}
 
-bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {
-  for (std::uint32_t k = 0; k < rays.size; ++k) rays.end[k] = rays.end[k] * (1 - face_gap_share) - face_gap_m;
-  const std::vector<RayCaster::Crossing> faces = caster_.crossings(rays);
-  if (faces.empty()) return false;
-  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::no_hit, 0});
+void GlassPanes::pass(Passed& passed, float& next, float t, std::uint32_t triangle, const Float3& d) const {
+  if (t < next || passed.share == 0) return;
+  next = t * (1 + face_gap_share) + face_gap_m;
+  const double cosine = dot(planes_->normal(triangle), widen(d));
+  if (cosine * cosine >= static_cast<double>(pane_return_square)) {
+    passed = {0, triangle, t};
+    return;
+  }
+  const double share = passed_of_pane(cosine);
+  passed.share *= of_solid_[triangle - first_] ? std::sqrt(share) : share;
+  if (passed.share < static_cast<double>(least_passed)) passed.share = 0;
+}
+
+void GlassPanes::follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays,
+                            const std::uint32_t* slot, std::span<Passed> passed) const {
   std::uint32_t ray = RayBundle::no_hit;
-  float next = 0;  // where faces count again
+  float next = 0;
   for (const RayCaster::Crossing& face : faces) {
     if (face.ray != ray) next = 0;
     ray = face.ray;
-    Passed& own = passed[ray];
-    if (face.t < next || own.share == 0) continue;
-    next = face.t * (1 + face_gap_share) + face_gap_m;
-    const Vec3 n = planes_->normal(face.triangle);
-    const double cosine = dot(n, widen(Float3{rays.x[ray], rays.y[ray], rays.z[ray]}));
-    if (cosine * cosine >= static_cast<double>(pane_return_square)) {
-      own = {0, face.triangle, face.t};
-      continue;
-    }
-    const double share = passed_of_pane(cosine);
-    own.share *= of_solid_[face.triangle - first_] ? std::sqrt(share) : share;
-    if (own.share < static_cast<double>(least_passed)) own.share = 0;
+    pass(passed[slot ? slot[ray] : ray], next, face.t, face.triangle, {rays.x[ray], rays.y[ray], rays.z[ray]});
   }
+}
+
+bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {
+  for (std::uint32_t k = 0; k < rays.size; ++k) rays.end[k] = before_hit(rays.end[k]);
+  const std::vector<RayCaster::Crossing> faces = caster_.crossings(rays);
+  if (faces.empty()) return false;
+  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::no_hit, 0});
+  follow_all(faces, rays, nullptr, passed);
   return true;
 }
 
-bool GlassPanes::follow(const Float3& origin, const Hits& hits, std::span<Passed> passed) const {
+bool GlassPanes::follow(const Float3& origin, const Hits& hits, const PaneView* view, std::span<Passed> passed) const {
   RayBundle rays;
   rays.origin = origin;
-  rays.size = hits.size;
-  std::copy_n(hits.x, hits.size, rays.x);
-  std::copy_n(hits.y, hits.size, rays.y);
-  std::copy_n(hits.z, hits.size, rays.z);
-  std::copy_n(hits.t, hits.size, rays.end);
-  return follow(rays, passed);
+  if (!view) {
+    rays.size = hits.size;
+    std::copy_n(hits.x, hits.size, rays.x);
+    std::copy_n(hits.y, hits.size, rays.y);
+    std::copy_n(hits.z, hits.size, rays.z);
+    std::copy_n(hits.t, hits.size, rays.end);
+    return follow(rays, passed);
+  }
+  alignas(64) float end[Hits::capacity];
+  for (std::uint32_t k = 0; k < hits.size; ++k) end[k] = before_hit(hits.t[k]);
+  PaneView::Crossings found;
+  if (!view->find(hits, end, found)) return false;
+  std::fill_n(passed.begin(), hits.size, Passed{1, RayBundle::no_hit, 0});
+  std::uint32_t slot[RayBundle::capacity];
+  for (std::uint32_t k = 0; k < hits.size; ++k) {
+    const Float3 d{hits.x[k], hits.y[k], hits.z[k]};
+    if (found.count[k] == PaneView::Crossings::unsure) {
+      slot[rays.size] = k;
+      rays.x[rays.size] = d.x, rays.y[rays.size] = d.y, rays.z[rays.size] = d.z;
+      rays.end[rays.size++] = end[k];
+      continue;
+    }
+    float next = 0;
+    for (std::uint32_t i = 0; i < found.count[k]; ++i) pass(passed[k], next, found.t[k][i], found.triangle[k][i], d);
+  }
+  follow_all(caster_.crossings(rays), rays, slot, passed);
+  return true;
 }
 
-double GlassPanes::share(const Float3& origin, const Float3& d, float t) const {
-  RayBundle ray = one_ray(origin, d, 0, t);
+std::unique_ptr<const PaneView> GlassPanes::view(const Float3& origin) const {
+  if (scene_->triangles.size() - first_ > PaneView::most_faces) return nullptr;
+  return std::make_unique<const PaneView>(scene_, planes_, origin);
+}
+
+double GlassPanes::share(const Float3& origin, const Float3& d, float start, float end) const {
+  RayBundle ray = one_ray(origin, d, start, end);
   Passed passed;
   return follow(ray, {&passed, 1}) ? passed.share : 1;
 }

@@ -9,6 +9,7 @@
 
 #include "scene/scene_data.hpp"
 #include "trace/embree/hits.hpp"
+#include "trace/embree/pane_view.hpp"
 #include "trace/embree/planes.hpp"
 #include "trace/embree/ray_caster.hpp"
 
@@ -33,12 +34,20 @@ class GlassPanes {
   // Follows each ray from its start to its `end`. Overwrites the ends. Returns false, and fills nothing, if no ray
   // meets glass. REQUIRES: as many elements as rays.
   bool follow(RayBundle& rays, std::span<Passed> passed) const;
-  // The same for hits.
-  bool follow(const Float3& origin, const Hits& hits, std::span<Passed> passed) const;
-  // Share of the echo's strength from distance t that passes; 0 also if a pane returns the beam.
-  double share(const Float3& origin, const Float3& d, float t) const;
+  // The same for hits. `view`: from `origin`, or null.
+  bool follow(const Float3& origin, const Hits& hits, const PaneView* view, std::span<Passed> passed) const;
+  // Null: the glass has too many faces.
+  std::unique_ptr<const PaneView> view(const Float3& origin) const;
+  // Share of an echo's strength that passes from the distance `end` to `start`; 0 also if a pane returns the beam.
+  double share(const Float3& origin, const Float3& d, float start, float end) const;
 
  private:
+  // Takes a beam, of this direction, through a face. `next`: where its faces count again.
+  void pass(Passed& passed, float& next, float t, std::uint32_t triangle, const Float3& d) const;
+  // As follow(), from each ray's start to its end. `slot`: of each ray in `passed`.
+  void follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays, const std::uint32_t* slot,
+                  std::span<Passed> passed) const;
+
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   RayCaster caster_;

@@ -539,7 +539,7 @@ void SampledVoxelCounter::finish() {
   }
   rays_->find_ranges(*station_, hits_);
   std::array<Passed, RayBundle::capacity> passed;
-  const bool behind_glass = rays_->glass() && rays_->glass()->follow(bundle_.origin, hits_, passed);
+  const bool behind_glass = rays_->glass() && rays_->glass()->follow(bundle_.origin, hits_, nullptr, passed);
   for (std::uint32_t k = 0; k < hits_.size; ++k) {
     const std::uint32_t slot = hits_.slot[k], i = cast_voxel_[slot];
     if (!lies_in(rays_->grid(), hits_.point(bundle_.origin, k), voxels_.cell(first_ + i))) continue;

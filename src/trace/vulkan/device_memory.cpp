@@ -20,11 +20,13 @@ constexpr double most_staging = 1 << 25;  // commands.cpp
 // driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
 constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
+// Glass has a tree of our own on every engine.
 double tree(const DeviceLoad& load) {
+  constexpr double own = tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle);
   if (load.engine == Engine::compute_bvh)
-    return load.triangles * (tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle)) +
-           load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
-  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure);
+    return load.triangles * own + load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
+  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure) +
+         load.glass * own;
 }
 
 double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(MeshTransform)); }

@@ -18,6 +18,7 @@ struct DeviceLoad {
   std::uint32_t stations = 0;           // per network
   bool shaded = false;                  // noise or limits, which read the triangle that was hit
   bool normals = false;                 // vertices have normals
+  double glass = 0;                     // of the triangles, those of glass that weakens echoes
 };
 
 // Peak memory in bytes: while the structure is built, or with all buffers of an exact evaluation and a sample. Large

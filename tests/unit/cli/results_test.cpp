@@ -2,6 +2,7 @@
 // Results of scan, evaluate and the small commands.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -103,6 +104,27 @@ TEST_F(Results, PointsThatAreNotGoodEnoughAreToldByLimit) {
       json_of(evaluate({"--incidence", "40", "--detail", "*=15", "--beam", "0.5,6", "--sample", "100%"}));
   EXPECT_EQ(sampled["coverage"], good["coverage"]);
   EXPECT_TRUE(sampled["dropped"].is_null());
+}
+
+TEST_F(Results, AWideBeamTellsItsMixedPoints) {
+  const auto thin = json_of(evaluate({})), wide = json_of(evaluate({"--returns", "strongest", "--beam", "3,9"}));
+  EXPECT_TRUE(thin["mixed"].is_null());
+  EXPECT_TRUE(thin["stations"][0]["mixed"].is_null());
+  std::uint64_t points = 0, counted = 0;
+  for (const auto& station : wide["stations"]) {
+    points += station["mixed"]["points"].get<std::uint64_t>();
+    counted += station["mixed"]["counted"].get<std::uint64_t>();
+    EXPECT_GT(station["points"], 0);
+  }
+  EXPECT_GT(points, 0u);
+  EXPECT_EQ(wide["mixed"]["points"], points);
+  EXPECT_EQ(wide["mixed"]["counted"], counted);
+  EXPECT_LE(wide["mixed"]["wrong_voxel"].get<std::uint64_t>() + counted, points);
+  EXPECT_EQ(wide["rays"], thin["rays"]);
+  EXPECT_NEAR(wide["coverage"].get<double>(), thin["coverage"].get<double>(), 0.02);
+  const auto headings = wide["summary"];
+  EXPECT_TRUE(std::ranges::any_of(headings, [](const auto& line) { return line["heading"] == "mixed"; }));
+  expect_refused(run_program(evaluate({"--returns", "strongest", "--beam", "3,9", "--sample", "100"})), 2, "every ray");
 }
 
 TEST_F(Results, NodesAreWantedAsDenselyAsTheirDetail) {

@@ -37,6 +37,18 @@ TEST(GroundWeights, LeaveGroundAThird) {
   EXPECT_FALSE(ground_is_unmarked(weighed, area)) << "weights that are there already are kept";
 }
 
+TEST(GroundWeights, PanesAndMirrorsMarkNothing) {
+  for (const bool glass : {false, true}) {
+    QuadScene quads =
+        floor().quad({0, 0, 0}, {10, 0, 0}, {0, 0, 3}).quad({0, 4, 0}, {5, 0, 0}, {0, 0, 3}, Role::blocking);
+    const SearchArea area = SearchArea::build(quads.scene());
+    EXPECT_FALSE(ground_is_unmarked(quads.scene(), area)) << "someone made it blocking";
+    (glass ? quads.data().meshes[2].glass : quads.data().meshes[2].mirror) = true;
+    ASSERT_TRUE(ground_is_unmarked(quads.scene(), area));
+    EXPECT_EQ(ground_weights(quads.scene(), area).weights[1], 27u);
+  }
+}
+
 TEST(GroundWeights, LeaveAloneWhatIsNoTrouble) {
   QuadScene quads = floor();
   for (float x = -9; x < 10; x += 2) quads.quad({x, -9, 0}, {0, 18, 0}, {0, 0, 6});  // 10 walls of 108 m²

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "scan/memory_estimate.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "core/free_memory.hpp"
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "trace/vulkan/device_memory.hpp"
 #include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene_builder.hpp"
@@ -42,6 +47,34 @@ TEST(MemoryEstimate, KnowsTheNumberOfVoxels) {
       EXPECT_NEAR(estimate / voxels, 1, 0.2) << name << ", " << size << " m: " << voxels << " voxels";
     }
   }
+}
+
+TEST(MemoryEstimate, HasTexturesAndTheTreesOfGlassAndMirrors) {
+  test::QuadScene plain, textured, glazed, mirrored;
+  for (test::QuadScene* scene : {&plain, &textured, &glazed, &mirrored})
+    for (int k = 0; k < 100; ++k) scene->quad({static_cast<float>(k), 0, 0}, {0, 1, 0}, {0, 0, 1});
+  constexpr std::uint32_t side = 500;
+  textured.data().images.push_back({side, side, std::vector<std::uint8_t>(4 * side * side)});
+  for (test::QuadScene* scene : {&plain, &glazed, &mirrored})
+    for (int k = 0; k < 100; ++k) scene->quad({0, 2, static_cast<float>(k)}, {0, 1, 0}, {0, 0, 1}, Role::blocking);
+  for (std::size_t m = 100; m < 200; ++m) glazed.data().meshes[m].glass = true, mirrored.data().meshes[m].mirror = true;
+  const auto bytes = [](test::QuadScene& scene, double detection_range_m) {
+    Scanner scanner;
+    scanner.detection_range_m = detection_range_m;
+    const SimulatorConfig config{.engine = Engine::embree, .user_size_m = 1};
+    return static_cast<double>(simulator_memory(scene.scene(), {&scanner, 1}, config, 1).bytes);
+  };
+  test::QuadScene bare = textured;
+  bare.data().images.clear();
+  EXPECT_EQ(bytes(textured, 0) - bytes(bare, 0), 4.0 * side * side);
+  EXPECT_EQ(bytes(glazed, 0), bytes(plain, 0));
+  EXPECT_EQ(bytes(glazed, 60) - bytes(plain, 60), 12.0 * 800) << "a copy of the vertices";
+  EXPECT_GT(bytes(mirrored, 0), bytes(plain, 0));
+
+  vulkan::DeviceLoad load{.engine = Engine::ray_query, .vertices = 800, .triangles = 400, .shaded = true};
+  const double before = vulkan::device_bytes(load);
+  load.glass = 200;
+  EXPECT_GE(vulkan::device_bytes(load) - before, 200 * 48.0);
 }
 
 // Long triangles of hardly any area, crossways through a site, and as the strips of a pole.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "support/quad_scene.hpp"
 #include "vantage/simulator.hpp"
@@ -92,6 +94,39 @@ TEST(Mirrors, AGhostsEchoComesFromAllOfItsWay) {
   EXPECT_LE(farthest(true), std::cbrt(144.0 * 10));
   EXPECT_NEAR(farthest(true), std::cbrt(144.0 * 10), 0.2);
   EXPECT_NEAR(farthest(false), std::cbrt(144.0 * 4), 0.2);
+}
+
+// A pane at x = 1 is passed on the way to the mirror, and again on the way from it to the wall.
+TEST(Mirrors, PanesOnTheWayWeakenAGhost) {
+  test::QuadScene scene = with_mirrors(false);
+  scene.quad({1, -20, -20}, {0, 40, 0}, {0, 0, 40}, Role::blocking, 0);
+  scene.data().meshes.back().glass = true;
+  Scanner scanner = scanner_of(0.7);
+  scanner.detection_range_m = 13;
+  scanner.detection_reflectivity = 0.5;
+  const ScanPoints clear = scanned(with_mirrors(false), scanner_of(0.7)), points = scanned(scene, scanner);
+  const auto ghosts_of = [](const ScanPoints& scan) {
+    std::vector<std::uint64_t> rays;
+    for (std::size_t k = 0; k < scan.ray.size(); ++k)
+      if (scan.ghost[k] != 0) rays.push_back(scan.ray[k]);
+    return rays;
+  };
+  const std::vector<std::uint64_t> all = ghosts_of(clear), ghosts = ghosts_of(points);
+  std::size_t lost_to_glass = 0;
+  for (const std::uint64_t ray : all) {
+    const RayAngles angles = scanner.angles(ray);
+    const double cosine = std::sin(angles.zenith.in_radians()) * std::cos(angles.azimuth.in_radians());
+    const double inner = std::sqrt(1.25 + cosine * cosine);
+    const double t =
+        cosine * inner * (1 / (cosine * cosine + inner * inner) + 2.25 / (5.0625 * cosine * cosine + inner * inner));
+    const double reach = 169 * cosine / (100 / (cosine * cosine)), left = reach * std::pow(t, 4);
+    if (std::abs(left - 1) < 1e-4 || std::abs(std::acos(cosine) - 0.01745) < 1e-4) continue;
+    const bool expected = left > 1 && std::acos(cosine) > 0.01745;
+    EXPECT_EQ(std::ranges::binary_search(ghosts, ray), expected) << std::acos(cosine) << " " << left;
+    lost_to_glass += reach > 1 && left < 1 ? 1 : 0;
+  }
+  EXPECT_GT(ghosts.size(), 100u);
+  EXPECT_GT(lost_to_glass, 100u);
 }
 
 TEST(Mirrors, NoPointOfAMirrorCounts) {

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "core/philox.hpp"
 #include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
+#include "voxel/voxel_grid.hpp"
 
 namespace vantage {
 namespace {
@@ -135,8 +137,9 @@ TEST(WideBeam, PointsOfAStepEdgeFollowTheBeam) {
   EXPECT_NEAR(static_cast<double>(between) / (rows * (to - from) / step), 1, middle_share(19));
   const auto off = std::ranges::count_if(
       returns, [](const Return& r) { return std::abs(r.x - 10) > 0.005 && std::abs(r.x - 10.2) > 0.005; });
-  EXPECT_EQ(summary.mixed, static_cast<std::uint64_t>(off));
-  EXPECT_LT(summary.mixed_counted, summary.mixed) << "most lie in no voxel of either wall";
+  EXPECT_EQ(summary.mixed.points, static_cast<std::uint64_t>(off));
+  EXPECT_LT(summary.mixed.counted, summary.mixed.points) << "most lie in no voxel of either wall";
+  EXPECT_EQ(summary.mixed.wrong_voxel, 0u) << "there is no other surface";
 }
 
 TEST(WideBeam, SurfacesFartherApartAreReturnsOfTheirOwn) {
@@ -148,7 +151,7 @@ TEST(WideBeam, SurfacesFartherApartAreReturnsOfTheirOwn) {
                             first = scanned(scene, {.sub_rays = 19, .returns = Returns::first}),
                             last = scanned(scene, {.sub_rays = 19, .returns = Returns::last}),
                             strongest = scanned(scene, {.sub_rays = 19, .returns = Returns::strongest});
-  EXPECT_EQ(summary.mixed, 0u);
+  EXPECT_EQ(summary.mixed, MixedPoints{});
   EXPECT_EQ(summary.rays, narrow_scanner().rays());
   EXPECT_EQ(summary.points, all.size());
   std::map<double, double> parts;
@@ -218,7 +221,7 @@ TEST(WideBeam, AWallWithoutEdgesHasThePointsOfThinRays) {
     const Vec3 between = points.position[k] - thin.position[k];
     EXPECT_LT(dot(between, between), 1e-10);
   }
-  EXPECT_EQ(points.summary.mixed, 0u);
+  EXPECT_EQ(points.summary.mixed, MixedPoints{});
   EXPECT_EQ(points.summary.points_on_surveyed, thin.summary.points_on_surveyed);
 }
 
@@ -235,6 +238,112 @@ TEST(WideBeam, EachReturnIsJudgedByItsOwnStrength) {
   EXPECT_LT(least, 0.8);
 }
 
+// A wall before another one, and a plate between the two that points of the step fall upon, though hardly a ray meets
+// it.
+QuadScene step_over_a_plate() {
+  QuadScene scene;
+  add_wall(scene, kWall_m, -1, 0);
+  add_wall(scene, kWall_m + 0.2f, -1, 1);
+  scene.quad({kWall_m + 0.04f, -1, 0.0103f}, {0.12f, 0, 0}, {0, 2, 0}, Role::surveyed, 0.5);
+  return scene;
+}
+
+// Voxels by their centres alone.
+class VoxelsByCentre {
+ public:
+  explicit VoxelsByCentre(const Simulator& simulator)
+      : first_(simulator.voxel_centre(0)), size_(simulator.voxel_size_m()) {
+    for (std::uint64_t k = 0; k < simulator.voxel_count(); ++k) places_[place(simulator.voxel_centre(k))] = k;
+  }
+  // no_voxel if none holds the point.
+  std::uint64_t at(const Vec3& point) const {
+    const auto found = places_.find(place(point));
+    return found == places_.end() ? no_voxel : found->second;
+  }
+
+ private:
+  std::array<long, 3> place(const Vec3& p) const {
+    const Vec3 d = (p - first_) * (1 / size_);
+    return {std::lround(d.x), std::lround(d.y), std::lround(d.z)};
+  }
+  Vec3 first_;
+  double size_;
+  std::map<std::array<long, 3>, std::uint64_t> places_;
+};
+
+TEST(WideBeam, CountsOfANetworkAreThoseOfItsScans) {
+  Scanner scanner = narrow_scanner();
+  scanner.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.004}};
+  scanner.detection_range_m = 10.1, scanner.detection_reflectivity = static_cast<double>(kR);
+  Simulator simulator(step_over_a_plate().scene(), scanner, {.engine = Engine::embree, .user_size_m = 0.02});
+  const Network network{{{0, 0, 0}}, {{0, 0.004, 0}, false}, {{0, 0.002, 0.001}}};
+  for (const Returns returns : {Returns::strongest, Returns::all}) {
+    const BeamOptions beam{.sub_rays = 7, .returns = returns, .pulse_m = 0.5};
+    VoxelField field;
+    const NetworkCounts counts = simulator.evaluate(network, {.field = &field, .beam = beam});
+    std::vector<std::uint32_t> points(simulator.voxel_count());
+    std::vector<std::uint64_t> stations(simulator.voxel_count());
+    for (std::uint32_t k = 0; k < network.size(); ++k) {
+      const ScanSummary scanned =
+          simulator.scan(network[k], {.outputs = scan_voxel, .place = k, .beam = beam}, [&](const ScanChunk& chunk) {
+            for (const std::uint32_t voxel : chunk.voxel) {
+              if (voxel == no_voxel) continue;
+              ++points[voxel];
+              stations[voxel] |= std::uint64_t{1} << k;
+            }
+          });
+      EXPECT_EQ(counts.points[k], scanned.points);
+      EXPECT_EQ(counts.points_on_surveyed[k], scanned.points_on_surveyed);
+      EXPECT_EQ(counts.mixed[k], scanned.mixed);
+      if (network[k].active) {
+        EXPECT_GT(scanned.mixed.points, 100u);
+        EXPECT_GT(counts.dropped[k].echo, 100u) << "halves of footprints";
+        EXPECT_EQ(counts.dropped[k].points, counts.dropped[k].echo);
+      }
+    }
+    EXPECT_EQ(field.count, points);
+    EXPECT_EQ(field.stations, stations);
+    EXPECT_EQ(counts.voxels, simulator.voxel_count());
+    EXPECT_EQ(counts.seen[0], static_cast<std::uint64_t>(
+                                  std::ranges::count_if(stations, [](std::uint64_t mask) { return (mask & 1) != 0; })));
+    const NetworkCounts each = simulator.evaluate_each({&network, 1}, {.beam = beam}).front();
+    EXPECT_EQ(each.points_on_surveyed, counts.points_on_surveyed);
+    EXPECT_EQ(each.saturated, counts.saturated);
+  }
+}
+
+TEST(WideBeam, MixedPointsInVoxelsOfOtherSurfacesDoNotCount) {
+  Simulator simulator(step_over_a_plate().scene(), narrow_scanner(), {.engine = Engine::embree, .user_size_m = 0.02});
+  const VoxelsByCentre voxels(simulator);
+  const ScanPoints scan = simulator.scan_points(
+      {{0, 0, 0}}, {.outputs = scan_position | scan_voxel | scan_ids, .beam = BeamOptions{.sub_rays = 19}});
+  MixedPoints expected;
+  std::uint64_t of_the_plate = 0;  // a sub-ray met its edge
+  for (std::size_t k = 0; k < scan.position.size(); ++k) {
+    const Vec3& p = scan.position[k];
+    const double off = std::min(std::abs(p.x - 10), std::abs(p.x - 10.2));
+    if (scan.mesh[k] == 2 || off <= 0.005) continue;
+    ++expected.points;
+    expected.counted += scan.voxel[k] != no_voxel ? 1 : 0;
+    const std::uint64_t in = voxels.at(p);
+    if (in == no_voxel) {
+      EXPECT_EQ(scan.voxel[k], no_voxel);
+    } else if (off >= simulator.voxel_size_m()) {  // in none of the walls' voxels, where echoes come from
+      (scan.voxel[k] == no_voxel ? expected.wrong_voxel : of_the_plate) += 1;
+    }
+  }
+  const auto near = [&](std::uint64_t found, std::uint64_t wanted, double part) {
+    EXPECT_NEAR(static_cast<double>(found) / static_cast<double>(wanted), 1, part) << found << " and " << wanted;
+  };
+  EXPECT_GT(expected.wrong_voxel, 60u);
+  EXPECT_LT(10 * of_the_plate, expected.points);
+  near(scan.summary.mixed.points, expected.points, 0.03);
+  near(scan.summary.mixed.counted, expected.counted, 0.1);
+  // A few more lie in a wall's voxel beside that of their echoes.
+  EXPECT_GE(scan.summary.mixed.wrong_voxel, expected.wrong_voxel);
+  near(scan.summary.mixed.wrong_voxel, expected.wrong_voxel, 0.2);
+}
+
 TEST(WideBeam, BadInputIsRefused) {
   QuadScene scene;
   add_wall(scene, kWall_m, -1, 1);
@@ -244,7 +353,8 @@ TEST(WideBeam, BadInputIsRefused) {
   unknown.beam_divergence = {}, unknown.exit_diameter_m = 0;
   EXPECT_THROW(scanned(scene, {}, nullptr, unknown), Error);
   EXPECT_THROW(returns_from_string("some"), Error);
-  EXPECT_EQ(returns_from_string("all"), Returns::all);
+  for (const Returns each : {Returns::first, Returns::strongest, Returns::last, Returns::all})
+    EXPECT_EQ(returns_from_string(to_string(each)), each);
 }
 
 }  // namespace

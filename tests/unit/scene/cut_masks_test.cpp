@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
@@ -218,6 +220,37 @@ TEST(CutMasks, AScreenOfLeavesLetsItsShareOfRaysThrough) {
     // Four standard errors of 4 096 independent holes.
     EXPECT_NEAR(static_cast<double>(through) / static_cast<double>(on_screen), 0.3, 4 * std::sqrt(0.3 * 0.7 / 4096))
         << mode;
+  }
+}
+
+// Missing, of a format that is not read, and not there at all.
+TEST(CutMasks, ATextureThatCannotBeReadIsToldAndLeavesItsSurfaceOpaque) {
+  const std::string ktx = "\xABKTX 20\xBB\r\n\x1A\n and so on";
+  for (const int which : {0, 1, 2}) {
+    test::GlbBuilder builder;
+    const int points = builder.positions({-1, -1, -2, 1, -1, -2, 0, 1, -2});
+    const int uv = builder.accessor(std::vector<float>{0, 0, 1, 0, 1, 1}, 5126, "VEC2");
+    if (which == 0) builder.json["images"] = {{{"uri", "leaves.png"}}};
+    if (which == 1)
+      builder.json["images"] = {{{"bufferView", builder.view(ktx.data(), ktx.size())}, {"mimeType", "image/ktx2"}}};
+    json texture = {{"source", 0}};
+    if (which == 1) texture = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+    if (which < 2) builder.json["textures"] = json::array({texture});
+    builder.json["materials"] = {
+        {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    builder.node(
+        {{"name", "screen"},
+         {"mesh", builder.mesh({{"attributes", {{"POSITION", points}, {"TEXCOORD_0", uv}}}, {"material", 0}})}});
+    const Scene scene = load(builder, {.unit = Unit::metre, .up = UpAxis::y});
+    EXPECT_EQ(scene.triangle_count(), 1u) << which;
+    EXPECT_EQ(std::ranges::count_if(scene.notes(),
+                                    [](const std::string& note) {
+                                      return note.starts_with("texture 0 ") &&
+                                             note.find("is opaque") != std::string::npos;
+                                    }),
+              1)
+        << which;
+    for (const std::string& note : scene.notes()) EXPECT_EQ(note.find("holes"), std::string::npos) << note;
   }
 }
 

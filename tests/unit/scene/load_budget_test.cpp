@@ -86,7 +86,7 @@ TEST(LoadBudget, PixelsAreCountedBeforeTheyAreDecoded) {
   const Scene plain = load_within(scene, 60 * kMebibyte);
   EXPECT_TRUE(plain.data().images.empty());
   ASSERT_EQ(plain.notes().size(), 1u);
-  for (const char* words : {"texture 0 cannot be read, its material keeps its plain colour: ",
+  for (const char* words : {"texture 0 cannot be read, its material keeps its plain colour and is opaque: ",
                             "scene: decoding texture 0, of 2048 × 2048 pixels,", "the limit is 60 MiB"})
     EXPECT_NE(plain.notes()[0].find(words), std::string::npos) << plain.notes()[0];
 }

@@ -42,6 +42,7 @@ TEST(SettingTables, DescribeEachSettingOnce) {
   expect_described(site_settings(), names);
   expect_described(question_settings(), names);
   expect_described(plan_settings(), names);
+  expect_described(beam_settings(), names);
   std::set<std::string> others;
   expect_described(next_settings(), others);
 }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faces of glass as seen from one head. Rays that certainly pass one, or certainly none, are told without a tree.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "trace/embree/hits.hpp"
+#include "trace/embree/planes.hpp"
+
+namespace vantage {
+
+class PaneView {
+ public:
+  // Of more faces, a tree finds those of a ray faster.
+  static constexpr std::size_t most_faces = 2048;
+
+  // Shares ownership of both. REQUIRES: the scene has glass.
+  PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, const Float3& head);
+
+  // The crossings of each hit's ray before `end`, by distance and triangle, as RayCaster::crossings() has them.
+  struct Crossings {
+    static constexpr std::uint32_t most = 8, unsure = most + 1;
+    std::uint32_t count[Hits::capacity];  // or unsure: RayCaster knows
+    float t[Hits::capacity][most];
+    std::uint32_t triangle[Hits::capacity][most];
+  };
+  // Returns false if no ray has any, or may have one. `end` has whole vectors, as hits do.
+  bool find(const Hits& hits, const float* end, Crossings& found) const;
+
+ private:
+  struct Face {
+    float x[3], y[3], z[3], doubt[3];  // edges, as DrawnTriangle has them; the first is the band's of a flat one
+    Planes::Seen plane;
+    std::uint32_t triangle;
+    bool flat, certain;
+  };
+  std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const Planes> planes_;
+  Float3 head_;
+  std::vector<Face> faces_;
+  // Of the faces, in whole vectors: directions to their middles, and bounds of what lies around them.
+  std::vector<float> x_, y_, z_, cosine_, sine_, nearest_;
+};
+
+}  // namespace vantage
