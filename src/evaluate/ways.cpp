@@ -20,8 +20,8 @@ constexpr double kSameLevel_m = 0.4;
 // A step, and the slope of a stair of 45 degrees.
 constexpr double kStep_m = 0.35, kSteepest = 1.0;
 constexpr double kGap_m = 0.75;  // ground may be missing in a passage for so much
-// Cached stations, some hundred networks' worth.
-constexpr std::size_t kMostKnown = 1'000;
+// Cached stations: several of the largest networks.
+constexpr std::size_t kMostKnown = 2'048;
 
 std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
@@ -264,7 +264,7 @@ std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t pla
 }
 
 std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
-  return between(from, to, nearest(from), nearest(to));
+  return between(from, to, nearest(from), nearest(to), [this](std::uint32_t place) { return distances_from(place); });
 }
 
 std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<const Vec3> points) const {
@@ -276,18 +276,23 @@ std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<cons
     if (place) sources.push_back(*place);
   std::ranges::sort(sources);
   sources.erase(std::ranges::unique(sources).begin(), sources.end());
-  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t k) { distances_from(sources[k]); });
+  // Kept here: a thousand stations may be more than the cache holds.
+  std::vector<std::shared_ptr<const std::vector<float>>> far(sources.size());
+  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t k) { far[k] = distances_from(sources[k]); });
+  const auto from_place = [&](std::uint32_t place) {
+    return far[static_cast<std::size_t>(std::ranges::lower_bound(sources, place) - sources.begin())];
+  };
   std::vector<std::vector<std::optional<double>>> metres(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     metres[i].resize(points.size());
     for (std::size_t j = i + 1; j < points.size(); ++j)
-      metres[i][j] = between(points[i], points[j], places[i], places[j]);
+      metres[i][j] = between(points[i], points[j], places[i], places[j], from_place);
   });
   return metres;
 }
 
 std::optional<double> Ways::between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,
-                                    std::optional<std::uint32_t> b) const {
+                                    std::optional<std::uint32_t> b, const DistancesFrom& distances_from) const {
   if (!a || !b) return std::nullopt;
   const auto length = [](const Vec3& v) { return std::sqrt(dot(v, v)); };
   if (*a == *b) return length(to - from);

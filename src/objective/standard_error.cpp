@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "objective/whole_counts.hpp"
+#include "trace/registration_sums.hpp"
 #include "vantage/objective.hpp"
 
 namespace vantage {
@@ -46,8 +47,17 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   subtract(rest.seen, group.seen);
   subtract(rest.shared, group.shared);
   if (rest.registration.heads.empty()) return;
-  // Differences of sums that are exact except for their last place.
-  subtract(rest.registration.pairs, group.registration.pairs);
+  // Differences of sums that are exact except for their last place. A group of a large network leaves out pairs that
+  // nothing was summed for.
+  if (group.registration.pairs.size() < rest.registration.pairs.size()) {
+    std::size_t at = 0;
+    for_summed_pairs(rest.registration, [&](std::size_t first) {
+      for (std::size_t k = first; k < first + RegistrationSums::of_pair; ++k)
+        rest.registration.pairs[k] -= group.registration.pairs[at++];
+    });
+  } else {
+    subtract(rest.registration.pairs, group.registration.pairs);
+  }
   subtract(rest.registration.surface, group.registration.surface);
 }
 

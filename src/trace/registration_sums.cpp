@@ -263,6 +263,18 @@ RegistrationSums to_sums(const Accumulator<Wide>& all, const Summer& summer, con
   return to_sums(std::span<const Wide>(whole), moments, patches, stations, count);
 }
 
+// Drops the pairs of a part that are 0 in the whole. Squares are among the sums, so these are 0 in every part.
+void keep_pairs_of(const RegistrationSums& whole, RegistrationSums& part) {
+  std::size_t kept = 0;
+  for_summed_pairs(whole, [&](std::size_t first) {
+    std::copy_n(part.pairs.begin() + static_cast<std::ptrdiff_t>(first), of_pair,
+                part.pairs.begin() + static_cast<std::ptrdiff_t>(kept));
+    kept += of_pair;
+  });
+  part.pairs.resize(kept);
+  part.pairs.shrink_to_fit();
+}
+
 }  // namespace
 
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
@@ -335,8 +347,17 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
   for (std::size_t k = 0; k < all.pairs.size(); ++k) total.pairs[k % total.pairs.size()] += all.pairs[k];
   for (std::size_t k = 0; k < all.surface.size(); ++k) total.surface[k % total.surface.size()] += all.surface[k];
   std::vector<RegistrationSums> sums{to_sums(total, summer, patches, stations, station_count, 0)};
-  for (std::size_t g = 0; g < groups; ++g) sums.push_back(to_sums(all, summer, patches, stations, station_count, g));
+  for (std::size_t g = 0; g < groups; ++g) {
+    sums.push_back(to_sums(all, summer, patches, stations, station_count, g));
+    if (station_count > mask_bits) keep_pairs_of(sums.front(), sums.back());
+  }
   return sums;
+}
+
+void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with) {
+  for (std::size_t first = 0; first < whole.pairs.size(); first += of_pair)
+    if (std::ranges::any_of(std::span(whole.pairs).subspan(first, of_pair), [](double sum) { return sum != 0; }))
+      with(first);
 }
 
 std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -59,8 +60,9 @@ struct RegistrationJob {
 
 // Sums over all patches, then those of each of `groups` interleaved groups. `masks`: stations that saw each patch's
 // voxel, by place, word after word as in `VoxelField`. `scanners`: one for each that a station refers to. Exact, so
-// independent of order and threads. REQUIRES: masks.size() == patches.size() · mask_words(station_count), and no bit
-// without a station.
+// independent of order and threads. Groups of more than `mask_bits` stations have only the pairs of for_summed_pairs():
+// all pairs of hundreds of stations, twenty times, are gigabytes. REQUIRES: masks.size() == patches.size() ·
+// mask_words(station_count), and no bit without a station.
 std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);
@@ -68,6 +70,8 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
 std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
                                           std::uint32_t station_count, std::span<const std::uint64_t> masks,
                                           std::uint32_t groups);
+// Calls with(place in `pairs`) for each pair with a sum that is not 0.
+void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with);
 // Moves such sums into the counts of a network and, if present, of its groups.
 void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums);
 

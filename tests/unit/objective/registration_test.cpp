@@ -500,10 +500,32 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
                     pairs.begin() + static_cast<std::ptrdiff_t>((i * (2 * large - i - 1) / 2 + j - i - 1) * of_pair));
       }
     }
-    EXPECT_EQ(sums[g].pairs, pairs);
+    std::vector<double> summed;
+    for_summed_pairs(sums.front(), [&](std::size_t first) {
+      summed.insert(summed.end(), pairs.begin() + static_cast<std::ptrdiff_t>(first),
+                    pairs.begin() + static_cast<std::ptrdiff_t>(first + of_pair));
+    });
+    EXPECT_EQ(summed.size(), 3 * of_pair);
+    EXPECT_EQ(sums[g].pairs, g == 0 ? pairs : summed);
     EXPECT_EQ(sums[g].surface, surface);
     EXPECT_GT(*std::ranges::max_element(small[g].pairs), 0);
   }
+
+  const auto estimate = [&](std::vector<RegistrationSums> of, std::uint32_t stations) {
+    NetworkCounts counts;
+    counts.stations = stations, counts.voxels = patches.patches.size();
+    counts.groups.resize(groups);
+    for (std::uint32_t g = 0; g < groups; ++g)
+      counts.groups[g].stations = stations, counts.groups[g].voxels = (counts.voxels + groups - 1 - g) / groups;
+    take_registration(counts, std::move(of));
+    RegistrationOptions options;
+    options.surfaces = RegistrationSurfaces::surveyed;
+    return registration_estimate(counts, 10 * counts.voxels, options);
+  };
+  const Estimate in_small = estimate(small, 3), in_large = estimate(sums, large);
+  EXPECT_EQ(in_large.value, in_small.value);
+  EXPECT_EQ(in_large.standard_error, in_small.standard_error);
+  EXPECT_GT(in_small.standard_error, 0);
 }
 
 // Stations along a corridor that is free to slide along X, and targets that some of them measure.
