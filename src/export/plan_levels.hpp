@@ -25,8 +25,8 @@ struct PlanLevel {
 
 // Where one may stand above and below at one place, on a twentieth of the ground or more, or where stations stand so:
 // the heights at which most of such ground lies, and those of stations, `apart_m` or more from each other, lowest
-// first. Stairs belong to the floor that they start from, and so do landings half way up. One level, at the median height, of any other site: a slope
-// or a terrace needs one picture. Never empty, never cut.
+// first. Stairs belong to the floor that they start from, and so do landings half way up. One level, at the median
+// height, of any other site: a slope or a terrace needs one picture. Never empty, never cut.
 std::vector<PlanLevel> plan_levels(const SearchMesh& mesh, std::span<const PlacedStation> stations = {},
                                    double apart_m = 1.8);
 

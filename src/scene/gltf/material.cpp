@@ -127,7 +127,8 @@ double MaterialTable::read_transparency(int index, const Material& material, Mat
 std::int32_t MaterialTable::image(int texture) {
   const auto& textures = file_.model().textures;
   if (texture < 0 || static_cast<std::size_t>(texture) >= textures.size()) {
-    notes_.push_back("texture " + std::to_string(texture) + " does not exist; its material keeps its plain colour and is opaque");
+    notes_.push_back("texture " + std::to_string(texture) +
+                     " does not exist; its material keeps its plain colour and is opaque");
     return -1;
   }
   const int source = textures[static_cast<std::size_t>(texture)].source;

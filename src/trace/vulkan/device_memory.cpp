@@ -25,8 +25,7 @@ double tree(const DeviceLoad& load) {
   constexpr double own = tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle);
   if (load.engine == Engine::compute_bvh)
     return load.triangles * own + load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
-  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure) +
-         load.glass * own;
+  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure) + load.glass * own;
 }
 
 double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(MeshTransform)); }

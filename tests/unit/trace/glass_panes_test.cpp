@@ -78,7 +78,8 @@ std::vector<Float3> block(double x, double thick) {
 
 double share(const std::vector<std::vector<Float3>>& panes, double angle, float t = 100) {
   const auto scene = behind(panes);
-  return GlassPanes(scene, std::make_shared<Planes>(scene)).share({}, narrow({std::cos(angle), std::sin(angle), 0}), 0, t);
+  return GlassPanes(scene, std::make_shared<Planes>(scene))
+      .share({}, narrow({std::cos(angle), std::sin(angle), 0}), 0, t);
 }
 
 TEST(GlassPanes, APaneIsASheetOrASolid) {
