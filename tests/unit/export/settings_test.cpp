@@ -104,7 +104,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
     {"shared_meshes", [](SceneOptions& o) { o.shared_meshes = SharedMeshes::always; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SceneOptions>() == 19);
+static_assert(member_count<SceneOptions>() == 20);
 
 struct Alone final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }
