@@ -26,6 +26,7 @@ struct Member {
 
 bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box& box, double start,
                             const AnyRayNear& any_ray_near) const {
+  if (scene_.shares()) return false;
   std::call_once(once_, [&] { neighbours_ = triangle_neighbours(scene_.positions, scene_.opaque_triangles()); });
   const auto member = [&](std::uint32_t t) {
     const auto corner = [&](std::size_t k) { return widen(scene_.positions[scene_.triangles[t][k]]) - head; };

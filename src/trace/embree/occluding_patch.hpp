@@ -25,8 +25,9 @@ class OccludingPatches {
   // a point of the box, for every ray of the scanner that reaches such a point. `box`: relative to the head.
   //
   // Embree computes the same product, but for its sign, for both triangles of an edge, so a ray near an edge hits one
-  // of them. The patch grows over every edge that may cut the box. It has no hole if each of these has a triangle on
-  // either side, as seen from the head. Near a corner a ray may be in doubt of several edges, so none may pass there.
+  // of them. Triangles of a shared mesh are tested in its own frame, so scenes that share meshes have no patches. The
+  // patch grows over every edge that may cut the box. It has no hole if each of these has a triangle on either side, as
+  // seen from the head. Near a corner a ray may be in doubt of several edges, so none may pass there.
   bool hide(std::uint32_t triangle, const Vec3& head, const Box& box, double start,
             const AnyRayNear& any_ray_near) const;
 
