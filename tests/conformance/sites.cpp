@@ -223,7 +223,7 @@ const std::vector<TestSite>& sites() {
                             {{0.21, -8.07, 1.5}, {8.11, 0.4, 1.5}, {1.1, 0.7, 1.5}, {-8.3, -8.2, 1.5}}));
     all.push_back(make_site("boiler-house", boiler_house(), 0.06, 0.6,
                             {{0.11, -0.52, 1.61}, {4.92, 0.31, 1.83}, {-4.3, -3.2, 1.4}, {1.7, 0.4, 1.31}}));
-    all.push_back(make_site("pump-hall", pump_hall(), 0.09, 0.6,
+    all.push_back(make_site("pump-hall", pump_hall(), 0.12, 0.6,
                             {{0.13, 0.22, 1.63}, {-5.1, 4.7, 1.81}, {5.2, 1.2, 1.44}, {2.7, 0.52, 0.86}}));
     return all;
   }();
