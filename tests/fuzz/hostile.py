@@ -459,7 +459,7 @@ FILES = {
     "vertices_without_view.glb": (vertices_without_view, False),
     "indices_without_view.glb": (indices_without_view, False),
     "nodes_times_primitives.glb": (nodes_times_primitives, False),
-    "one_mesh_many_times.glb": (one_mesh_many_times, False),
+    "one_mesh_many_times.glb": (one_mesh_many_times, True),
     "deep_tree.glb": (deep_tree, True),
     "nested.glb": (nested_json, False),
     "empty_lists.glb": (small_values(b"[]", 5000000), False),
