@@ -768,6 +768,7 @@ class Site:
         up: Setting = None,
         wall_layer: Setting = None,
         wall_height: Setting = None,
+        shared_meshes: Setting = None,
         scene_index: Setting = None,
         diffuse: Setting = None,
         allow_outside: Setting = None,

@@ -26,6 +26,7 @@ constexpr int kGap_deg = 10;
 // A degree of azimuth or zenith is in it if it has this share of the points that it would have by the mean: not of a
 // few wrong ones.
 constexpr double kLeastShare = 0.01;
+constexpr double kNotAlone = 2;  // points
 // Ranges are counted in classes that grow by so much; one counts with this share of the points.
 constexpr double kRangeGrows = 1.05, kLeastOfRange = 1e-4;
 
@@ -115,7 +116,7 @@ json ScanSettings::as_json() const {
     }
   const auto seen = [&](const std::vector<std::uint64_t>& counts, int k) {
     const auto all = static_cast<double>(points_) / static_cast<double>(counts.size());
-    return static_cast<double>(counts[static_cast<std::size_t>(k)]) >= kLeastShare * all;
+    return static_cast<double>(counts[static_cast<std::size_t>(k)]) >= std::max(kNotAlone, kLeastShare * all);
   };
   int first = 0, last = kZeniths - 1;
   while (first < last && !seen(of_zenith, first)) ++first;
@@ -132,7 +133,7 @@ json ScanSettings::as_json() const {
     azimuth = {std::remainder(gap_end + 0.5 * width - 180, 360), width};
   }
   const auto often = [&](std::uint64_t n) {
-    return static_cast<double>(n) >= std::max(1.0, kLeastOfRange * static_cast<double>(points_));
+    return static_cast<double>(n) >= std::max(kNotAlone, kLeastOfRange * static_cast<double>(points_));
   };
   std::size_t nearest = 0, farthest = kRanges - 1;
   while (nearest < farthest && !often(ranges_[nearest])) ++nearest;
