@@ -73,7 +73,10 @@ class Scans(unittest.TestCase):
         self.assertGreater((scan.return_number == 2).sum(), 50)
         self.assertEqual((scan.return_number == 2).sum(), ((scan.return_number == 1) & (scan.returns == 2)).sum())
         self.assertEqual(scan.ghost.sum(), 0)
-        self.assertEqual(scan.mixed, (0, 0, 0))
+        y = scan.position[:, 1]  # of half a footprint on a wall that is not met squarely, the middle lies elsewhere
+        off = (np.abs(y - 3) > 0.005) & (np.abs(y - 7) > 0.005)
+        self.assertEqual(scan.mixed[0], off.sum())
+        self.assertLess(np.abs(y[off] - 7).max(), 0.02)
         merged = vantage.BeamOptions(pulse_m=10)
         scan = simulator.scan((0, 0, 0), ["position", "voxel"], beam=merged)
         between = (scan.position[:, 1] > 3.005) & (scan.position[:, 1] < 6.995)
