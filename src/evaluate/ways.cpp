@@ -19,6 +19,9 @@ constexpr double kMostPlaces = 20'000, kFinest_m = 0.25;
 constexpr double kSameLevel_m = 0.4;
 // A step, and the slope of a stair of 45 degrees.
 constexpr double kStep_m = 0.35, kSteepest = 1.0;
+// Places of two cells coincide where ground touches the cells' common side. Distances must grow from place to place,
+// so that a path can go back along them.
+constexpr double kLeastLink_m = 1e-3;
 constexpr double kGap_m = 0.75;  // ground may be missing in a passage for so much
 // Cached stations: several of the largest networks.
 constexpr std::size_t kMostKnown = 2'048;
@@ -153,7 +156,7 @@ Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&
   links_.resize(places_.size());
   const auto link = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 way = places_[b] - places_[a];
-    const auto metres = static_cast<float>(std::sqrt(dot(way, way)));
+    const auto metres = static_cast<float>(std::max(std::sqrt(dot(way, way)), kLeastLink_m));
     links_[a].push_back({b, metres}), links_[b].push_back({a, metres});
   };
   const auto linked = [&](std::uint32_t a, std::uint32_t b) {
@@ -313,8 +316,11 @@ std::vector<Vec3> Ways::path(const Vec3& from, const Vec3& to) const {
     if (std::isfinite((*far)[at])) {
       std::vector<Vec3> steps{places_[at]};
       while (at != source) {
-        const auto next =
-            std::ranges::min_element(links_[at], {}, [&](const Link& l) { return (*far)[l.to] + l.metres; });
+        const auto through = [&](const Link& l) {
+          return (*far)[l.to] < (*far)[at] ? (*far)[l.to] + l.metres : std::numeric_limits<float>::infinity();
+        };
+        const auto next = std::ranges::min_element(links_[at], {}, through);
+        if (!std::isfinite(through(*next))) break;  // so far away that float has no millimetres
         at = next->to;
         steps.push_back(places_[at]);
       }

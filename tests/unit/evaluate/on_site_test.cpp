@@ -63,6 +63,17 @@ TEST(Ways, AreTheSameForAllPairsAtOnce) {
   EXPECT_EQ(connected, 6) << "of the four on the first square";
 }
 
+// Places of two cells of the grid coincide where ground lies at their common side.
+TEST(Ways, EndWherePlacesCoincide) {
+  SearchMesh ground;
+  add_rectangle(ground, -5, 0.2, 9.5, 10.5, 0);
+  add_rectangle(ground, 0.125 - 1e-9, 0.125 + 1e-9, 0, 10, 0);
+  const std::vector<Vec3> path = Ways(ground, everywhere).path({-4, 10, 0}, {0.125, 1, 0});
+  ASSERT_GE(path.size(), 3u);
+  EXPECT_EQ(path.front().x, -4);
+  EXPECT_EQ(path.back().y, 1);
+}
+
 TEST(Ways, GoRoundCornersAndWalls) {
   SearchMesh corner;  // an L of two arms, 10 m long and 2 m wide
   add_rectangle(corner, 0, 10, 0, 2, 0);
