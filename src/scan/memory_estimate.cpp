@@ -220,7 +220,7 @@ class Estimator {
              .stations = static_cast<std::uint32_t>(std::min(stations, mask_bits)),
              .shaded = limited || std::ranges::any_of(scanners, noisy) || std::ranges::any_of(scene_.meshes, asks),
              .normals = !scene_.normals.empty(),
-             .glass = limited ? static_cast<double>(scene_.triangles.size() - scene_.opaque_triangles().size()) : 0};
+             .glass = limited ? static_cast<double>(scene_.triangle_count() - scene_.opaque_count()) : 0};
     for (const Image& image : scene_.images) textures_ += static_cast<double>(image.rgba.size());
     follows_mirrors_ = std::ranges::any_of(scene_.meshes, &MeshInfo::mirror);
   }

@@ -147,7 +147,7 @@ class RayTest {
     const Vec3 d = direction_of(hit);
     double share = 1;
     std::vector<double> faces;
-    for (auto t = static_cast<std::uint32_t>(scene.opaque_triangles().size()); t < scene.triangles.size(); ++t) {
+    for (std::uint32_t t = scene.opaque_count(); t < scene.triangle_count(); ++t) {
       const std::array<Vec3, 3> corner = corners(t);
       const Crossing c = cross_plane(corner, origin_, d);
       if (c.t < 0 || c.t > hit.t + 1e-3) continue;

@@ -96,7 +96,7 @@ bool GlassPanes::follow(const Float3& origin, const Hits& hits, const PaneView* 
 }
 
 std::unique_ptr<const PaneView> GlassPanes::view(const Float3& origin) const {
-  if (scene_->triangles.size() - first_ > PaneView::most_faces) return nullptr;
+  if (scene_->triangle_count() - first_ > PaneView::most_faces) return nullptr;
   return std::make_unique<const PaneView>(scene_, planes_, origin);
 }
 

@@ -23,12 +23,10 @@ constexpr float rounding = 1e-5f;       // of cosines here
 
 PaneView::PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, const Float3& head)
     : scene_(std::move(scene)), planes_(std::move(planes)), head_(head) {
-  const auto first = static_cast<std::uint32_t>(scene_->opaque_triangles().size()),
-             end = static_cast<std::uint32_t>(scene_->triangles.size());
-  for (std::uint32_t triangle = first; triangle < end; ++triangle) {
-    std::array<Vec3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k)
-      corners[k] = widen(scene_->positions[scene_->triangles[triangle][k]]) - widen(head_);
+  for (std::uint32_t triangle = scene_->opaque_count(); triangle < scene_->triangle_count(); ++triangle) {
+    const auto p = scene_->corners(triangle);
+    const std::array<Vec3, 3> corners{widen(p[0]) - widen(head_), widen(p[1]) - widen(head_),
+                                      widen(p[2]) - widen(head_)};
     const DrawnTriangle drawn(corners, false);
     Face face{.x = {},
               .y = {},

@@ -16,7 +16,9 @@
 #include "scene/surface_colour.hpp"
 #include "support/glb_builder.hpp"
 #include "vantage/error.hpp"
+#include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/simulator.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage {
@@ -122,6 +124,39 @@ TEST(SharedMeshes, FlattenedIsWhatNothingShared) {
               surface_colour(each.data(), flat->mesh_of(t), t, {0.1F, 0.6F}));
   }
   EXPECT_EQ(flat->normals.size(), flat->positions.size());
+}
+
+// Glass is stored where it stands, and its triangles have numbers behind those of all places.
+TEST(SharedMeshes, StandBehindGlass) {
+  GlbBuilder builder = site();
+  const int pane = builder.mesh(
+      {{"attributes",
+        {{"POSITION", builder.positions({-6, 0, 1.5, 6, 0, 1.5, 6, 3, 1.5, -6, 0, 1.5, 6, 3, 1.5, -6, 3, 1.5})}}}});
+  builder.node({{"name", "pane"}, {"mesh", pane}, {"translation", {4123.7, 31.2, -887.4}}});
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.5);
+  scanner.min_range_m = 0.1;
+  scanner.detection_range_m = 5;
+  scanner.detection_reflectivity = 0.5;
+  const Network network{{{4124.7, 884.4, 32.8}}, {{4123.1, 889.2, 33.1}}};
+  for (const Engine engine : {Engine::embree, Engine::compute_bvh, Engine::ray_query}) {
+    std::vector<NetworkCounts> counts;
+    for (const SharedMeshes shared : {SharedMeshes::always, SharedMeshes::never}) {
+      const Scene scene = load(builder, {.glass = {"pane"}, .shared_meshes = shared});
+      ASSERT_EQ(scene.data().shares(), shared == SharedMeshes::always);
+      ASSERT_TRUE(scene.data().has_glass());
+      Simulator simulator(scene, scanner, {.engine = engine, .user_size_m = 0.1});
+      counts.push_back(simulator.evaluate(network));
+    }
+    ASSERT_EQ(counts[0].dropped.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_GT(counts[0].dropped[k].echo, 100u) << to_string(engine);
+      EXPECT_NEAR(static_cast<double>(counts[0].dropped[k].echo), static_cast<double>(counts[1].dropped[k].echo), 3);
+      EXPECT_NEAR(static_cast<double>(counts[0].points_on_surveyed[k]),
+                  static_cast<double>(counts[1].points_on_surveyed[k]), 3);
+    }
+    EXPECT_NEAR(coverage(counts[0], 1), coverage(counts[1], 1), 1e-4);
+  }
 }
 
 TEST(SharedMeshes, SmallScenesShareNothingUnasked) { EXPECT_FALSE(load(site()).data().shares()); }
