@@ -75,7 +75,7 @@ const char* to_string(UpAxis up) noexcept;
 /// Throws Error invalid_argument unless the text is "x", "y" or "z".
 UpAxis up_axis_from_string(const std::string& text);
 
-/// Whether a mesh that several nodes place is stored once, or at each of its places.
+/// The way in which a mesh that several nodes place is stored: once, or at each of its places.
 enum class SharedMeshes {
   automatic,  ///< Once, in scenes too large to store every place: of more than 8 million triangles.
   always,     ///< Once.
@@ -120,8 +120,8 @@ struct SceneOptions {
   /// else those whose lines enclose rooms.
   std::vector<std::string> wall_layers = {};
   std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.
-  /// Whether meshes that several nodes place are stored once (docs/scenes.md). It changes memory, and results by no
-  /// more than the rounding of coordinates (docs/method.md).
+  /// Meshes that several nodes place are stored so (docs/scenes.md). It changes memory, and results by no more than the
+  /// rounding of coordinates (docs/stability.md).
   SharedMeshes shared_meshes = SharedMeshes::automatic;
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
   /// read. 0: half of what is free.

@@ -36,37 +36,24 @@ Faces walk_faces(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 
     found.t[k] = t_max;
     found.id[k] = no_primitive;
   }
-  const Shear shear = shear_along(direction);
-  const float widening = widening_of(origin);
-  const vec3 inverse = inverse_of(direction);
-  const NodeRay ray = node_ray(origin, inverse, widening, uintBitsToFloat(nodes.at[2].w));
+  const FrameRay ray = ray_in_tree(nodes, origin, direction);
   uint stack[bvh_stack_size];
   stack[0] = bvh_end;
   uint depth = 1u;
   uint current = 0u;
   while (current != bvh_end) {
     if ((current & bvh_leaf_bit) == 0u) {
-      const uvec4 word0 = nodes.at[4u * current], word1 = nodes.at[4u * current + 1u],
-                  word2 = nodes.at[4u * current + 2u], word3 = nodes.at[4u * current + 3u];
-      const int first_t = floatBitsToInt(t_min), last_t = floatBitsToInt(found.t[faces_at_once - 1u]);
-      const ivec2 way0 = passage_of(ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz), first_t, last_t),
-                  way1 = passage_of(ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz), first_t, last_t);
-      const bool hit0 = way0.x <= way0.y, hit1 = way1.x <= way1.y;
-      const bool first0 = hit0 && (!hit1 || way0.x <= way1.x);
-      stack[depth] = first0 ? word1.w : word0.w;  // kept if both are hit
-      current = first0 ? word0.w : word1.w;
-      if (hit0 && hit1) ++depth;
-      if (!hit0 && !hit1) current = stack[--depth];
+      const Children met = children_of(nodes, current, ray.node, t_min, found.t[faces_at_once - 1u]);
+      stack[depth] = met.farther;  // kept if both are entered
+      current = met.nearer;
+      if (met.both) ++depth;
+      if (met.none) current = stack[--depth];
       continue;
     }
-    const uint first = current & bvh_leaf_first_mask;
-    const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
-    for (uint i = first; i <= end; ++i) {
-      const uvec4 word_a = corners.at[3u * i], word_b = corners.at[3u * i + 1u], word_c = corners.at[3u * i + 2u];
+    for (uint i = first_of_leaf(current); i <= last_of_leaf(current); ++i) {
       const uint last = faces_at_once - 1u;
       Hit face = Hit(found.t[last], found.id[last], vec2(0));
-      meet_triangle(face, t_min, shear, origin, inverse, widening, uintBitsToFloat(word_a.xyz),
-                    uintBitsToFloat(word_b.xyz), uintBitsToFloat(word_c.xyz), word_a.w);
+      meet_corners(face, corners, i, t_min, ray);
       if (face.id == found.id[last]) continue;
       found.t[last] = face.t;
       found.id[last] = face.id;

@@ -22,7 +22,7 @@ StoredTriangle stored_of(uint triangle) {
   return StoredTriangle(triangle + run.to_stored, k, run.place);
 }
 
-// Whether its corners are stored in the other order than SceneData::corners() has them.
+// True if its corners are stored in the other order than SceneData::corners() has them.
 bool is_mirrored(uint triangle) {
   const uint place = stored_of(triangle).place;
   return place != no_place && parameters.places.at[place].mirrored != 0u;

@@ -13,7 +13,7 @@
 
 namespace vantage::cli {
 
-// What else a station's scanner has of its own.
+// Properties that a station's scanner has of its own, besides its steps of azimuth.
 struct ScannerView {
   std::optional<Angle> zenith_step = {}, horizontal = {}, vertical = {}, zenith_start = {};
   std::optional<double> nearest_m = {}, farthest_m = {};

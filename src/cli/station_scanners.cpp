@@ -95,13 +95,12 @@ std::string quoted(const std::vector<std::string>& names) {
   return names.size() > kNamed ? text + fmt::format(" and {} more", names.size() - kNamed) : text;
 }
 
-// What the file does not tell.
+// Names of scans by what their file does not tell, and of the scanners that are assumed.
 struct Assumed {
   std::vector<std::string> unknown, stepless, by_density, bases;
 
   std::string text(const std::string& file, const std::string& own) const {
-    std::string text =
-        file + " tells neither range limits nor noise: those of " + fmt::format("{}", quoted(bases)) + " are assumed";
+    std::string text = file + " tells neither range limits nor noise: those of " + quoted(bases) + " are assumed";
     if (!unknown.empty())
       text += fmt::format("; no scanner here is called {}, so the plan's own, {}, counts", quoted(unknown), own);
     if (!stepless.empty()) text += "; so few points tell no step, and the scanner's is assumed: " + quoted(stepless);

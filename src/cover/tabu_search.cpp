@@ -18,8 +18,8 @@ struct TabuSearch::Swap {
   }
 };
 
-// What the network loses without one of its members, and what candidates then gain more than now. A swap changes that
-// of few members: those that share an element with one of the two.
+// The loss of the network without one of its members, and what candidates then gain more than now. A swap changes both
+// for few members: those that share an element with one of the two.
 struct TabuSearch::Leaving {
   bool known = false;
   double loss = 0;

@@ -38,7 +38,7 @@ class Ways {
   };
   std::optional<std::uint32_t> nearest(const Vec3& ground) const;
   using DistancesFrom = std::function<std::shared_ptr<const std::vector<float>>(std::uint32_t place)>;
-  // By the places nearest to them.
+  // The distance goes by the places nearest to both.
   std::optional<double> between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,
                                 std::optional<std::uint32_t> b, const DistancesFrom& distances_from) const;
   std::shared_ptr<const std::vector<float>> distances_from(std::uint32_t place) const;

@@ -65,11 +65,9 @@ class Painter {
   RowBand band_;
 };
 
-std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) { return scene.corners(triangle); }
-
 // Unit normal, upwards.
 std::array<double, 3> normal_of(const SceneData& scene, std::uint32_t triangle) {
-  const auto p = corners_of(scene, triangle);
+  const auto p = scene.corners(triangle);
   const double ax = double{p[1].x} - p[0].x, ay = double{p[1].y} - p[0].y, az = double{p[1].z} - p[0].z;
   const double bx = double{p[2].x} - p[0].x, by = double{p[2].y} - p[0].y, bz = double{p[2].z} - p[0].z;
   std::array<double, 3> n{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx};
@@ -116,7 +114,7 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
     for (std::uint32_t t = 0; t < scene.opaque_count(); ++t) {
       std::array<MapPoint, 3> c;
       std::array<double, 3> z;
-      const auto p = corners_of(scene, t);
+      const auto p = scene.corners(t);
       for (std::size_t k = 0; k < 3; ++k) {
         c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
         z[k] = p[k].z;

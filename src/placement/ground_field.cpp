@@ -82,11 +82,6 @@ Slice slice(const Corners& t, double low, double high) {
   return result;
 }
 
-Corners corners_of(const SceneData& scene, std::size_t triangle) {
-  const auto p = scene.corners(static_cast<std::uint32_t>(triangle));
-  return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
-}
-
 // Visits (row, first column, last column) of the column middles that may lie within `reach` of a triangle seen from
 // above.
 struct Grid {
@@ -173,9 +168,9 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   top_.assign(count, -std::numeric_limits<float>::infinity());
   const double least_up = std::cos(slope_);
   tbb::enumerable_thread_specific<std::vector<std::uint64_t>> collected;
-  const auto look = [&](const tbb::blocked_range<std::size_t>& range) {
+  const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
     auto& own = collected.local();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
       const Corners t = corners_of(scene, i);
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       if (n.z == 0) continue;
@@ -191,7 +186,7 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
       });
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangle_count(), 64), look);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
   std::vector<std::uint64_t> all;
   for (const auto& some : collected) all.insert(all.end(), some.begin(), some.end());
   if (plane)
@@ -223,9 +218,9 @@ void GroundField::find_room(const SceneData& scene) {
   const auto mark = [&](std::uint32_t sample, std::uint8_t what) {
     std::atomic_ref<std::uint8_t>(taken_[sample]).fetch_or(what, std::memory_order_relaxed);
   };
-  const auto look = [&](const tbb::blocked_range<std::size_t>& range) {
-    std::size_t mesh = scene.mesh_of(static_cast<std::uint32_t>(range.begin()));
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
+    std::size_t mesh = scene.mesh_of(range.begin());
+    for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
       while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
       const bool door = scene.meshes[mesh].door;
       const Corners t = corners_of(scene, i);
@@ -268,7 +263,7 @@ void GroundField::find_room(const SceneData& scene) {
       });
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangle_count(), 64), look);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
 }
 
 template <class Visit>

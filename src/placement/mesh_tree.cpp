@@ -18,10 +18,7 @@ struct Triangles {
   const SceneData& scene;
   const SceneTree* tree;
   std::uint32_t number(unsigned instance, unsigned primitive) const { return tree->number(instance, primitive); }
-  std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const {
-    const auto p = scene.corners(triangle);
-    return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
-  }
+  std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const { return corners_of(scene, triangle); }
   std::uint32_t number(const RTCPointQueryFunctionArguments& found) const {
     return number(found.context->instStackSize > 0 ? found.context->instID[0] : RTC_INVALID_GEOMETRY_ID, found.primID);
   }

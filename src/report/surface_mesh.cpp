@@ -42,17 +42,18 @@ SceneData thinned(const SceneData& scene, std::size_t triangles, double& error_m
     double error;  // in the mesh's frame
   };
   std::map<std::uint32_t, Simple> simple;  // by first stored triangle
-  const auto simplify = [&](std::uint32_t first, std::uint32_t count) {
+  const auto simplify = [&](std::span<const Triangle> triangles_in) {
+    const auto [low, high] = corner_range(triangles_in);
     std::vector<std::uint32_t> indices;
-    for (std::uint32_t t = first; t < first + count; ++t)
-      indices.insert(indices.end(), scene.triangles[t].begin(), scene.triangles[t].end());
-    const auto [low, high] = std::ranges::minmax(indices);
-    for (std::uint32_t& v : indices) v -= low;
+    for (const Triangle& t : triangles_in)
+      for (const std::uint32_t v : t) indices.push_back(v - low);
     const float* const positions = &scene.positions[low].x;
     const std::size_t vertices = high - low + 1;
     float error = 0;
-    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions, vertices, sizeof(Float3),
-                                    static_cast<std::size_t>(std::ceil(share * count)) * 3, kMostError, 0, &error));
+    indices.resize(
+        meshopt_simplify(indices.data(), indices.data(), indices.size(), positions, vertices, sizeof(Float3),
+                         static_cast<std::size_t>(std::ceil(share * static_cast<double>(triangles_in.size()))) * 3,
+                         kMostError, 0, &error));
     const Simple out{static_cast<std::uint32_t>(thin.triangles.size()), static_cast<std::uint32_t>(indices.size() / 3),
                      error * meshopt_simplifyScale(positions, vertices, sizeof(Float3))};
     for (std::size_t k = 0; k < indices.size(); k += 3)
@@ -66,11 +67,11 @@ SceneData thinned(const SceneData& scene, std::size_t triangles, double& error_m
     if (range.triangle_count == 0) range.first_triangle = next;
     MeshInstance own{next, instance.triangle_count, static_cast<std::uint32_t>(thin.triangles.size()), instance.place};
     if (instance.place == MeshInstance::kNoPlace) {
-      const auto first = scene.triangles.begin() + instance.first_stored;
-      thin.triangles.insert(thin.triangles.end(), first, first + instance.triangle_count);
+      const std::span<const Triangle> own_triangles = scene.stored(instance);
+      thin.triangles.insert(thin.triangles.end(), own_triangles.begin(), own_triangles.end());
     } else {
       const auto [known, first] = simple.emplace(instance.first_stored, Simple{});
-      if (first) known->second = simplify(instance.first_stored, instance.triangle_count);
+      if (first) known->second = simplify(scene.stored(instance));
       own.first_stored = known->second.first_stored, own.triangle_count = known->second.count;
       error_m = std::max(error_m, known->second.error * largest_scale(scene.places[instance.place]));
     }

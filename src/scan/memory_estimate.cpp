@@ -14,6 +14,7 @@
 #include "core/free_memory.hpp"
 #include "core/glm.hpp"
 #include "core/text.hpp"
+#include "scene/positions.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/device_memory.hpp"
 #include "vantage/error.hpp"
@@ -34,12 +35,6 @@ struct SurfaceExtent {
   double cells_m2 = 0;  // an infinite plane with normal n meets |nx| + |ny| + |nz| cells per face of a cell
   double extent_m = 0;
 };
-
-// Local frame.
-std::array<glm::dvec3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
-  const auto p = scene.corners(triangle);
-  return {glm::dvec3(p[0].x, p[0].y, p[0].z), glm::dvec3(p[1].x, p[1].y, p[1].z), glm::dvec3(p[2].x, p[2].y, p[2].z)};
-}
 
 // Calls body(sum, triangle) for every surveyed triangle, and adds up the sums of blocks, always in one order.
 template <class Sum, class Body>

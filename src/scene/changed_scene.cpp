@@ -52,9 +52,8 @@ void add_cells(SceneData& data, const SolidCells& solid, MeshInfo mesh) {
 
 Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
                     const SolidCells& unknown, std::uint32_t unknown_weight) {
-  const std::shared_ptr<const SceneData> flat =
-      scene.data().shares() ? flattened(std::make_shared<const SceneData>(scene.data())) : nullptr;
-  const SceneData& before = flat ? *flat : scene.data();
+  const auto flat = flattened({std::shared_ptr<const SceneData>(), &scene.data()});  // borrows, where nothing is shared
+  const SceneData& before = *flat;
   auto after = std::make_shared<SceneData>(before);
   after->triangles.clear(), after->ranges.clear(), after->meshes.clear();
   after->local_bounds = {};

@@ -2,6 +2,9 @@
 // Positions and directions: stored in float, computed in double.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "core/glm.hpp"
 #include "scene/scene_data.hpp"
 
@@ -10,6 +13,18 @@ namespace vantage {
 inline glm::dvec3 to_glm(const Float3& v) { return {v.x, v.y, v.z}; }
 inline Float3 to_float3(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+// Corners of a triangle of the scene, local frame.
+inline std::array<glm::dvec3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
+  const auto p = scene.corners(triangle);
+  return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
+}
+
+// The box around two others, of which either may be empty.
+inline Box united(Box a, const Box& b) {
+  if (!b.empty()) a.extend(b.min), a.extend(b.max);
+  return a;
 }
 
 // The survey frame's (x, y, z) of a vector that was read by glTF's rule (Y up), if another axis of the file is up. X up

@@ -9,11 +9,18 @@
 #include <utility>
 
 namespace vantage {
-namespace {
 
-Triangle turned(const Triangle& t, bool mirrored) { return mirrored ? Triangle{t[0], t[2], t[1]} : t; }
+std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> triangles) {
+  std::uint32_t low = 0xFFFFFFFFu, high = 0;
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
+  return {low, high};
+}
 
-}  // namespace
+Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
+  const Float3 p = narrow(place(stored) - origin);
+  return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+}
 
 Float3 placed_normal(const MeshPlace& place, const Float3& n) {
   const Vec3 normal = place.normal_x * n.x + place.normal_y * n.y + place.normal_z * n.z;
@@ -51,18 +58,13 @@ const MeshInstance& SceneData::instance_of(std::uint32_t triangle) const {
   return *instance;
 }
 
-Float3 SceneData::placed(const MeshPlace& place, const Float3& stored) const {
-  const Float3 p = narrow(place(stored) - origin);
-  return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};  // −0 becomes 0
-}
-
 std::array<Float3, 3> SceneData::placed_corners(std::uint32_t triangle) const {
   const MeshInstance& instance = instance_of(triangle);
-  const Triangle& v = triangles[triangle - instance.first_triangle + instance.first_stored];
-  if (instance.place == MeshInstance::kNoPlace) return {positions[v[0]], positions[v[1]], positions[v[2]]};
+  const Triangle& t = triangles[triangle - instance.first_triangle + instance.first_stored];
+  if (instance.place == MeshInstance::kNoPlace) return {positions[t[0]], positions[t[1]], positions[t[2]]};
   const MeshPlace& place = places[instance.place];
-  const std::size_t second = place.mirrored ? 2 : 1;
-  return {placed(place, positions[v[0]]), placed(place, positions[v[second]]), placed(place, positions[v[3 - second]])};
+  const Triangle v = turned(t, place.mirrored);
+  return {placed(place, positions[v[0]]), placed(place, positions[v[1]]), placed(place, positions[v[2]])};
 }
 
 Triangle SceneData::attributes(std::uint32_t triangle) const {
@@ -90,16 +92,14 @@ std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scen
   std::size_t stored = scene->positions.size();  // in the local frame
   for (const MeshInstance& instance : scene->instances) {
     if (instance.place == MeshInstance::kNoPlace) continue;
-    for (std::uint32_t t = 0; t < instance.triangle_count; ++t)
-      for (const std::uint32_t v : scene->triangles[instance.first_stored + t])
-        stored = std::min<std::size_t>(stored, v);
+    stored = std::min<std::size_t>(stored, corner_range(scene->stored(instance)).first);
   }
   const auto cut = [&](auto& values) {
     if (!values.empty()) values.resize(stored);
   };
   cut(flat->positions), cut(flat->normals), cut(flat->texcoords), cut(flat->colours);
   for (const MeshInstance& instance : scene->instances) {
-    const auto stored_triangles = std::span(scene->triangles).subspan(instance.first_stored, instance.triangle_count);
+    const std::span<const Triangle> stored_triangles = scene->stored(instance);
     Triangle* const out = flat->triangles.data() + instance.first_triangle;
     if (instance.place == MeshInstance::kNoPlace) {
       std::ranges::copy(stored_triangles, out);
@@ -107,9 +107,8 @@ std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scen
     }
     // A shared mesh's vertices are consecutive, and each belongs to a triangle.
     const MeshPlace& place = scene->places[instance.place];
-    std::uint32_t low = 0xFFFFFFFFu, high = 0;
-    for (const Triangle& t : stored_triangles)
-      for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
+    const std::pair range = corner_range(stored_triangles);
+    const std::uint32_t low = range.first, high = range.second;  // lambdas below take them
     const std::size_t first = flat->positions.size(), count = high - low + 1;
     flat->positions.resize(first + count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/image.hpp"
@@ -27,6 +28,9 @@ inline Float3 narrow(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 using Triangle = std::array<std::uint32_t, 3>;  // indices into SceneData::positions
+inline Triangle turned(const Triangle& t, bool mirrored) { return mirrored ? Triangle{t[0], t[2], t[1]} : t; }
+// The least and the largest index of triangles' corners.
+std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> triangles);
 
 // Base colour only, for the colours of points.
 struct Material {
@@ -50,6 +54,9 @@ struct MeshPlace {
   friend bool operator==(const MeshPlace&, const MeshPlace&) = default;
 };
 
+// Position of a shared mesh where it stands, in the local frame around `origin`. It is computed in double and rounded
+// once; −0 becomes 0, so that equal positions have equal bits.
+Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin);
 // Normal of a shared mesh where it stands; unit, or (0, 0, 0) if the file has none.
 Float3 placed_normal(const MeshPlace& place, const Float3& normal);
 
@@ -111,8 +118,12 @@ struct SceneData {
   // Indices of its corners' texture coordinates and colours.
   Triangle attributes(std::uint32_t triangle) const;
   const MeshInstance& instance_of(std::uint32_t triangle) const;  // REQUIRES: shares()
+  // Triangles of a run as they are stored.
+  std::span<const Triangle> stored(const MeshInstance& run) const {
+    return std::span(triangles).subspan(run.first_stored, run.triangle_count);
+  }
   // Corner of a stored triangle, local frame.
-  Float3 placed(const MeshPlace& place, const Float3& stored) const;
+  Float3 placed(const MeshPlace& place, const Float3& stored) const { return placed_position(place, stored, origin); }
 
   // REQUIRES: consecutive from triangle 0 on.
   void set_instances(std::vector<MeshInstance> all);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <tuple>
 
 #include "scene/local_from_mesh.hpp"
 
@@ -58,11 +59,8 @@ void SceneTree::add_triangles(RTCDevice device, RTCScene to, std::uint32_t first
   const auto triangles = std::span(scene_.triangles).subspan(first, count);
   std::uint32_t low = 0, end = static_cast<std::uint32_t>(scene_.positions.size());
   if (scene_.shares()) {
-    std::uint32_t high = 0;
-    low = end;
-    for (const Triangle& t : triangles)
-      for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
-    end = high + 1;
+    std::tie(low, end) = corner_range(triangles);
+    ++end;
   }
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   // Vertices are copied, since Embree reads past the end of a shared buffer.

@@ -34,16 +34,6 @@ bool moves_rays(const MeshPlace& place) {
   return size >= kLeastScale && size <= kMostScale && size * norm(yz, zx, xy) <= kMostCondition * determinant;
 }
 
-// Local frame, as SceneData::placed().
-Float3 local(const MeshPlace& place, const Float3& p, const Vec3& origin) {
-  return without_minus_zero(narrow(place(p) - origin));
-}
-
-Box extended(Box a, const Box& b) {
-  if (!b.empty()) a.extend(b.min), a.extend(b.max);
-  return a;
-}
-
 // Appends the vertices of a placed mesh. The arrays are as long as the positions once any mesh has such values.
 template <class T, class Value>
 void append(std::vector<T>& values, bool any, std::size_t before, std::size_t count, T fallback, const Value& value) {
@@ -69,8 +59,7 @@ void append_vertices(RawScene& raw, const SharedMesh& mesh, const MeshPlace& pla
 
 void append_triangles(std::vector<Triangle>& out, const SharedMesh& mesh, bool mirrored, std::size_t first_vertex) {
   const auto v = static_cast<std::uint32_t>(first_vertex);
-  for (const Triangle& t : mesh.triangles)
-    out.push_back(mirrored ? Triangle{t[0] + v, t[2] + v, t[1] + v} : Triangle{t[0] + v, t[1] + v, t[2] + v});
+  for (const Triangle& t : mesh.triangles) out.push_back(turned({t[0] + v, t[1] + v, t[2] + v}, mirrored));
 }
 
 }  // namespace
@@ -222,7 +211,7 @@ void SharedCleaner::extend(Box& bounds) const {
             for (std::size_t v = part.begin(); v < part.end(); ++v) box.extend(placed.place(positions[v]));
             return box;
           },
-          extended);
+          united);
     }
 }
 
@@ -235,7 +224,7 @@ void SharedCleaner::drop_without_area(const Vec3& origin) {
       for (const MeshPlace* place : of[m])
         for (std::size_t t = part.begin(); t < part.end(); ++t) {
           const auto corner = [&](std::size_t k) {
-            return to_glm(local(*place, mesh.positions[mesh.triangles[t][k]], origin));
+            return to_glm(placed_position(*place, mesh.positions[mesh.triangles[t][k]], origin));
           };
           if (!has_area(corner(0), corner(1), corner(2))) kept[t] = 0;
         }
@@ -327,7 +316,7 @@ void append_shared(SceneData& data, RawScene& raw) {
               box.extend(widen(data.placed(place, data.positions[v])));
           return box;
         },
-        extended);
+        united);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/beyond.hpp"
+#include "core/graph.hpp"
 #include "scene/changed_scene.hpp"
 #include "taken/model_surface.hpp"
 #include "taken/real_counts.hpp"
@@ -120,17 +121,10 @@ CoverSolution choose(const Table& table, const CoverProblem& problem, std::span<
 // The first of the stations `there` that station `k` ties to `linked_to`, since no chain of links did.
 std::optional<std::size_t> tied(const Table& table, std::span<const std::size_t> there, std::size_t k,
                                 std::size_t linked_to, double link) {
-  std::vector<bool> reached(there.size());
-  std::vector<std::size_t> open{linked_to};
-  reached[linked_to] = true;
-  while (!open.empty()) {
-    const std::size_t from = open.back();
-    open.pop_back();
-    for (std::size_t to = 0; to < there.size(); ++to)
-      if (!reached[to] && table.graph.linked(there[from], there[to], link)) reached[to] = true, open.push_back(to);
-  }
+  const Components parts = components(
+      there.size(), [&](std::size_t i, std::size_t j) { return table.graph.linked(there[i], there[j], link); });
   for (std::size_t other = 0; other < there.size(); ++other)
-    if (!reached[other] && table.graph.linked(k, there[other], link)) return other;
+    if (parts.of[other] != parts.of[linked_to] && table.graph.linked(k, there[other], link)) return other;
   return {};
 }
 

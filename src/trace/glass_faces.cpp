@@ -8,9 +8,14 @@
 
 namespace vantage {
 
-std::vector<bool> faces_of_solids(const SceneData& scene) {
-  std::vector<Triangle> glass;  // no other mesh shares it, so all of it is stored where it stands
+std::vector<Triangle> glass_triangles(const SceneData& scene) {
+  std::vector<Triangle> glass;  // nodes share none, so all of it is stored where it stands
   for (std::uint32_t t = scene.opaque_count(); t < scene.triangle_count(); ++t) glass.push_back(scene.attributes(t));
+  return glass;
+}
+
+std::vector<bool> faces_of_solids(const SceneData& scene) {
+  const std::vector<Triangle> glass = glass_triangles(scene);
   const std::vector<std::uint32_t> neighbours = triangle_neighbours(scene.positions, glass);
   std::vector<bool> closed(glass.size(), true);
   std::vector<std::uint32_t> open;

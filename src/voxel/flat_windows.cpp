@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "core/glm.hpp"
+#include "scene/positions.hpp"
 #include "voxel/clipped_polygon.hpp"
 #include "voxel/triangle_cells.hpp"
 #include "voxel/triangle_lists.hpp"
@@ -34,14 +35,6 @@ constexpr double small_share = 1.0 / 4;
 constexpr std::size_t voxels_at_once = std::size_t{1} << 22;
 // Windows of a cell that one thread takes. A cell of a fine grid has thousands, and thousands of triangles around it.
 constexpr std::size_t windows_a_task = 128;
-
-dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
-
-// Local frame.
-Corners corners_of(const SceneData& scene, std::uint32_t t) {
-  const auto p = scene.corners(t);
-  return {point_of(p[0]), point_of(p[1]), point_of(p[2])};
-}
 
 bool is_small(const Corners& c, double at_most) {
   const dvec3 extent = max(c[0], max(c[1], c[2])) - min(c[0], min(c[1], c[2]));
@@ -332,8 +325,8 @@ void add_small(Window& window, const SmallsAround& around, const Cells& cells, c
     for (std::int64_t b = from[1]; b <= to[1]; ++b)
       for (std::int64_t c = from[2]; c <= to[2]; ++c)
         for (const Small* small : around.in({a, b, c}))
-          if (const dvec3 middle = point_of(small->middle); window.holds(middle))
-            window.add(middle, point_of(small->along), static_cast<double>(small->area));
+          if (const dvec3 middle = to_glm(small->middle); window.holds(middle))
+            window.add(middle, to_glm(small->along), static_cast<double>(small->area));
 }
 
 }  // namespace
@@ -369,7 +362,7 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
                           for (std::size_t i = range.begin(); i != range.end(); ++i) {
                             const VoxelSurface& surface = surfaces[begin + i];
                             if (!(surface.area > 0)) continue;
-                            Window window{point_of(surface.point), point_of(surface.normal), window_m / 2};
+                            Window window{to_glm(surface.point), to_glm(surface.normal), window_m / 2};
                             for (const Large& large : larges) add_clipped(window, large);
                             if (!around.empty())
                               add_small(window, around, narrow, cell_of_key(keys[i] >> 3 * narrow.shift), reach);

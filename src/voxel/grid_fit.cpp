@@ -58,8 +58,7 @@ std::vector<Slab> slabs_of(const SceneData& scene, std::span<const MeshRange> su
         [&](const tbb::blocked_range<std::uint32_t>& range) {
           Slabs& own = collected.local();
           for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
-            const auto corners = scene.corners(t);
-            const std::array<glm::dvec3, 3> p{to_glm(corners[0]), to_glm(corners[1]), to_glm(corners[2])};
+            const std::array<glm::dvec3, 3> p = corners_of(scene, t);
             const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
                          high = std::max({p[0][axis], p[1][axis], p[2][axis]});
             if (high - low > thickest) continue;
@@ -153,10 +152,7 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
             for (const Float3& p : scene.corners(t)) box.extend(widen(p));
           return box;
         },
-        [](Box a, const Box& b) {
-          if (!b.empty()) a.extend(b.min), a.extend(b.max);
-          return a;
-        });
+        united);
   if (bounds.empty()) {
     fit.inverse_size = static_cast<float>(1 / user_size_m);
     return fit;

@@ -42,7 +42,7 @@ std::uint64_t whole_number(const XmlElement& points, const char* name) {
   throw Refused("its points have no " + std::string(name) + "; export it again");
 }
 
-// Of a row or column, whatever a file says.
+// A row or column, held within its type whatever a file says.
 std::uint32_t index_of(double value) {
   return static_cast<std::uint32_t>(std::clamp(value, 0.0, double{std::numeric_limits<std::uint32_t>::max()}));
 }

@@ -281,15 +281,13 @@ class Finder {
       if (end - own > 0.01)
         stair.steps.push_back({box(flight.head(), along, end - own, flight.width), half - riser - kThickness_m, half});
     }
-    stair.steps.push_back(
-        {{place(end, high), place(end, low), place(end + best.depth, low), place(end + best.depth, high)},
-         half - riser - kThickness_m,
-         half});
+    const std::array<Point, 4> platform{place(end, high), place(end, low), place(end + best.depth, low),
+                                        place(end + best.depth, high)};
+    stair.steps.push_back({platform, half - riser - kThickness_m, half});
     add_steps(best.second.turned(), half, riser, stair.steps);
     for (const Flight& flight : {best.first, best.second})
       stair.hole.push_back(box(flight.foot, along, end - dot(along, flight.foot), flight.width));
-    stair.hole.push_back(
-        {place(end, high), place(end, low), place(end + best.depth, low), place(end + best.depth, high)});
+    stair.hole.push_back(platform);
     found_.stairs.push_back(std::move(stair));
     return true;
   }

@@ -506,8 +506,7 @@ class Loader {
     const bool mirrored = world_from_mesh && mirrors(glm::dmat3(*world_from_mesh));
     mirrored_meshes_ += mirrored ? 1 : 0;
     for (const Triangle& t : primitive.triangles)
-      out.push_back(mirrored ? Triangle{t[0] + offset, t[2] + offset, t[1] + offset}
-                             : Triangle{t[0] + offset, t[1] + offset, t[2] + offset});
+      out.push_back(turned({t[0] + offset, t[1] + offset, t[2] + offset}, mirrored));
   }
 
   void append_positions(const Primitive& primitive, const Transform& world_from_mesh, std::vector<glm::dvec3>& out) {

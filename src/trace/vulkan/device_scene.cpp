@@ -56,9 +56,7 @@ MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
 void fill_neighbours(const SceneData& scene, std::uint32_t first, std::uint32_t count,
                      std::vector<std::uint32_t>& neighbours) {
   std::vector<Triangle> own(scene.triangles.begin() + first, scene.triangles.begin() + first + count);
-  std::uint32_t low = 0xFFFFFFFFu, high = 0;
-  for (const Triangle& t : own)
-    for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
+  const auto [low, high] = corner_range(own);
   for (Triangle& t : own)
     for (std::uint32_t& v : t) v -= low;
   const auto found = triangle_neighbours(std::span(scene.positions).subspan(low, high - low + 1), own);
@@ -155,13 +153,11 @@ void DeviceScene::upload_places() {
 void DeviceScene::upload_glass() {
   const SceneData& scene = *scene_.scene;
   const std::uint32_t first = scene.opaque_count();
-  std::vector<Triangle> triangles;  // no other mesh shares glass, so all of it is stored where it stands
-  for (std::uint32_t t = first; t < scene.triangle_count(); ++t) triangles.push_back(scene.attributes(t));
   const std::vector<bool> of_solid = faces_of_solids(scene);
   std::vector<std::uint32_t> ids(of_solid.size());
   for (std::size_t k = 0; k < ids.size(); ++k)
     ids[k] = (first + static_cast<std::uint32_t>(k)) | (of_solid[k] ? surveyed_bit : 0);
-  const Bvh bvh = build_bvh(scene.positions, triangles, ids);
+  const Bvh bvh = build_bvh(scene.positions, glass_triangles(scene), ids);
   glass_nodes_ = make_device_buffer<BvhNode>(device_, commands_, bvh.nodes, "nodes of glass");
   glass_corners_ = make_device_buffer<BvhTriangle>(device_, commands_, bvh.triangles, "triangles of glass");
   parameters_.glass_nodes = glass_nodes_.address();

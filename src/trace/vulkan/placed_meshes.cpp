@@ -26,8 +26,7 @@ PlacedMeshes placed_meshes(const SceneData& scene) {
   for (const MeshInstance& instance : scene.instances) {
     if (instance.place == MeshInstance::kNoPlace || instance.first_triangle >= scene.opaque_count()) continue;
     const auto [mesh, first] = known.emplace(instance.first_stored, static_cast<std::uint32_t>(placed.meshes.size()));
-    if (first)
-      placed.meshes.push_back(std::span(scene.triangles).subspan(instance.first_stored, instance.triangle_count));
+    if (first) placed.meshes.push_back(scene.stored(instance));
     const bool surveyed = scene.meshes[scene.mesh_of(instance.first_triangle)].role == Role::surveyed;
     placed.placements.push_back({mesh->second, instance.first_triangle | (surveyed ? surveyed_bit : 0),
                                  local_from_mesh(scene, scene.places[instance.place])});
