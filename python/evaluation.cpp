@@ -224,10 +224,11 @@ void add_evaluations(py::module_& m) {
       .def_property_readonly(
           "voxel_stations",
           [](const py::object& self) {
-            return view<std::uint64_t>(std::span(field_of(self.cast<const Evaluation&>(), "voxel_stations").stations),
-                                       self);
+            const StationMasks& masks = field_of(self.cast<const Evaluation&>(), "voxel_stations").stations;
+            return adopt<std::uint64_t>(masks.all_words(), {static_cast<py::ssize_t>(masks.words() * masks.voxels())});
           },
-          "Station masks: bit i is set if station i has a point in the voxel: (N_v,), read-only.")
+          "Station masks: bit i is set if station i has a point in the voxel: (N_v,), a copy. Beyond 64 stations the "
+          "masks of the next\n64 follow, and so on.")
       .def_readonly("voxels", &Evaluation::voxels, "Surveyed voxels of the site, N_v.")
       .def_property_readonly(
           "sample", [](const Evaluation& e) { return e.counts.voxels; },

@@ -97,6 +97,17 @@ class Archive {
     static_assert(std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>);
     raw(&value, sizeof value);
   }
+  void pass_plain(StationMasks& masks) {
+    std::size_t voxels = masks.voxels(), words = masks.words();
+    pass(voxels), pass(words);
+    std::vector<std::uint64_t> all = masks.all_words();
+    pass(all);
+    if (!reading_) return;
+    if (words == 0 ? !all.empty() : all.size() % words != 0 || all.size() / words != voxels)
+      throw Error(Errc::malformed_file, "a pickle of vantage has station masks of another number of voxels");
+    masks = StationMasks(voxels, words * mask_bits);
+    for (std::size_t w = 0; w < words; ++w) masks.set_words(w, std::span(all).subspan(w * voxels, voxels));
+  }
   void pass_plain(std::string& text) {
     text.resize(count(text.size(), 1));
     raw(text.data(), text.size());

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,8 @@ class PointCloudWriter {
 };
 
 /// The coverage cartography (figures 7b, 11, 17 of the method): every surveyed voxel as a coloured point, from red (no
-/// point) through yellow to green (goal reached), with its ratio, count and station mask. Binary PLY, survey frame.
+/// point) through yellow to green (goal reached), with its ratio, count and station mask; of more than 64 stations the
+/// number of those that have a point in it. Binary PLY, survey frame.
 void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field);
 
 /// Square matrix with a header line; row and column i are station i.
@@ -153,7 +155,7 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   std::span<const StationError> errors = {},
                                                   std::span<const Target> targets = {});
 
-/// Writes a whole result folder and makes it if needed. Returns the index of the chosen entry, the `answer()`. Files:
+/// Writes a whole result folder and makes it if needed. Files:
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
 /// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put
@@ -161,8 +163,10 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan and, with `field`, registration.ply, .png and .svg.
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                       const VoxelField* field = nullptr);
+/// Returns the names of the pictures of the plan, without plan.png, that were not begun when `late` was requested.
+/// These are left out, since pictures of a large site take seconds each.
+std::vector<std::string> write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                                    const VoxelField* field = nullptr, const std::stop_token& late = {});
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);

@@ -2,9 +2,11 @@
 /// Tracing's public types: engines and their devices, counts of a network, counts of each voxel.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -139,12 +141,51 @@ struct NetworkCounts {
   std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
 };
 
+/// Which stations have a point in which voxel. A station sees a small part of a large site, so 64 stations take memory
+/// only for those blocks of voxels in which one of them has a point.
+class StationMasks {
+ public:
+  static constexpr std::size_t block_voxels = 4096;
+
+  StationMasks() = default;
+  /// No station has a point yet.
+  StationMasks(std::size_t voxels, std::size_t stations);
+
+  bool empty() const { return words_ == 0; }  ///< No masks were asked for.
+  std::size_t voxels() const { return voxels_; }
+  std::size_t words() const { return words_; }  ///< Of 64 stations each.
+  /// Bit b means that station 64 w + b has a point in the voxel. REQUIRES: w < words(), voxel < voxels().
+  std::uint64_t word(std::size_t w, std::size_t voxel) const {
+    const std::vector<std::uint64_t>& own = block(w, voxel / block_voxels);
+    return own.empty() ? 0 : own[voxel % block_voxels];
+  }
+  /// Word w of all voxels. REQUIRES: masks.size() == voxels(). Parallel.
+  void set_words(std::size_t w, std::span<const std::uint64_t> masks);
+  /// Word w of the voxels from block_voxels · k on; empty if it is 0 for all of them.
+  const std::vector<std::uint64_t>& block(std::size_t w, std::size_t k) const { return blocks_[w * blocks() + k]; }
+  /// Calls visit(station) for each station with a point in the voxel, ascending.
+  template <class Visit>
+  void for_each_station(std::size_t voxel, const Visit& visit) const {
+    for (std::size_t w = 0; w < words_; ++w)
+      for (std::uint64_t mask = word(w, voxel); mask != 0; mask &= mask - 1)
+        visit(w * mask_bits + static_cast<std::size_t>(std::countr_zero(mask)));
+  }
+  /// Every word: word w of voxel k is at w · voxels() + k.
+  std::vector<std::uint64_t> all_words() const;
+
+  friend bool operator==(const StationMasks&, const StationMasks&) = default;
+
+ private:
+  std::size_t blocks() const { return (voxels_ + block_voxels - 1) / block_voxels; }
+
+  std::size_t voxels_ = 0, words_ = 0;
+  std::vector<std::vector<std::uint64_t>> blocks_;
+};
+
 /// Voxel field: the map of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
 struct VoxelField {
   std::vector<std::uint32_t> count;  ///< Points, saturating.
-  /// Word w of voxel k is at w · count.size() + k, with `mask_words()` words in all. Bit b of it means that station 64
-  /// w + b has a point in the voxel. Empty without overlap.
-  std::vector<std::uint64_t> stations;
+  StationMasks stations;             ///< Empty without overlap.
 };
 
 }  // namespace vantage

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -247,7 +248,12 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   const auto begun = std::chrono::steady_clock::now();
-  write_plan(folder, result, site, field ? &*field : nullptr);
+  const std::vector<std::string> not_drawn = write_plan(folder, result, site, field ? &*field : nullptr, all_by.stop());
+  if (!not_drawn.empty())
+    spdlog::warn(
+        "not drawn, since the time was over: {}; vantage evaluate SITE --stations {} --picture plan.png draws all "
+        "levels",
+        fmt::join(not_drawn, ", "), (folder / "front.json").string());
   const bool late = all_by.passed() && seconds_since(begun) > kLongToDraw_s;
   std::optional<MissedVoxels> judged;
   if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, *field, program);

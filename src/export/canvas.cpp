@@ -5,9 +5,10 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <algorithm>
 #include <map>
 #include <numbers>
-#include <regex>
+#include <string_view>
 
 #include "core/atomic_file.hpp"
 #include "vantage/error.hpp"
@@ -57,17 +58,22 @@ void require(cairo_status_t status, const std::filesystem::path& file) {
 // Renumbers surfaces and images from 0: cairo numbers them over the life of the process, and equal pictures must be
 // equal files.
 std::string with_own_numbers(const std::string& svg) {
-  static const std::regex kName("([\"#(])(surface|image|mask|source|clip|pattern)([0-9]+)");
-  std::map<std::string, std::size_t> numbers;
+  constexpr std::string_view kNames[] = {"surface", "image", "mask", "source", "clip", "pattern"};
+  const std::string_view all = svg;
+  std::map<std::string_view, std::size_t> numbers;
   std::string out;
   std::size_t last = 0;
-  for (auto it = std::sregex_iterator(svg.begin(), svg.end(), kName); it != std::sregex_iterator(); ++it) {
-    const auto begin = static_cast<std::size_t>(it->position(3));
-    const std::size_t number = numbers.try_emplace((*it)[2].str() + (*it)[3].str(), numbers.size()).first->second;
-    out.append(svg, last, begin - last).append(std::to_string(number));
-    last = begin + static_cast<std::size_t>(it->length(3));
+  for (std::size_t at = all.find_first_of("\"#("); at != all.npos; at = all.find_first_of("\"#(", at + 1)) {
+    const std::string_view rest = all.substr(at + 1);
+    const auto* const name = std::ranges::find_if(kNames, [&](std::string_view one) { return rest.starts_with(one); });
+    if (name == std::end(kNames)) continue;
+    const std::size_t end = std::min(rest.find_first_not_of("0123456789", name->size()), rest.size());
+    if (end == name->size()) continue;
+    const std::size_t number = numbers.try_emplace(rest.substr(0, end), numbers.size()).first->second;
+    out.append(all, last, at + 1 + name->size() - last).append(std::to_string(number));
+    last = at + 1 + end;
   }
-  return out.append(svg, last);
+  return out.append(all, last);
 }
 
 }  // namespace

@@ -12,23 +12,26 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
     throw Error(Errc::invalid_argument,
                 "the cartography's counts and stations of each voxel need a .ply file, not " + file.string());
   const std::uint64_t voxels = simulator.voxel_count();
-  if (field.count.size() != voxels || (voxels > 0 && field.stations.size() % voxels != 0))
+  if (field.count.size() != voxels || (!field.stations.empty() && field.stations.voxels() != voxels))
     throw Error(Errc::invalid_argument, "the voxel field has " + std::to_string(field.count.size()) +
                                             " counts, the scene " + std::to_string(voxels) + " surveyed voxels");
-  const std::size_t words = voxels > 0 ? field.stations.size() / voxels : 0;
+  const std::size_t words = field.stations.words();
   std::vector<PlyProperty> more{{"float", "ratio"}, {"uint", "count"}};
-  // PLY has no 64-bit integer: one word has bits of stations 1 to 32, the next of 33 to 64, and so on.
-  for (std::size_t w = 0; w < words; ++w) {
-    const std::string of = w == 0 ? "" : "_" + std::to_string(w + 1);
-    more.push_back({"uint", "stations" + of + "_low"}), more.push_back({"uint", "stations" + of + "_high"});
-  }
+  // PLY has no 64-bit integer: one word has bits of stations 1 to 32, the other of 33 to 64. Bits of a thousand
+  // stations would be gigabytes.
+  if (words == 1) more.push_back({"uint", "stations_low"}), more.push_back({"uint", "stations_high"});
+  if (words > 1) more.push_back({"uint", "stations"});
   write_voxel_ply(file, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
     const double ratio = std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
     append(bytes, static_cast<float>(ratio));
     append(bytes, field.count[rank]);
-    for (std::size_t w = 0; w < words; ++w) {
-      append(bytes, static_cast<std::uint32_t>(field.stations[w * voxels + rank]));
-      append(bytes, static_cast<std::uint32_t>(field.stations[w * voxels + rank] >> 32));
+    if (words == 1) {
+      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, rank)));
+      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, rank) >> 32));
+    } else if (words > 1) {
+      std::uint32_t seen = 0;
+      field.stations.for_each_station(rank, [&](std::size_t) { ++seen; });
+      append(bytes, seen);
     }
     return VoxelVertex{static_cast<std::uint32_t>(rank), ramp(kCoverageRamp, ratio)};
   });

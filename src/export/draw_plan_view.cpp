@@ -218,7 +218,7 @@ std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const
 
 }  // namespace
 
-std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
+std::vector<PlanPage> plan_view_pictures(const PlanView& view, const std::stop_token& late) {
   if (view.links.values.size() != view.stations.size() && view.links.values.size() != 0)
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) +
                                             " stations, but an overlap matrix of " +
@@ -231,8 +231,11 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
   // One of all levels; of several each on its own, too.
   std::vector<PlanPage> pages(levels.size() > 1 ? levels.size() + 1 : 1);
   tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
-    pages[k] = k == 0 ? PlanPage{"", draw_page(view, window, levels, 0, levels.size())}
-                      : PlanPage{"-level-" + std::to_string(k), draw_page(view, window, levels, k - 1, 1)};
+    pages[k].suffix = k == 0 ? "" : "-level-" + std::to_string(k);
+    if (k == 0)
+      pages[k].canvas = draw_page(view, window, levels, 0, levels.size());
+    else if (!late.stop_requested())
+      pages[k].canvas = draw_page(view, window, levels, k - 1, 1);
   });
   return pages;
 }

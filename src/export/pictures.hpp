@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct PlanPage {
   std::string suffix;  // of the file's name: "" or "-level-2"
   std::unique_ptr<Canvas> canvas;
 };
-// Throws Error invalid_argument if there is nothing to show, or the matrix does not belong to the stations.
-std::vector<PlanPage> plan_view_pictures(const PlanView& view);
+// Pages after the first that are not begun when `late` is requested have no canvas. Throws Error invalid_argument if
+// there is nothing to show, or the matrix does not belong to the stations.
+std::vector<PlanPage> plan_view_pictures(const PlanView& view, const std::stop_token& late = {});
 
 }  // namespace vantage

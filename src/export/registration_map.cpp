@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/station_masks.hpp"
 #include "core/text.hpp"
 #include "export/voxel_errors.hpp"
 #include "export/voxel_map.hpp"
@@ -24,9 +23,9 @@ constexpr std::uint64_t kMostDrawn = 200'000;
 
 void check(const Simulator& simulator, const VoxelField& field) {
   const std::uint64_t voxels = simulator.voxel_count();
-  if (field.stations.size() < voxels || (voxels > 0 && field.stations.size() % voxels != 0))
+  if (field.stations.voxels() != voxels)
     throw Error(Errc::invalid_argument, "registration map: the voxel field has stations of " +
-                                            std::to_string(field.stations.size()) + " voxels, the scene " +
+                                            std::to_string(field.stations.voxels()) + " voxels, the scene " +
                                             std::to_string(voxels) + " surveyed ones");
 }
 
@@ -44,7 +43,7 @@ std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField&
     const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
     double squares = 0;
     int seen = 0;
-    for_each_station(field.stations, simulator.voxel_count(), ranks[k], [&](std::size_t station) {
+    field.stations.for_each_station(ranks[k], [&](std::size_t station) {
       const double one = error.at(station, place);
       squares += one * one;
       ++seen;
@@ -60,7 +59,7 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
   std::vector<std::uint32_t> ranks;
   for (std::uint32_t rank = 0; rank < simulator.voxel_count(); ++rank) {
     bool seen = false;
-    for_each_station(field.stations, simulator.voxel_count(), rank, [&](std::size_t) { seen = true; });
+    field.stations.for_each_station(rank, [&](std::size_t) { seen = true; });
     if (seen) ranks.push_back(rank);
   }
   const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);

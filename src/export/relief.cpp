@@ -147,18 +147,24 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
   constexpr double kLight[3] = {-0.5, 0.5, 0.7071067811865476};  // from the north-west, 45° high
 
   tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+    std::uint32_t last = kNothing;  // one triangle has many pixels side by side
+    double facing = 0;
+    Colour base;
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t k = y * w + x;
       const std::uint32_t t = heights.triangle[k];
       if (t == kNothing) continue;
-      const auto n = normal_of(scene, t);
-      const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
-      double light = 0.58 + 0.52 * lit;
-      if (n[2] < kSteep) light = 0.62;
+      if (t != last) {
+        const auto n = normal_of(scene, t);
+        const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
+        facing = n[2] < kSteep ? 0.62 : 0.58 + 0.52 * lit;
+        const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;
+        base = surveyed ? kSurveyedTint : kBlockingTint;
+        last = t;
+      }
+      double light = facing;
       light *= 1 - 0.38 * std::clamp((double{near[k]} - heights.z[k]) / near_scale, 0.0, 1.0);
       light *= 1 - 0.38 * std::clamp((double{far[k]} - heights.z[k]) / far_scale, 0.0, 1.0);
-      const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;
-      const Colour base = surveyed ? kSurveyedTint : kBlockingTint;
       const auto c = to_bytes({base.r * light, base.g * light, base.b * light});
       pixels[k] = 0xFF000000u | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
     }

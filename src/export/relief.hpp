@@ -54,6 +54,18 @@ void for_row_bands(const MapWindow& window, const Paint& paint) {
   });
 }
 
+// Where a triangle's sides cross the row through y, about.
+inline std::pair<double, double> row_within(const std::array<MapPoint, 3>& c, double y) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const MapPoint &from = c[k], &to = c[(k + 1) % 3];
+    if (y < std::min(from.y, to.y) || y > std::max(from.y, to.y)) continue;
+    const double share = from.y == to.y ? 0 : (y - from.y) / (to.y - from.y), x = from.x + share * (to.x - from.x);
+    low = std::min({low, x, from.y == to.y ? to.x : x}), high = std::max({high, x, from.y == to.y ? to.x : x});
+  }
+  return {low, high};
+}
+
 // Calls put(pixel, weights of the corners) for each pixel of the band whose centre lies in the triangle.
 template <class Put>
 void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, Put&& put, const RowBand& band = {}) {
@@ -64,8 +76,12 @@ void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, P
   const auto [y0, y1] =
       pixels_between(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), window.rows);
   for (std::size_t y = std::max(y0, band.first); y < std::min(y1, band.end); ++y) {
-    for (std::size_t x = x0; x < x1; ++x) {
-      const double px = static_cast<double>(x) + 0.5, py = static_cast<double>(y) + 0.5;
+    const double py = static_cast<double>(y) + 0.5;
+    const auto [low, high] = row_within(c, py);
+    // A pixel more on both sides, since the weights decide.
+    const auto [first, end] = pixels_between(low - 1, high + 1, window.columns);
+    for (std::size_t x = std::max(x0, first); x < std::min(x1, end); ++x) {
+      const double px = static_cast<double>(x) + 0.5;
       const double a = ((c[1].x - px) * (c[2].y - py) - (c[2].x - px) * (c[1].y - py)) / area;
       const double b = ((c[2].x - px) * (c[0].y - py) - (c[0].x - px) * (c[2].y - py)) / area;
       if (a >= 0 && b >= 0 && a + b <= 1) put(y * window.columns + x, std::array{a, b, 1 - a - b});

@@ -2,7 +2,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <system_error>
 
 #include "core/text.hpp"
@@ -33,8 +35,8 @@ std::string title_of(const PlanEntry& entry) {
 
 }  // namespace
 
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                       const VoxelField* field) {
+std::vector<std::string> write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                                    const VoxelField* field, const std::stop_token& late) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
@@ -42,8 +44,7 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
   const Simulator& simulator = site.simulator();
-  const std::size_t chosen = answer(result);
-  const PlanEntry& entry = result.front[chosen];
+  const PlanEntry& entry = result.front[answer(result)];
 
   write_front_csv(folder / "front.csv", result);
   write_text(folder / "front.json", front_json(result, simulator));
@@ -54,6 +55,14 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 
   const auto save = [&](const std::string& name, const Canvas& picture) {
     for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
+  };
+  std::vector<std::string> left_out;
+  std::mutex adding;
+  const auto leave_out = [&](const std::string& name) {
+    std::error_code ignored;
+    std::filesystem::remove(folder / name, ignored);  // that of an earlier run is not this plan's
+    const std::lock_guard lock(adding);
+    left_out.push_back(name);
   };
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
@@ -70,9 +79,14 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   // Clouds and pictures are made side by side. Both files of a picture are made by one thread, since they share it.
   tbb::task_group files;
   files.run([&] {
-    const std::vector<PlanPage> pages = plan_view_pictures(view);
-    tbb::parallel_for(std::size_t{0}, pages.size(),
-                      [&](std::size_t k) { save("plan" + pages[k].suffix, *pages[k].canvas); });
+    const std::vector<PlanPage> pages = plan_view_pictures(view, late);
+    tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
+      for (const std::string& name : {"plan" + pages[k].suffix + ".png", "plan" + pages[k].suffix + ".svg"})
+        if (pages[k].canvas && (name == "plan.png" || !late.stop_requested()))
+          pages[k].canvas->save(folder / name);
+        else
+          leave_out(name);
+    });
   });
   if (field) files.run([&] { write_coverage_ply(folder / "coverage.ply", simulator, *field); });
   if (field && entry.registration) {
@@ -91,7 +105,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   files.wait();
   if (!entry.targets.empty()) write_targets_csv(folder / "targets.csv", entry.targets, names);
   write_station_files(folder, {entry.stations, names, entry.targets}, links, site);
-  return chosen;
+  std::ranges::sort(left_out);
+  return left_out;
 }
 
 }  // namespace vantage

@@ -148,8 +148,8 @@ void pass(Writer& writer, const Identity& identity) { pass_identity(writer, iden
 void pass(Reader& reader, Identity& identity) { pass_identity(reader, identity); }
 void pass(Writer& writer, const Opened& opened) { pass_opened(writer, opened); }
 void pass(Reader& reader, Opened& opened) { pass_opened(reader, opened); }
-void pass(Writer& writer, const VoxelField& field) { pass_field(writer, field); }
-void pass(Reader& reader, VoxelField& field) { pass_field(reader, field); }
+void pass(Writer& writer, const PassField& field) { pass_field(writer, field); }
+void pass(Reader& reader, PassField& field) { pass_field(reader, field); }
 void pass(Writer& writer, const Tracer::RawChunk& chunk) { pass_chunk(writer, chunk); }
 void pass(Reader& reader, Tracer::RawChunk& chunk) { pass_chunk(reader, chunk); }
 

@@ -31,7 +31,7 @@ Message count(Tracer& tracer, Reader& reader, const Progress& progress) {
   const Networks networks = read_networks(reader);
   Tracer::CountOptions options;
   reader.raw(options.masks), reader.raw(options.skip);
-  VoxelField field;
+  PassField field;
   const bool with_field = reader.raw<bool>();
   if (with_field) options.field = &field;
   const NetworkCounts counts = tracer.count(networks.stations.at(0), networks.sizes.at(0), options, progress);

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/station_masks.hpp"
-
 namespace vantage {
 namespace {
 
@@ -103,8 +101,8 @@ void spread(const CoverageCells& cells, std::vector<bool> known, Give&& give) {
 
 Seer seer_of(const VoxelField& field, std::uint32_t rank) {
   Seer seer = 0;
-  for_each_station(field.stations, field.count.size(), rank,
-                   [&](std::size_t station) { seer = together(seer, static_cast<Seer>(station + 1)); });
+  field.stations.for_each_station(rank,
+                                  [&](std::size_t station) { seer = together(seer, static_cast<Seer>(station + 1)); });
   return seer;
 }
 

@@ -44,6 +44,8 @@ std::uint32_t stop_at(CountTo count_to, double goal) {
 }
 
 constexpr std::uint32_t sample_groups = 20;
+// Voxels up to which the planes of all are kept, some 700 MB; larger fields are registered by parts.
+constexpr std::uint64_t kKeptPlanes = std::uint64_t{1} << 23, kPlanesAtOnce = std::uint64_t{1} << 22;
 constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
                                         scan_colour | scan_voxel | scan_ghost | scan_returns;
 
@@ -254,26 +256,21 @@ struct Simulator::Impl {
                        });
   }
 
-  // Planes of a sample, or of all voxels, which is the one from 0. Uses the scanner's range noise, whether it is
-  // simulated or not. None if stopped: planes of millions of voxels take seconds.
-  std::optional<RegistrationJob> registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
-                                                 const RegistrationModel& model, bool groups,
-                                                 const std::stop_token& stop) {
+  static void check_model(const RegistrationModel& model) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    const SamplePatches& own = patches.get(
-        [&](const SamplePatches& one) {
-          return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
-        },
-        [&] {
-          return SamplePatches{from, std::make_shared<Patches>(make_patches(
-                                         data(), *grid, voxel_indices, make_pattern(registered.front()), model, stop))};
-        });
-    if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
+  }
+  // Empty if stopped: planes of millions of voxels take seconds.
+  Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
+                     const std::stop_token& stop) const {
+    return make_patches(data(), *grid, voxel_indices, make_pattern(registered.front()), model, stop);
+  }
+  // Their range noise counts, whether it is simulated or not.
+  const std::vector<PatchScanner>& scanners_of_patches() {
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
         return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
@@ -282,7 +279,41 @@ struct Simulator::Impl {
         patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
                                   static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
     }
-    return RegistrationJob{own.patches, patch_scanners, groups};
+    return patch_scanners;
+  }
+
+  // Planes of a sample, or of all voxels, which is the one from 0. None if stopped.
+  std::optional<RegistrationJob> registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
+                                                 const RegistrationModel& model, bool groups,
+                                                 const std::stop_token& stop) {
+    check_model(model);
+    const SamplePatches& own = patches.get(
+        [&](const SamplePatches& one) {
+          return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
+        },
+        [&] {
+          return SamplePatches{from, std::make_shared<Patches>(patches_of(voxel_indices, model, stop))};
+        });
+    if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
+    return RegistrationJob{own.patches, scanners_of_patches(), groups};
+  }
+  // Of every voxel. None if stopped.
+  std::optional<RegistrationSums> register_field(std::span<const TraceStation> stations, const NetworkCounts& counts,
+                                                 const StationMasks& masks, const RegistrationModel& model,
+                                                 const std::stop_token& stop) {
+    check_model(model);
+    const bool kept = grid->size() <= kKeptPlanes;
+    const auto planes = [&](std::size_t first, std::size_t many) -> std::shared_ptr<const Patches> {
+      std::vector<std::uint32_t> voxel_indices(many);
+      std::iota(voxel_indices.begin(), voxel_indices.end(), static_cast<std::uint32_t>(first));
+      if (kept) {
+        const std::optional<RegistrationJob> job = registration_of(voxel_indices, 0, model, false, stop);
+        return job ? job->patches : nullptr;
+      }
+      auto made = std::make_shared<const Patches>(patches_of(voxel_indices, model, stop));
+      return made->patches.size() < many ? nullptr : made;
+    };
+    return sum_patches(planes, kept ? grid->size() : kPlanesAtOnce, scanners_of_patches(), stations, counts, masks);
   }
 
   // Runs `work` alone. The isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call
@@ -499,8 +530,9 @@ NetworkCounts Simulator::Impl::count_beams(std::span<const TraceStation> station
   const auto start = std::chrono::steady_clock::now();
   const std::size_t voxels = grid->size();
   field.count.assign(voxels, 0);
-  field.stations.assign(masks ? voxels * mask_words(station_count) : 0, 0);
+  field.stations = masks ? StationMasks(voxels, station_count) : StationMasks();
   std::vector<std::uint32_t> points(voxels);
+  std::vector<std::uint64_t> word(masks ? voxels : 0);  // of the 64 stations that are counted
   NetworkCounts sums;
   sums.points.resize(station_count), sums.points_on_surveyed.resize(station_count), sums.mixed.resize(station_count);
   if (limited()) sums.dropped.resize(station_count);
@@ -516,13 +548,17 @@ NetworkCounts Simulator::Impl::count_beams(std::span<const TraceStation> station
     sums.points_on_surveyed[station.place] = own->points_on_surveyed;
     sums.mixed[station.place] = own->mixed;
     if (limited()) sums.dropped[station.place] = own->dropped;
-    const std::size_t word = station.place / mask_bits * voxels;
     for (std::size_t v = 0; v < voxels; ++v) {
       add_saturating(field.count[v], points[v]);
-      if (masks && points[v] > 0) field.stations[word + v] |= std::uint64_t{1} << station.bit();
+      if (masks && points[v] > 0) word[v] |= std::uint64_t{1} << station.bit();
+    }
+    const std::size_t w = station.place / mask_bits;
+    if (masks && (k + 1 == stations.size() || stations[k + 1].place / mask_bits != w)) {
+      field.stations.set_words(w, word);
+      std::ranges::fill(word, 0);
     }
   }
-  NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal, grid->demands());
+  NetworkCounts counts = reduce_field(field, station_count, goal, grid->demands());
   counts.rays = sums.rays, counts.cancelled = sums.cancelled, counts.trace_seconds = seconds_since(start);
   counts.points = std::move(sums.points), counts.points_on_surveyed = std::move(sums.points_on_surveyed);
   counts.dropped = std::move(sums.dropped), counts.mixed = std::move(sums.mixed);
@@ -537,7 +573,7 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
     const std::uint32_t point_weight = grid->demands().least_point_weight();
     if (options.field) {
       options.field->count.assign(grid->size(), 0);
-      options.field->stations.assign(grid->size() * mask_words(network.size()), 0);
+      options.field->stations = StationMasks(grid->size(), network.size());
     }
     NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_weight, network.size(),
                                         options.overlap, options.registration.has_value());
@@ -550,18 +586,14 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   VoxelField own;
   VoxelField* field = (options.registration || options.beam) && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
-  NetworkCounts counts =
-      options.beam
-          ? count_beams(active, size, *options.beam, options.overlap, *field, progress)
-          : count_in_passes(*tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field},
-                            *grid, goal, progress);
+  NetworkCounts counts = options.beam
+                             ? count_beams(active, size, *options.beam, options.overlap, *field, progress)
+                             : count_in_passes(*tracer, active, size, {.masks = options.overlap, .skip = options.skip},
+                                               field, *grid, goal, progress);
   if (options.registration && !counts.cancelled) {
-    std::vector<std::uint32_t> voxel_indices(grid->size());
-    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
-    const std::optional<RegistrationJob> job =
-        registration_of(voxel_indices, 0, *options.registration, false, progress.stop);
-    if (job)
-      take_registration(counts, sum_patches(*job, active, size, field->stations, 0));
+    auto sums = register_field(active, counts, field->stations, *options.registration, progress.stop);
+    if (sums)
+      counts.registration = std::move(*sums);
     else
       counts.cancelled = true;
   }

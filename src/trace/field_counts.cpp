@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/target_clones.hpp"
@@ -68,20 +69,21 @@ void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, 
   }
 }
 
-// For more stations: pairs only those that see any voxel of the block. `size`: number of voxels, which is the distance
-// between words.
+// For more stations: pairs only those that see any voxel of the block. `words`: of the n voxels, a span for each 64
+// stations, empty if it is 0 for all of them.
 VANTAGE_TARGET_CLONES
-void add_many_pairs(const std::uint64_t* masks, std::size_t size, std::size_t n, std::size_t stations,
+void add_many_pairs(std::span<const std::span<const std::uint64_t>> words, std::size_t n, std::size_t stations,
                     std::uint64_t* seen, std::uint64_t* shared) {
   std::vector<std::uint64_t> plane(stations);
   std::vector<std::size_t> here;
   for (std::size_t first = 0; first < n; first += block) {
     here.clear();
     const std::size_t end = std::min(n, first + block);
-    for (std::size_t w = 0; w < mask_words(stations); ++w) {
+    for (std::size_t w = 0; w < words.size(); ++w) {
+      if (words[w].empty()) continue;
       std::array<std::uint64_t, block> planes{};
       std::uint64_t any = 0;
-      for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = masks[w * size + k];
+      for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = words[w][k];
       if (any == 0) continue;
       transpose(planes);
       for (; any != 0; any &= any - 1) {
@@ -100,37 +102,68 @@ void add_many_pairs(const std::uint64_t* masks, std::size_t size, std::size_t n,
   }
 }
 
-}  // namespace
+// Masks word after word of all voxels.
+struct DenseMasks {
+  std::span<const std::uint64_t> masks;
+  std::size_t voxels;
 
-NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
-                           std::uint32_t stations, double goal_density, const VoxelDemands& demands) {
-  const std::size_t pairs = masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2;
+  bool empty() const { return masks.empty(); }
+  // Word w of voxels [first, end).
+  std::span<const std::uint64_t> words(std::size_t w, std::size_t first, std::size_t end) const {
+    return masks.subspan(w * voxels + first, end - first);
+  }
+};
+
+// Those that a voxel field keeps.
+struct KeptMasks {
+  const StationMasks& masks;
+
+  bool empty() const { return masks.empty(); }
+  // REQUIRES: within one block of the masks.
+  std::span<const std::uint64_t> words(std::size_t w, std::size_t first, std::size_t end) const {
+    const std::vector<std::uint64_t>& own = masks.block(w, first / StationMasks::block_voxels);
+    return own.empty() ? std::span<const std::uint64_t>()
+                       : std::span(own).subspan(first % StationMasks::block_voxels, end - first);
+  }
+};
+
+template <class Masks>
+NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, std::uint32_t stations,
+                     double goal_density, const VoxelDemands& demands) {
   Sums zero;
   zero.seen.resize(masks.empty() ? 0 : stations);
-  zero.shared.resize(pairs);
+  zero.shared.resize(masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2);
   const double goal = std::ceil(goal_density * demands.least_point_weight());
 
-  constexpr std::size_t grain = 1024;  // blocks
-  const std::size_t blocks = (counts.size() + block - 1) / block;
+  constexpr std::size_t grain = 16, at_once = StationMasks::block_voxels;
+  const std::size_t parts = (counts.size() + at_once - 1) / at_once;
+  const auto add_part = [&](Sums& sums, std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      const std::uint64_t weight = demands.weight(k),
+                          weighted_points = std::uint64_t{counts[k]} * demands.point_weight(k);
+      sums.weight += weight;
+      if (static_cast<double>(weighted_points) >= goal) {
+        sums.saturated += weight;
+      } else {
+        sums.partial_points += weight * weighted_points;
+      }
+    }
+    if (masks.empty()) return;
+    if (stations <= mask_bits) {
+      if (const auto words = masks.words(0, first, end); !words.empty())
+        add_pairs(words.data(), end - first, stations, sums.seen.data(), sums.shared.data());
+      return;
+    }
+    std::array<std::span<const std::uint64_t>, mask_words(max_stations)> words;
+    for (std::size_t w = 0; w < mask_words(stations); ++w) words[w] = masks.words(w, first, end);
+    add_many_pairs(std::span(words).first(mask_words(stations)), end - first, stations, sums.seen.data(),
+                   sums.shared.data());
+  };
   const Sums sums = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, blocks, grain), zero,
+      tbb::blocked_range<std::size_t>(0, parts, grain), zero,
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
-        const std::size_t first = range.begin() * block, end = std::min(counts.size(), range.end() * block);
-        for (std::size_t k = first; k < end; ++k) {
-          const std::uint64_t weight = demands.weight(k),
-                              weighted_points = std::uint64_t{counts[k]} * demands.point_weight(k);
-          part.weight += weight;
-          if (static_cast<double>(weighted_points) >= goal) {
-            part.saturated += weight;
-          } else {
-            part.partial_points += weight * weighted_points;
-          }
-        }
-        if (!masks.empty() && stations > mask_bits)
-          add_many_pairs(masks.data() + first, counts.size(), end - first, stations, part.seen.data(),
-                         part.shared.data());
-        else if (!masks.empty())
-          add_pairs(masks.data() + first, end - first, stations, part.seen.data(), part.shared.data());
+        for (std::size_t p = range.begin(); p != range.end(); ++p)
+          add_part(part, p * at_once, std::min(counts.size(), (p + 1) * at_once));
         return part;
       },
       [](Sums a, const Sums& b) {
@@ -148,6 +181,18 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
   result.seen = sums.seen;
   result.shared = sums.shared;
   return result;
+}
+
+}  // namespace
+
+NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
+                           std::uint32_t stations, double goal_density, const VoxelDemands& demands) {
+  return reduce(counts, DenseMasks{masks, counts.size()}, stations, goal_density, demands);
+}
+
+NetworkCounts reduce_field(const VoxelField& field, std::uint32_t stations, double goal_density,
+                           const VoxelDemands& demands) {
+  return reduce(field.count, KeptMasks{field.stations}, stations, goal_density, demands);
 }
 
 }  // namespace vantage

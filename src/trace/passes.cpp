@@ -48,39 +48,46 @@ void place(std::vector<Figure>& all, const std::vector<Figure>& own, const Pass&
 }  // namespace
 
 NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
-                              const Tracer::CountOptions& options, const VoxelGrid& grid, double goal_density,
-                              const Progress& progress) {
-  if (station_count <= bits) return tracer.count(stations, station_count, options, progress);
-  VoxelField own, part;
-  VoxelField& field = options.field ? *options.field : own;
-  field.count.assign(grid.size(), 0);
-  field.stations.assign(options.masks ? grid.size() * mask_words(station_count) : 0, 0);
-  NetworkCounts told;
+                              const Tracer::CountOptions& options, VoxelField* field, const VoxelGrid& grid,
+                              double goal_density, const Progress& progress) {
+  if (station_count <= bits && !field) return tracer.count(stations, station_count, options, progress);
+  VoxelField own;
+  VoxelField& all = field ? *field : own;
+  all.stations = options.masks ? StationMasks(grid.size(), station_count) : StationMasks();
+  PassField part;
+  const auto count = [&](const Pass& pass, const Progress& of_pass) {
+    NetworkCounts counts =
+        tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part}, of_pass);
+    if (!counts.cancelled && options.masks) all.stations.set_words(pass.word, part.stations);
+    return counts;
+  };
   const std::vector<Pass> passes = passes_of(stations, station_count);
-  for (std::size_t k = 0; k < passes.size(); ++k) {
+  if (station_count <= bits) {
+    NetworkCounts counts = count(passes.front(), progress);
+    all.count = std::move(part.count);
+    return counts;
+  }
+
+  all.count.assign(grid.size(), 0);
+  NetworkCounts told;
+  for (std::size_t k = 0; k < passes.size() && !told.cancelled; ++k) {
     const Pass& pass = passes[k];
-    const NetworkCounts counts =
-        tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part},
-                     part_of(progress, k, passes.size()));
+    const NetworkCounts counts = count(pass, part_of(progress, k, passes.size()));
     told.rays += counts.rays;
     told.trace_seconds += counts.trace_seconds;
     place(told.points, counts.points, pass, station_count);
     place(told.points_on_surveyed, counts.points_on_surveyed, pass, station_count);
     place(told.dropped, counts.dropped, pass, station_count);
-    if (counts.cancelled) {
-      told.cancelled = true;
-      break;
-    }
-    add(field.count, part.count);
-    if (options.masks)
-      std::ranges::copy(part.stations, field.stations.begin() + static_cast<std::ptrdiff_t>(pass.word * grid.size()));
+    told.cancelled = counts.cancelled;
+    if (!counts.cancelled) add(all.count, part.count);
   }
-  NetworkCounts all = reduce_field(field.count, field.stations, station_count, goal_density, grid.demands());
-  all.rays = told.rays, all.trace_seconds = told.trace_seconds, all.cancelled = told.cancelled;
-  all.points = std::move(told.points);
-  all.points_on_surveyed = std::move(told.points_on_surveyed);
-  all.dropped = std::move(told.dropped);
-  return all;
+  part = {};
+  NetworkCounts sums = reduce_field(all, station_count, goal_density, grid.demands());
+  sums.rays = told.rays, sums.trace_seconds = told.trace_seconds, sums.cancelled = told.cancelled;
+  sums.points = std::move(told.points);
+  sums.points_on_surveyed = std::move(told.points_on_surveyed);
+  sums.dropped = std::move(told.dropped);
+  return sums;
 }
 
 NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStation> stations,

@@ -11,14 +11,14 @@
 
 namespace vantage {
 
-// `Tracer::count` for any number of stations up to `max_stations`; a single pass is that very call. `weights`: of the
-// grid's voxels, or none.
+// `Tracer::count` for any number of stations up to `max_stations`; a single pass is that very call. Fills `field`, if
+// given. REQUIRES: options.field is null.
 NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
-                              const Tracer::CountOptions& options, const VoxelGrid& grid, double goal_density,
-                              const Progress& progress);
+                              const Tracer::CountOptions& options, VoxelField* field, const VoxelGrid& grid,
+                              double goal_density, const Progress& progress);
 
-// `Tracer::count_sampled` of one network. `job.station_masks` receives masks of as many words as needed, as in
-// `VoxelField`.
+// `Tracer::count_sampled` of one network. `job.station_masks` receives masks of as many words as needed: word w of the
+// sample's voxel k is at w · sample.size() + k.
 NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStation> stations,
                                       std::uint32_t station_count, const Tracer::SampleJob& job, const VoxelGrid& grid,
                                       double goal_density, const Progress& progress);

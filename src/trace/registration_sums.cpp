@@ -7,10 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "core/station_masks.hpp"
 #include "core/target_clones.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/exact_arithmetic.hpp"
@@ -39,8 +40,8 @@ __extension__ using Wide = __int128;
 template <class Number>
 struct Accumulator {
   std::vector<Number> pairs, surface;
-  Accumulator(std::size_t stations, std::size_t pairs_kept, std::size_t groups)
-      : pairs(groups * pairs_kept * of_pair), surface(groups * stations * of_station) {}
+  Accumulator(std::size_t stations, std::size_t pairs_kept)
+      : pairs(pairs_kept * of_pair), surface(stations * of_station) {}
   template <class Other>
   void add(const Accumulator<Other>& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
@@ -104,71 +105,127 @@ void add_products(std::int64_t* sums, const std::int32_t* products, const std::i
   }
 }
 
-class Summer {
+// The stations with a point in each voxel: word after word of a sample, or as a field keeps them.
+struct SeenBy {
+  std::span<const std::uint64_t> words;
+  std::size_t voxels = 0;
+  const StationMasks* kept = nullptr;
+  std::size_t first = 0;  // voxel of the field that is voxel 0 here
+
+  // Fills `seen` with the stations that saw a voxel, ascending, and returns their number.
+  std::size_t stations_of(std::size_t voxel, std::array<std::uint16_t, max_stations>& seen) const {
+    std::size_t many = 0;
+    const auto add = [&](std::size_t station) { seen[many++] = static_cast<std::uint16_t>(station); };
+    if (kept)
+      kept->for_each_station(first + voxel, add);
+    else
+      for (std::size_t at = voxel, station = 0; at < words.size(); at += voxels, station += mask_bits)
+        for (std::uint64_t mask = words[at]; mask != 0; mask &= mask - 1)
+          add(station + static_cast<std::size_t>(std::countr_zero(mask)));
+    return many;
+  }
+};
+
+// Pairs that are summed: all; in large networks only those that share a voxel.
+class PairNumbers {
  public:
-  Summer(const Patches& patches, std::span<const PatchScanner> scanners, std::span<const TraceStation> stations,
-         std::uint32_t count, std::span<const std::uint64_t> masks, std::uint32_t groups)
-      : patches_(patches),
-        heads_(count),
-        masks_(masks),
-        stations_(count),
-        groups_(groups),
-        units_(static_cast<float>(patch_weight_units / patches.largest)) {
+  explicit PairNumbers(std::size_t stations) : stations_(stations) {}
+  // `shared`: voxels of each pair.
+  PairNumbers(std::size_t stations, std::span<const std::uint64_t> shared) : stations_(stations) {
+    if (stations <= mask_bits) return;
+    number_.assign(all(), 0);
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      if (shared[p] == 0) continue;
+      number_[p] = static_cast<std::uint32_t>(kept_.size());
+      kept_.push_back(static_cast<std::uint32_t>(p));
+    }
+    if (kept_.empty()) kept_.push_back(0);  // no shared voxel: a single sum of nothing
+  }
+
+  std::size_t size() const { return kept_.empty() ? all() : kept_.size(); }
+  std::size_t all() const { return stations_ * (stations_ - 1) / 2; }
+  // Index among all pairs of the k-th summed pair, and back.
+  std::size_t pair(std::size_t k) const { return kept_.empty() ? k : kept_[k]; }
+  std::uint32_t number(std::size_t i, std::size_t j) const {
+    const std::size_t pair = i * (2 * stations_ - i - 1) / 2 + j - i - 1;
+    return number_.empty() ? static_cast<std::uint32_t>(pair) : number_[pair];
+  }
+
+ private:
+  std::size_t stations_;
+  std::vector<std::uint32_t> number_, kept_;  // empty if all pairs are summed
+};
+
+std::vector<std::uint64_t> shared_of(const SeenBy& seen_by, std::size_t stations) {
+  std::vector<std::uint64_t> shared(stations * (stations - 1) / 2, 0);
+  std::array<std::uint16_t, max_stations> seen;
+  for (std::size_t k = 0; k < seen_by.voxels; ++k) {
+    const std::size_t many = seen_by.stations_of(k, seen);
+    for (std::size_t a = 0; a + 1 < many; ++a)
+      for (std::size_t b = a + 1; b < many; ++b)
+        ++shared[seen[a] * (2 * stations - seen[a] - 1) / 2 + seen[b] - seen[a] - 1u];
+  }
+  return shared;
+}
+
+class Heads {
+ public:
+  Heads(std::span<const PatchScanner> scanners, std::span<const TraceStation> stations, std::size_t count)
+      : heads_(count) {
     for (const PatchScanner& scanner : scanners) noise_.emplace_back(scanner.noise);
     for (const TraceStation& station : stations) {
       heads_[station.place] = {station.origin, std::nullopt, &noise_[station.scanner],
                                scanners[station.scanner].density};
       if (station.turn) heads_[station.place].axis = Float3{station.turn->x.z, station.turn->y.z, station.turn->z.z};
     }
-    if (count > mask_bits) number_pairs();
   }
+  Heads(const Heads&) = delete;
+  const Head& operator[](std::size_t place) const { return heads_[place]; }
+  std::size_t size() const { return heads_.size(); }
 
-  // Number of pairs that are summed: all; in large networks only pairs that share a voxel.
-  std::size_t pairs() const { return kept_.empty() ? all_pairs() : kept_.size(); }
-  std::size_t all_pairs() const { return stations_ * (stations_ - 1) / 2; }
-  // Index among all pairs of the k-th summed pair.
-  std::size_t pair(std::size_t k) const { return kept_.empty() ? k : kept_[k]; }
+ private:
+  std::vector<RangeNoise> noise_;  // by scanner
+  std::vector<Head> heads_;        // by place
+};
 
-  void add(std::size_t first, std::size_t end, Accumulator<std::int64_t>& sums) const {
-    std::array<std::uint16_t, max_stations> seen;
-    for (std::size_t k = first; k < end; ++k)
-      if (const std::size_t many = stations_of(k, seen)) add_voxel(k, std::span(seen).first(many), sums);
+class Summer {
+ public:
+  Summer(const Patches& patches, const Heads& heads, const PairNumbers& pairs, const SeenBy& seen_by)
+      : patches_(patches),
+        heads_(heads),
+        pairs_(pairs),
+        seen_by_(seen_by),
+        units_(static_cast<float>(patch_weight_units / patches.largest)) {}
+
+  // Every `step`-th patch from `first` on.
+  Accumulator<Wide> sum(std::size_t first, std::size_t step) const {
+    const std::size_t voxels = patches_.patches.size(), some = voxels > first ? (voxels - first + step - 1) / step : 0,
+                      blocks = (some + patches_a_block - 1) / patches_a_block;
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(heads_.size(), pairs_.size()),
+        [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
+          for (std::size_t b = range.begin(); b != range.end(); ++b) {
+            Accumulator<std::int64_t> here(heads_.size(), pairs_.size());
+            for (std::size_t k = b * patches_a_block; k < std::min(some, (b + 1) * patches_a_block); ++k)
+              add_voxel(first + k * step, here);
+            sums.add(here);
+          }
+          return sums;
+        },
+        [](Accumulator<Wide> a, const Accumulator<Wide>& b) {
+          a.add(b);
+          return a;
+        });
   }
 
  private:
-  // Fills `seen` with the stations that saw a voxel, ascending, and returns their number.
-  std::size_t stations_of(std::size_t voxel, std::array<std::uint16_t, max_stations>& seen) const {
-    std::size_t many = 0;
-    for_each_station(masks_, patches_.patches.size(), voxel,
-                     [&](std::size_t station) { seen[many++] = static_cast<std::uint16_t>(station); });
-    return many;
-  }
-
-  void number_pairs() {
-    number_.assign(all_pairs(), 0);
-    std::array<std::uint16_t, max_stations> seen;
-    for (std::size_t k = 0; k < patches_.patches.size(); ++k) {
-      const std::size_t many = stations_of(k, seen);
-      for (std::size_t a = 0; a + 1 < many; ++a)
-        for (std::size_t b = a + 1; b < many; ++b) number_[row_of(seen[a]) + seen[b] - seen[a] - 1u] = 1;
-    }
-    for (std::size_t p = 0; p < number_.size(); ++p) {
-      if (number_[p] == 0) continue;
-      number_[p] = static_cast<std::uint32_t>(kept_.size());
-      kept_.push_back(static_cast<std::uint32_t>(p));
-    }
-    if (kept_.empty()) kept_.push_back(0);  // no shared voxel: a single sum of nothing
-  }
-  std::size_t row_of(std::size_t i) const { return i * (2 * stations_ - i - 1) / 2; }
-  std::uint32_t number_of(std::size_t pair) const {
-    return number_.empty() ? static_cast<std::uint32_t>(pair) : number_[pair];
-  }
-
-  void add_voxel(std::size_t k, std::span<const std::uint16_t> seen, Accumulator<std::int64_t>& sums) const {
+  void add_voxel(std::size_t k, Accumulator<std::int64_t>& sums) const {
+    std::array<std::uint16_t, max_stations> places;
+    const auto seen = std::span(places).first(seen_by_.stations_of(k, places));
+    if (seen.empty()) return;
     const RegistrationPatch& patch = patches_.patches[k];
-    const std::size_t group = groups_ > 1 ? k % groups_ : 0;
-    add_surface(patch, seen, sums.surface.data() + group * stations_ * of_station);
-    if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums.pairs.data() + group * pairs() * of_pair);
+    add_surface(patch, seen, sums.surface.data());
+    if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums.pairs.data());
   }
 
   // Adds moments of the covered surface; the stations that see a voxel share it.
@@ -214,7 +271,7 @@ class Summer {
         std::size_t length = 0;
         for (std::size_t b = a + 1; b < many[side]; ++b, ++length) {
           shared[length] = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
-          columns[length] = number_of(row_of(i) + places[side][b] - i - 1);
+          columns[length] = pairs_.number(i, places[side][b]);
         }
         add_products(sums, products.data(), shared.data(), columns.data(), length);
       }
@@ -222,13 +279,10 @@ class Summer {
   }
 
   const Patches& patches_;
-  std::vector<RangeNoise> noise_;  // by scanner
-  std::vector<Head> heads_;        // by place
-  std::span<const std::uint64_t> masks_;
-  std::size_t stations_, groups_;
+  const Heads& heads_;
+  const PairNumbers& pairs_;
+  const SeenBy& seen_by_;
   float units_;
-  std::vector<std::uint32_t> number_, kept_;  // index of each pair among the summed ones, and back; empty if all are
-                                              // summed
 };
 
 // `pairs` and `surface`: of all stations.
@@ -249,30 +303,30 @@ RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> 
   return sums;
 }
 
-RegistrationSums to_sums(const Accumulator<Wide>& all, const Summer& summer, const Patches& patches,
-                         std::span<const TraceStation> stations, std::size_t count, std::size_t group) {
-  const std::size_t pairs = summer.pairs() * of_pair, surface = count * of_station;
-  const std::span<const Wide> kept = std::span(all.pairs).subspan(group * pairs, pairs),
-                              moments = std::span(all.surface).subspan(group * surface, surface);
-  if (summer.all_pairs() <= summer.pairs())
-    return to_sums(kept.first(summer.all_pairs() * of_pair), moments, patches, stations, count);
-  std::vector<Wide> whole(summer.all_pairs() * of_pair);
-  for (std::size_t p = 0; p < summer.pairs(); ++p)
-    std::ranges::copy(kept.subspan(p * of_pair, of_pair),
-                      whole.begin() + static_cast<std::ptrdiff_t>(summer.pair(p) * of_pair));
-  return to_sums(std::span<const Wide>(whole), moments, patches, stations, count);
+// Of every pair.
+RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs, const Patches& patches,
+                         std::span<const TraceStation> stations, std::size_t count) {
+  if (pairs.all() <= pairs.size())
+    return to_sums(std::span(all.pairs).first(pairs.all() * of_pair), std::span(all.surface), patches, stations, count);
+  std::vector<Wide> whole(pairs.all() * of_pair);
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    std::ranges::copy(std::span(all.pairs).subspan(p * of_pair, of_pair),
+                      whole.begin() + static_cast<std::ptrdiff_t>(pairs.pair(p) * of_pair));
+  return to_sums(std::span<const Wide>(whole), std::span(all.surface), patches, stations, count);
 }
 
-// Drops the pairs of a part that are 0 in the whole. Squares are among the sums, so these are 0 in every part.
-void keep_pairs_of(const RegistrationSums& whole, RegistrationSums& part) {
-  std::size_t kept = 0;
-  for_summed_pairs(whole, [&](std::size_t first) {
-    std::copy_n(part.pairs.begin() + static_cast<std::ptrdiff_t>(first), of_pair,
-                part.pairs.begin() + static_cast<std::ptrdiff_t>(kept));
-    kept += of_pair;
-  });
-  part.pairs.resize(kept);
-  part.pairs.shrink_to_fit();
+// Only of the pairs whose sums in the whole are not 0. Squares are among the sums, so others are 0 in every part.
+RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulator<Wide>& whole,
+                                 const PairNumbers& pairs, const Patches& patches,
+                                 std::span<const TraceStation> stations, std::size_t count) {
+  std::vector<Wide> kept;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto of_whole = std::span(whole.pairs).subspan(p * of_pair, of_pair);
+    if (std::ranges::all_of(of_whole, [](Wide sum) { return sum == 0; })) continue;
+    const auto of_part = std::span(part.pairs).subspan(p * of_pair, of_pair);
+    kept.insert(kept.end(), of_part.begin(), of_part.end());
+  }
+  return to_sums(std::span<const Wide>(kept), std::span(part.surface), patches, stations, count);
 }
 
 }  // namespace
@@ -325,33 +379,41 @@ Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<co
 std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups) {
-  const Summer summer(patches, scanners, stations, station_count, masks, groups);
-  const std::size_t sets = std::max<std::size_t>(groups, 1), voxels = patches.patches.size(),
-                    blocks = (voxels + patches_a_block - 1) / patches_a_block;
-  const auto all = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, summer.pairs(), sets),
-      [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
-        for (std::size_t b = range.begin(); b != range.end(); ++b) {
-          Accumulator<std::int64_t> here(station_count, summer.pairs(), sets);
-          summer.add(b * patches_a_block, std::min(voxels, (b + 1) * patches_a_block), here);
-          sums.add(here);
-        }
-        return sums;
-      },
-      [](Accumulator<Wide> a, const Accumulator<Wide>& b) {
-        a.add(b);
-        return a;
-      });
-  if (groups == 0) return {to_sums(all, summer, patches, stations, station_count, 0)};
-  Accumulator<Wide> total(station_count, summer.pairs(), 1);
-  for (std::size_t k = 0; k < all.pairs.size(); ++k) total.pairs[k % total.pairs.size()] += all.pairs[k];
-  for (std::size_t k = 0; k < all.surface.size(); ++k) total.surface[k % total.surface.size()] += all.surface[k];
-  std::vector<RegistrationSums> sums{to_sums(total, summer, patches, stations, station_count, 0)};
-  for (std::size_t g = 0; g < groups; ++g) {
-    sums.push_back(to_sums(all, summer, patches, stations, station_count, g));
-    if (station_count > mask_bits) keep_pairs_of(sums.front(), sums.back());
+  const SeenBy seen_by{.words = masks, .voxels = patches.patches.size(), .kept = nullptr};
+  const bool large = station_count > mask_bits;
+  const PairNumbers pairs =
+      large ? PairNumbers(station_count, shared_of(seen_by, station_count)) : PairNumbers(station_count);
+  const Heads heads(scanners, stations, station_count);
+  const Summer summer(patches, heads, pairs, seen_by);
+  if (groups == 0) return {to_sums(summer.sum(0, 1), pairs, patches, stations, station_count)};
+  std::vector<Accumulator<Wide>> parts(groups, Accumulator<Wide>(0, 0));
+  tbb::parallel_for(std::uint32_t{0}, groups, [&](std::uint32_t g) { parts[g] = summer.sum(g, groups); });
+  Accumulator<Wide> whole(station_count, pairs.size());
+  for (const Accumulator<Wide>& part : parts) whole.add(part);
+  std::vector<RegistrationSums> sums{to_sums(whole, pairs, patches, stations, station_count)};
+  for (Accumulator<Wide>& part : parts) {
+    sums.push_back(large ? to_sums_of_part(part, whole, pairs, patches, stations, station_count)
+                         : to_sums(part, pairs, patches, stations, station_count));
+    part = Accumulator<Wide>(0, 0);
   }
   return sums;
+}
+
+std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std::size_t part_voxels,
+                                            std::span<const PatchScanner> scanners,
+                                            std::span<const TraceStation> stations, const NetworkCounts& counts,
+                                            const StationMasks& masks) {
+  const PairNumbers pairs(counts.stations, counts.shared);
+  const Heads heads(scanners, stations, counts.stations);
+  Accumulator<Wide> whole(counts.stations, pairs.size());
+  std::shared_ptr<const Patches> patches;
+  for (std::size_t first = 0; first < masks.voxels() || !patches; first += part_voxels) {
+    patches = patches_from(first, std::min(part_voxels, masks.voxels() - first));
+    if (!patches) return std::nullopt;
+    const SeenBy seen_by{.words = {}, .voxels = patches->patches.size(), .kept = &masks, .first = first};
+    whole.add(Summer(*patches, heads, pairs, seen_by).sum(0, 1));
+  }
+  return to_sums(whole, pairs, *patches, stations, counts.stations);
 }
 
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with) {

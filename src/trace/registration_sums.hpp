@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -59,10 +60,10 @@ struct RegistrationJob {
 };
 
 // Sums over all patches, then those of each of `groups` interleaved groups. `masks`: stations that saw each patch's
-// voxel, by place, word after word as in `VoxelField`. `scanners`: one for each that a station refers to. Exact, so
-// independent of order and threads. Groups of more than `mask_bits` stations have only the pairs of for_summed_pairs():
-// all pairs of hundreds of stations, twenty times, are gigabytes. REQUIRES: masks.size() == patches.size() ·
-// mask_words(station_count), and no bit without a station.
+// voxel, by place: word w of patch k is at w · patches.size() + k. `scanners`: one for each that a station refers to.
+// Exact, so independent of order and threads. Groups of more than `mask_bits` stations have only the pairs of
+// for_summed_pairs(): all pairs of hundreds of stations, twenty times, are gigabytes. REQUIRES: masks.size() ==
+// patches.size() · mask_words(station_count), and no bit without a station.
 std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);
@@ -70,6 +71,14 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
 std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
                                           std::uint32_t station_count, std::span<const std::uint64_t> masks,
                                           std::uint32_t groups);
+// Planes of `many` voxels of a grid from `first` on; null if stopped.
+using PatchesFrom = std::function<std::shared_ptr<const Patches>(std::size_t first, std::size_t many)>;
+// The same sums over all voxels of a field, without groups, from planes of at most `part_voxels` voxels at a time:
+// those of tens of millions of voxels are gigabytes. None if stopped. `counts`: of the field, with pairs.
+std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std::size_t part_voxels,
+                                            std::span<const PatchScanner> scanners,
+                                            std::span<const TraceStation> stations, const NetworkCounts& counts,
+                                            const StationMasks& masks);
 // Calls with(place in `pairs`) for each pair with a sum that is not 0.
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with);
 // Moves such sums into the counts of a network and, if present, of its groups.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "trace/pass_field.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/trace.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -156,7 +157,7 @@ class Tracer {
   struct CountOptions {
     bool masks = true;  // keep station masks, fill seen and shared
     bool skip = true;   // leave out work that cannot change a count; `points` is then empty
-    VoxelField* field = nullptr;
+    PassField* field = nullptr;
   };
   virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count,
                               const CountOptions& options, const Progress& progress) = 0;

@@ -46,29 +46,22 @@ class TriangleCells {
   template <class Visit>
   void for_each(Visit&& visit, std::int64_t part = 0, std::int64_t parts = 1) const {
     if (empty_) return;
+    std::array<Range, 3> within = all();
     const std::int64_t layers = count_[full_ ? 0 : u_];
-    const std::int64_t first_layer = layers * part / parts, end_layer = layers * (part + 1) / parts;
-    if (full_) {
-      for (std::int64_t x = first_layer; x < end_layer; ++x)
-        for (std::int64_t y = 0; y < count_[1]; ++y)
-          for (std::int64_t z = 0; z < count_[2]; ++z) visit(Cell{base_[0] + x, base_[1] + y, base_[2] + z});
-      return;
+    within[static_cast<std::size_t>(full_ ? 0 : u_)] = {layers * part / parts, layers * (part + 1) / parts - 1};
+    walk(within, visit);
+  }
+  // Only for the cells from `low` to `high`, both included.
+  template <class Visit>
+  void for_each_within(const Cell& low, const Cell& high, Visit&& visit) const {
+    if (empty_) return;
+    std::array<Range, 3> within = all();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      within[axis].first = std::max(within[axis].first, low[axis] - base_[axis]);
+      within[axis].last = std::min(within[axis].last, high[axis] - base_[axis]);
+      if (within[axis].first > within[axis].last) return;
     }
-    for (std::int64_t i = first_layer; i < end_layer; ++i) {
-      auto [first, last] = row(i);
-      for (std::int64_t j = first; j <= last; ++j) {
-        if (!inside(uv_, i, j)) continue;
-        const auto [low, high] = column(i, j);
-        for (std::int64_t k = low; k <= high; ++k) {
-          if (!inside(vw_, j, k) || !inside(wu_, k, i)) continue;
-          Cell cell;
-          cell[u_] = base_[u_] + i;
-          cell[v_] = base_[v_] + j;
-          cell[w_] = base_[w_] + k;
-          visit(cell);
-        }
-      }
-    }
+    walk(within, visit);
   }
 
   bool touches(const Cell& cell) const {
@@ -95,6 +88,37 @@ class TriangleCells {
     double a, b, low, high;
   };
   using Edges = std::array<Edge, 3>;
+
+  std::array<Range, 3> all() const { return {Range{0, count_[0] - 1}, {0, count_[1] - 1}, {0, count_[2] - 1}}; }
+
+  // Visits the touched cells within these ranges of local cells. REQUIRES: not empty.
+  template <class Visit>
+  void walk(const std::array<Range, 3>& within, Visit&& visit) const {
+    if (full_) {
+      for (std::int64_t x = within[0].first; x <= within[0].last; ++x)
+        for (std::int64_t y = within[1].first; y <= within[1].last; ++y)
+          for (std::int64_t z = within[2].first; z <= within[2].last; ++z)
+            visit(Cell{base_[0] + x, base_[1] + y, base_[2] + z});
+      return;
+    }
+    const Range of_u = within[static_cast<std::size_t>(u_)], of_v = within[static_cast<std::size_t>(v_)],
+                of_w = within[static_cast<std::size_t>(w_)];
+    for (std::int64_t i = of_u.first; i <= of_u.last; ++i) {
+      const Range of_row = row(i);
+      for (std::int64_t j = std::max(of_row.first, of_v.first); j <= std::min(of_row.last, of_v.last); ++j) {
+        if (!inside(uv_, i, j)) continue;
+        const Range of_column = column(i, j);
+        for (std::int64_t k = std::max(of_column.first, of_w.first); k <= std::min(of_column.last, of_w.last); ++k) {
+          if (!inside(vw_, j, k) || !inside(wu_, k, i)) continue;
+          Cell cell;
+          cell[u_] = base_[u_] + i;
+          cell[v_] = base_[v_] + j;
+          cell[w_] = base_[w_] + k;
+          visit(cell);
+        }
+      }
+    }
+  }
   static constexpr double rounding = 0x1p-50;
 
   void prepare() {

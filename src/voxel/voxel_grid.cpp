@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/target_clones.hpp"
 #include "voxel/grid_fit.hpp"
 #include "voxel/voxel_bricks.hpp"
 
@@ -60,6 +61,7 @@ std::uint64_t VoxelGrid::key(std::uint64_t voxel_index) const {
   return brick_key(brick) | (word * 32 + static_cast<std::uint32_t>(std::countr_zero(bits)));
 }
 
+VANTAGE_TARGET_CLONES
 std::uint32_t VoxelGrid::find(std::uint64_t key) const {
   const auto [x, y, z] = morton_decode(key >> (3 * brick_bits));
   const std::uint32_t index = find_brick(slots_, x, y, z);

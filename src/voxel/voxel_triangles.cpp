@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -92,6 +93,16 @@ class BrickFinder {
   double margin_;
 };
 
+// Cells from `low` to `high`, both included.
+struct CellBox {
+  std::array<std::uint32_t, 3> low{0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu}, high{};
+
+  void extend(const std::array<std::uint32_t, 3>& cell) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      low[axis] = std::min(low[axis], cell[axis]), high[axis] = std::max(high[axis], cell[axis]);
+  }
+};
+
 // Finds every (triangle, voxel number) pair.
 class Finder {
  public:
@@ -102,9 +113,20 @@ class Finder {
         fine_(transform_of(grid)),
         margin_(margin_m / grid.voxel_size()),
         dense_(is_dense(voxel_indices, grid)) {
+    if (voxel_indices.empty()) return;
     if (dense_) {
-      number_.assign(grid.size(), no_voxel);
-      for (std::size_t i = 0; i < voxel_indices.size(); ++i) number_[voxel_indices[i]] = static_cast<std::uint32_t>(i);
+      first_index_ = voxel_indices.front();
+      number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, no_voxel);
+      for (std::size_t i = 0; i < voxel_indices.size(); ++i)
+        number_[voxel_indices[i] - first_index_] = static_cast<std::uint32_t>(i);
+      within_ = tbb::parallel_reduce(
+          tbb::blocked_range<std::size_t>(0, voxel_indices.size()), CellBox(),
+          [&](const tbb::blocked_range<std::size_t>& range, CellBox box) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+              box.extend(morton_decode(grid.key(voxel_indices[i])));
+            return box;
+          },
+          [](CellBox a, const CellBox& b) { return a.extend(b.low), a.extend(b.high), a; });
       return;
     }
     cells_.resize(voxel_indices.size());
@@ -124,6 +146,7 @@ class Finder {
   // Calls found(number, triangle) once per pair, from several threads at once.
   template <class Found>
   void for_each(const Found& found) const {
+    if (voxel_indices_.empty()) return;
     for_each_surveyed(scene_, [&](std::uint32_t t) { dense_ ? by_voxels(t, found) : by_bricks(t, found); });
   }
 
@@ -131,10 +154,18 @@ class Finder {
   template <class Found>
   void by_voxels(std::uint32_t t, const Found& found) const {
     const auto corners = fine_.corners(scene_.corners(t));
-    TriangleCells(corners, voxels_a_side(grid_), margin_).for_each([&](const TriangleCells::Cell& c) {
+    TriangleCells::Cell low, high;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = within_.low[axis], high[axis] = within_.high[axis];
+      const auto [first, last] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      if (first > static_cast<double>(high[axis]) + 1 + margin_ || last < static_cast<double>(low[axis]) - margin_)
+        return;
+    }
+    TriangleCells(corners, voxels_a_side(grid_), margin_).for_each_within(low, high, [&](const TriangleCells::Cell& c) {
       const std::uint32_t voxel_index = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
-      if (voxel_index != no_voxel && number_[voxel_index] != no_voxel) found(number_[voxel_index], t);
+      const std::uint32_t place = voxel_index - first_index_;  // voxels before the first one wrap around
+      if (voxel_index != no_voxel && place < number_.size() && number_[place] != no_voxel) found(number_[place], t);
     });
   }
 
@@ -154,7 +185,9 @@ class Finder {
   GridTransform fine_;
   double margin_;  // in voxels
   bool dense_;
-  std::vector<std::uint32_t> number_;                // dense: for each voxel index, its number or no_voxel
+  CellBox within_;                                   // dense: around the wanted voxels
+  std::uint32_t first_index_ = 0;                    // dense: index of the first of them
+  std::vector<std::uint32_t> number_;                // dense: for each voxel index from there, its number or no_voxel
   std::vector<std::array<std::uint32_t, 3>> cells_;  // sparse: cell of each wanted voxel
   std::vector<std::uint32_t> first_;                 // sparse: brick b has first_[b] … first_[b + 1] − 1
 };

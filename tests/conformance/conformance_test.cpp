@@ -106,7 +106,7 @@ TEST_P(Conformance, StationsFarOffAreNoLessExact) {
     compare_with_reference(*site.scene, references[s], chunk, undecided);
     EXPECT_LE(undecided, 2u);
   }
-  VoxelField all, skipping;
+  PassField all, skipping;
   tracer(site, false).count(far, 2, {true, false, &all}, {});
   tracer(site, false).count(far, 2, {true, true, &skipping}, {});
   EXPECT_EQ(skipping.count, all.count);
@@ -261,7 +261,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
   for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      VoxelField expected;
+      PassField expected;
       expected.count.resize(site.grid->size());
       expected.stations.resize(site.grid->size());
       std::vector<std::uint64_t> points, on_surveyed;
@@ -278,7 +278,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
         }
       }
       for (const bool masks : {true, false}) {
-        VoxelField field;
+        PassField field;
         const NetworkCounts counts = count(site, noisy, {masks, false, &field});
         EXPECT_EQ(field.count, expected.count);
         EXPECT_EQ(field.stations, masks ? expected.stations : std::vector<std::uint64_t>{});
@@ -295,7 +295,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
 TEST_P(Conformance, TotalsMatchTheReference) {
   for (const TestSite& site : sites()) {
     SCOPED_TRACE(site.name);
-    VoxelField expected;
+    PassField expected;
     expected.count.resize(site.grid->size());
     double points = 0, on_surveyed = 0;
     for (std::size_t s = 0; s < site.stations.size(); ++s) {
@@ -322,7 +322,7 @@ TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
   std::vector<TraceStation> stations{site.stations[0], site.stations[1]};
   stations[0].place = 63;
   stations[1].place = 2;
-  VoxelField field;
+  PassField field;
   const NetworkCounts counts = tracer(site, false).count(stations, 64, {true, false, &field}, {});
   ASSERT_EQ(counts.points.size(), 64u);
   ASSERT_EQ(counts.seen.size(), 64u);
@@ -340,7 +340,7 @@ TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
 
 TEST_P(Conformance, DispatchesOfAnySizeGiveTheSameCounts) {
   const TestSite& site = sites()[2];
-  VoxelField whole, part;
+  PassField whole, part;
   const NetworkCounts expected = count(site, true, {true, false, &whole});
   for (const std::uint64_t max_rays : {std::uint64_t{1}, std::uint64_t{7777}, site.rays() * 2}) {
     const auto small = make(site, true, max_rays);
@@ -372,7 +372,7 @@ TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
   EXPECT_GT(last, 0.1);
   EXPECT_LT(last, 0.9);  // well before the end: several devices continue until this thread, which listens to them, gets
                          // its turn
-  VoxelField again, expected;
+  PassField again, expected;
   const NetworkCounts after = small->count(site.stations, stations_of(site), {true, false, &again}, {});
   EXPECT_FALSE(after.cancelled);
   count(site, false, {true, false, &expected});
@@ -412,7 +412,7 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
     const auto n = static_cast<std::uint32_t>(stations.size());
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      VoxelField all, skipped;
+      PassField all, skipped;
       const NetworkCounts expected = tracer(site, noisy).count(stations, n, {true, false, &all}, {});
       const NetworkCounts counts = tracer(site, noisy).count(stations, n, {true, true, &skipped}, {});
       EXPECT_EQ(skipped.count, all.count);
@@ -430,9 +430,9 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
 // Samples.
 
 // Counts of a sample by definition, from the voxel field of the exact evaluation.
-NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, const Tracer::SampleJob& job,
+NetworkCounts sampled_slowly(const TestSite& site, const PassField& field, const Tracer::SampleJob& job,
                              std::uint32_t stations) {
-  VoxelField sample;
+  PassField sample;
   const auto pick = [&](std::size_t first, std::size_t step) {
     sample = {};
     std::vector<std::uint32_t> voxel_indices;
@@ -495,7 +495,7 @@ TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
       const std::vector<NetworkCounts> sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
       ASSERT_EQ(sampled.size(), networks.size());
       for (std::size_t n = 0; n < networks.size(); ++n) {
-        VoxelField field;
+        PassField field;
         const NetworkCounts exact = tracer(site, noisy).count(networks[n], sizes[n], {true, false, &field}, {});
         expect_equal_counts(sampled[n], exact);
         expect_equal_samples(sampled[n], sampled_slowly(site, field, job, sizes[n]));
@@ -516,7 +516,7 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
       const Tracer::SampleJob job = voxel_by_voxel(sample, true);
       const auto sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
       for (std::size_t n = 0; n < networks.size(); ++n) {
-        VoxelField field;
+        PassField field;
         tracer(site, noisy).count(networks[n], sizes[n], {true, true, &field}, {});
         expect_equal_samples(sampled[n], sampled_slowly(site, field, job, sizes[n]));
       }
@@ -544,7 +544,7 @@ TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
         };
         tracer(site, noisy).count_sampled(networks, sizes, job, {});
         for (std::size_t n = 0; n < networks.size(); ++n) {
-          VoxelField field;
+          PassField field;
           tracer(site, noisy).count(networks[n], sizes[n], {false, true, &field}, {});
           EXPECT_EQ(points[n], field.count) << "network " << n;
         }
@@ -570,7 +570,7 @@ TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
     };
     tracer(site, false).count_sampled(networks, sizes, job, {});
     for (std::size_t n = 0; n < networks.size(); ++n) {
-      VoxelField field;
+      PassField field;
       tracer(site, false).count(networks[n], sizes[n], {true, true, &field}, {});
       EXPECT_EQ(masks[n], field.stations) << site.name << ", network " << n;
     }

@@ -54,7 +54,7 @@ TEST_P(GlassConformance, ChangesNoPointAndNoCount) {
     ASSERT_EQ(with.scene->triangles.size(), without.scene->triangles.size() + 6);
     ASSERT_EQ(with.grid->size(), without.grid->size()) << "panes are not surveyed";
     std::array<std::unique_ptr<Tracer>, 2> tracers{GetParam().make(with), GetParam().make(without)};
-    std::array<VoxelField, 2> fields;
+    std::array<PassField, 2> fields;
     std::array<NetworkCounts, 2> counts, sampled;
     std::array<Tracer::RawChunk, 2> chunks;
     std::vector<std::uint32_t> voxels(with.grid->size());

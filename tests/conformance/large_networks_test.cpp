@@ -30,10 +30,10 @@ std::vector<TraceStation> many_stations(const TestSite& site, std::uint32_t coun
   return stations;
 }
 
-VoxelField field_of_scans(Tracer& tracer, const TestSite& site, std::span<const TraceStation> stations,
-                          std::uint32_t count) {
+PassField field_of_scans(Tracer& tracer, const TestSite& site, std::span<const TraceStation> stations,
+                         std::uint32_t count) {
   const std::size_t voxels = site.grid->size();
-  VoxelField field;
+  PassField field;
   field.count.resize(voxels);
   field.stations.resize(voxels * mask_words(count));
   Tracer::RawChunk chunk;
@@ -60,7 +60,7 @@ TEST_P(LargeNetworksConformance, CountWhatTheirScansAddUpTo) {
       if (count > 65 && !noisy) continue;
       SCOPED_TRACE(std::to_string(count) + (noisy ? " stations, noise" : " stations"));
       const std::vector<TraceStation> stations = many_stations(site, count);
-      const VoxelField expected = field_of_scans(*tracer, site, stations, count);
+      const PassField expected = field_of_scans(*tracer, site, stations, count);
       // A goal that some voxels reach and others do not.
       const double goal_density = 0.5 * *std::ranges::max_element(expected.count) + 0.25;
       tracer->set_goal_density(goal_density);
@@ -69,10 +69,10 @@ TEST_P(LargeNetworksConformance, CountWhatTheirScansAddUpTo) {
       EXPECT_GT(reference.partial_points, 0u);
       VoxelField field;
       const NetworkCounts exact =
-          count_in_passes(*tracer, stations, count, {true, true, &field}, *site.grid, goal_density, {});
+          count_in_passes(*tracer, stations, count, {true, true}, &field, *site.grid, goal_density, {});
       expect_equal_counts(exact, reference);
       EXPECT_EQ(field.count, expected.count);
-      EXPECT_EQ(field.stations, expected.stations);
+      EXPECT_EQ(field.stations.all_words(), expected.stations);
       const NetworkCounts sampled = count_sampled_in_passes(*tracer, stations, count, {.sample = all, .masks = true},
                                                             *site.grid, goal_density, {});
       expect_equal_counts(sampled, reference);

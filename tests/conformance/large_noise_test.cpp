@@ -52,7 +52,7 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
   const std::unique_ptr<Tracer> tracer = GetParam().make(site.trace_scene(true));
   tracer->set_goal_density(goal_density);
 
-  VoxelField expected;
+  PassField expected;
   expected.count.resize(site.grid->size());
   expected.stations.resize(site.grid->size());
   std::size_t at_head = 0, undecided = 0;
@@ -71,7 +71,7 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
   EXPECT_GT(at_head, 100u);
   EXPECT_GT(expected.count[site.grid->size() / 2], 100u) << "what noise leaves at the first head";
 
-  VoxelField field;
+  PassField field;
   const NetworkCounts exact = tracer->count(site.stations, stations, {true, false, &field}, {});
   EXPECT_EQ(field.count, expected.count);
   EXPECT_EQ(field.stations, expected.stations);
@@ -79,7 +79,7 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
   EXPECT_GT(reference.saturated, 0u);
   EXPECT_GT(reference.partial_points, 0u);
   expect_equal_counts(exact, reference);
-  VoxelField skipped;
+  PassField skipped;
   expect_equal_counts(tracer->count(site.stations, stations, {true, true, &skipped}, {}), reference);
   EXPECT_EQ(skipped.count, expected.count);
 

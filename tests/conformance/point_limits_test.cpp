@@ -48,11 +48,11 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
   for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      VoxelField field;
+      PassField field;
       const NetworkCounts counts =
           tracer(site, noisy).count(site.stations, stations_of(site), {true, false, &field}, {});
       ASSERT_EQ(counts.dropped.size(), site.stations.size());
-      VoxelField expected;
+      PassField expected;
       expected.count.resize(site.grid->size());
       expected.stations.resize(site.grid->size());
       DroppedPoints all;
@@ -118,7 +118,7 @@ TEST_P(PointLimitsConformance, SkippingChangesNoVoxel) {
   for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      VoxelField all, skipped;
+      PassField all, skipped;
       const NetworkCounts expected =
                               tracer(site, noisy).count(site.stations, stations_of(site), {true, false, &all}, {}),
                           counts =
@@ -146,7 +146,7 @@ TEST_P(PointLimitsConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
       const auto sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
       ASSERT_EQ(sampled.size(), 1u);
       EXPECT_TRUE(sampled[0].dropped.empty());
-      VoxelField field;
+      PassField field;
       const NetworkCounts exact = tracer(site, noisy).count(site.stations, sizes[0], {true, true, &field}, {});
       expect_equal_counts(sampled[0], exact);
       std::size_t differing = 0;
@@ -173,7 +173,7 @@ TEST_P(PointLimitsConformance, LimitsThatAllMeetChangeNothing) {
     TraceScene scene = site.trace_scene(noisy);
     scene.scanners[0].limits = std::make_shared<const LimitModel>(loose);
     const auto loosely = make(scene);
-    VoxelField got, expected;
+    PassField got, expected;
     const NetworkCounts counts = loosely->count(site.stations, stations_of(site), {true, true, &got}, {});
     tracer(site, noisy, false).count(site.stations, stations_of(site), {true, true, &expected}, {});
     EXPECT_EQ(got.count, expected.count);

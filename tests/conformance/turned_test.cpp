@@ -162,7 +162,7 @@ TEST_P(TurnedConformance, CountsAreThePointsOfTheScans) {
       const TraceScene scene = scene_of(site, noisy);
       Tracer* const tracer = of(site, noisy);
       const std::vector<TraceStation> stations = stations_of(site);
-      VoxelField expected, field;
+      PassField expected, field;
       expected.count.resize(site.grid->size());
       expected.stations.resize(site.grid->size());
       std::uint64_t rays = 0;
@@ -190,7 +190,7 @@ TEST_P(TurnedConformance, SkippingChangesNoVoxel) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
       Tracer* const tracer = of(site, noisy);
-      VoxelField all, skipped;
+      PassField all, skipped;
       const NetworkCounts expected = tracer->count(stations, 20, {true, false, &all}, {});
       const NetworkCounts counts = tracer->count(stations, 20, {true, true, &skipped}, {});
       EXPECT_EQ(skipped.count, all.count);
@@ -223,7 +223,7 @@ TEST_P(TurnedConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
       };
       const auto sampled = tracer->count_sampled(networks, sizes, job, {});
       for (std::size_t n = 0; n < networks.size(); ++n) {
-        VoxelField field;
+        PassField field;
         const NetworkCounts exact = tracer->count(networks[n], sizes[n], {true, true, &field}, {});
         EXPECT_EQ(points[n], field.count) << "network " << n;
         EXPECT_EQ(masks[n], field.stations) << "network " << n;
@@ -271,7 +271,7 @@ TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   ASSERT_EQ(site.pattern->columns() % 4, 0u);
   Tracer* const tracer = of(site, false);
   std::vector<TraceStation> stations = site.stations;
-  VoxelField upright, quarter;
+  PassField upright, quarter;
   tracer->count(stations, 4, {true, true, &upright}, {});
   for (TraceStation& station : stations) station.turn = turned(90 * (1 + station.place % 3), 0);
   tracer->count(stations, 4, {true, true, &quarter}, {});

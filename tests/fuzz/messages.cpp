@@ -56,9 +56,9 @@ constexpr std::array kContents{
             [] { return written(Opened{.known = true, .own = an_identity(), .host = "a", .device = "b"}); }},
     Content{"station", rewritten<TraceStation>, [] { return written(TraceStation{.origin = {}, .turn = Turn{}}); }},
     Content{"counts", rewritten<NetworkCounts>, [] { return written(some_counts()); }},
-    Content{"field", rewritten<VoxelField>,
+    Content{"field", rewritten<PassField>,
             [] {
-              VoxelField field;
+              PassField field;
               field.count = {1, 2, 3}, field.stations = {1, 3, 2};
               return written(field);
             }},

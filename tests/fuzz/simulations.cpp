@@ -122,7 +122,8 @@ void simulator(Bytes bytes) {
     VoxelField field;
     const NetworkCounts counts = simulator.evaluate(network, {.field = &field});
     const auto stations = static_cast<std::uint32_t>(network.size());
-    const NetworkCounts expected = test::reference_counts(field, stations, simulator.goal_density());
+    const NetworkCounts expected =
+        test::reference_counts({field.count, field.stations.all_words()}, stations, simulator.goal_density());
     require(counts.saturated == expected.saturated && counts.partial_points == expected.partial_points &&
                 counts.seen == expected.seen && counts.shared == expected.shared,
             "counts are those of the field");

@@ -11,6 +11,7 @@
 #include "stress/engine_suite.hpp"
 #include "stress/moved_scene.hpp"
 #include "trace/field_counts.hpp"
+#include "trace/pass_field.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
 
@@ -43,7 +44,7 @@ Simulator simulator_of_wall(const EngineInfo& engine) {
 TEST_P(Networks, OfAnySizeAddUpTheirStations) {
   Simulator engine = simulator_of_wall(GetParam());
   const Network all = ring(150);
-  VoxelField sum;
+  PassField sum;  // word after word of 64 stations
   sum.count.assign(engine.voxel_count(), 0);
   sum.stations.assign(mask_words(all.size()) * engine.voxel_count(), 0);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -52,14 +53,14 @@ TEST_P(Networks, OfAnySizeAddUpTheirStations) {
     EXPECT_EQ(clustering_coefficient(overlap_matrix(counts)), 0);
     for (std::size_t v = 0; v < one.count.size(); ++v) {
       sum.count[v] += one.count[v];
-      sum.stations[k / mask_bits * one.count.size() + v] |= one.stations[v] << (k % mask_bits);
-      ASSERT_LE(one.stations[v], 1u);
+      sum.stations[k / mask_bits * one.count.size() + v] |= one.stations.word(0, v) << (k % mask_bits);
+      ASSERT_LE(one.stations.word(0, v), 1u);
     }
     if (k == 1) {
       VoxelField two;
       const NetworkCounts pair = engine.evaluate({all[0], all[1]}, {.field = &two});
       EXPECT_EQ(two.count, sum.count);
-      EXPECT_TRUE(std::ranges::equal(two.stations, std::span(sum.stations).first(two.stations.size())));
+      EXPECT_TRUE(std::ranges::equal(two.stations.all_words(), std::span(sum.stations).first(two.count.size())));
       EXPECT_GT(pair.shared_by(0, 1), 0u);
       EXPECT_EQ(clustering_coefficient(overlap_matrix(pair)), 0) << "two stations make no triangle";
     }
@@ -67,13 +68,13 @@ TEST_P(Networks, OfAnySizeAddUpTheirStations) {
       VoxelField word;
       engine.evaluate(ring_of(all, 64), {.field = &word});
       EXPECT_EQ(word.count, sum.count);
-      EXPECT_TRUE(std::ranges::equal(word.stations, std::span(sum.stations).first(word.stations.size())));
+      EXPECT_TRUE(std::ranges::equal(word.stations.all_words(), std::span(sum.stations).first(word.count.size())));
     }
   }
   VoxelField field;
   const NetworkCounts counts = engine.evaluate(all, {.field = &field});
   EXPECT_EQ(field.count, sum.count);
-  EXPECT_EQ(field.stations, sum.stations);
+  EXPECT_EQ(field.stations.all_words(), sum.stations);
   EXPECT_EQ(counts.seen.size(), 150u);
   EXPECT_EQ(counts.shared.size(), 150u * 149 / 2);
   const NetworkCounts sampled = engine.evaluate_sampled({&all, 1}, {.voxels = engine.voxel_count()}).front();

@@ -201,7 +201,7 @@ RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(c
       if (!noisy) scene.scanners[0].noise = std::make_shared<const NoiseModel>();
       const auto tracer = make(scene);
       tracer->set_goal_density(goal);
-      VoxelField all, skipped;
+      PassField all, skipped;
       const NetworkCounts exact = tracer->count(site.stations, 7, {true, false, &all}, {});
       const NetworkCounts part = tracer->count(site.stations, 7, {true, true, &skipped}, {});
       EXPECT_EQ(all.count, skipped.count);

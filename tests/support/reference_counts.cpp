@@ -3,7 +3,7 @@
 
 namespace vantage::test {
 
-NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density,
+NetworkCounts reference_counts(const PassField& field, std::uint32_t stations, double goal_density,
                                const VoxelDemands& demands) {
   NetworkCounts counts;
   counts.voxels = field.count.size();

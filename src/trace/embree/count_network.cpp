@@ -16,7 +16,7 @@ namespace {
 // Collects a network's counts.
 class Tally {
  public:
-  Tally(VoxelField& field, const StationRays& scanner, std::uint32_t stations, const Tracer::CountOptions& options)
+  Tally(PassField& field, const StationRays& scanner, std::uint32_t stations, const Tracer::CountOptions& options)
       : field_(field),
         grid_(scanner.grid()),
         stations_(stations),
@@ -27,7 +27,7 @@ class Tally {
     field.stations.assign(options.masks ? grid_.size() : 0, 0);
   }
 
-  VoxelField& field() { return field_; }
+  PassField& field() { return field_; }
   // Adds a station's sums beside the field.
   void add(const TraceStation& station, const StationTotals& totals) {
     rays_ += totals.rays;
@@ -47,7 +47,7 @@ class Tally {
 
  private:
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
-  VoxelField& field_;
+  PassField& field_;
   const VoxelGrid& grid_;
   std::uint32_t stations_;
   std::uint64_t rays_ = 0;
@@ -59,7 +59,7 @@ class Tally {
 
 NetworkCounts count_network(std::span<const StationRays> scanners, std::span<const TraceStation> stations,
                             std::uint32_t station_count, double goal_density, const Tracer::CountOptions& options,
-                            VoxelField& scratch, const Progress& progress) {
+                            PassField& scratch, const Progress& progress) {
   Tally tally(options.field ? *options.field : scratch, scanners.front(), station_count, options);
   PointBuckets points(scanners.front().grid().size());
   bool cancelled = false;
@@ -77,14 +77,14 @@ NetworkCounts count_network(std::span<const StationRays> scanners, std::span<con
 std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
                                           std::span<const std::vector<TraceStation>> networks,
                                           std::span<const std::uint32_t> station_counts, double goal_density,
-                                          const Tracer::CountOptions& options, VoxelField& scratch,
+                                          const Tracer::CountOptions& options, PassField& scratch,
                                           const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
   const std::size_t voxels = scanners.front().grid().size();
   SharedStations shared(scanners, networks, voxels * sizeof(std::uint32_t));  // at most the memory of the counts
   PointBuckets points(voxels);
-  VoxelField alone;  // of a station whose points are needed again
+  PassField alone;  // of a station whose points are needed again
   std::size_t traced = 0;
   for (const std::size_t n : shared.order()) {
     if (progress.stopped()) break;

@@ -12,14 +12,14 @@ namespace vantage {
 // kept from call to call to reuse its memory.
 NetworkCounts count_network(std::span<const StationRays> scanners, std::span<const TraceStation> stations,
                             std::uint32_t station_count, double goal_density, const Tracer::CountOptions& options,
-                            VoxelField& scratch, const Progress& progress);
+                            PassField& scratch, const Progress& progress);
 
 // Tracer::count_each. A station common to several networks is traced once while there is room for its points: networks
 // of one front share half of their stations.
 std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
                                           std::span<const std::vector<TraceStation>> networks,
                                           std::span<const std::uint32_t> station_counts, double goal_density,
-                                          const Tracer::CountOptions& options, VoxelField& scratch,
+                                          const Tracer::CountOptions& options, PassField& scratch,
                                           const Progress& progress);
 
 }  // namespace vantage

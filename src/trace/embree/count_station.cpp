@@ -200,7 +200,7 @@ StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, cons
 
 }  // namespace
 
-bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
+bool count_station(const StationRays& rays, const TraceStation& station, bool skip, PassField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress) {
   const RayPattern& pattern = rays.pattern();
   const TileEnds ends = skip ? tiles_with_bricks(rays, station) : all_tiles(pattern);

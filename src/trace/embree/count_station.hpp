@@ -19,7 +19,7 @@ struct StationTotals {
 
 // Adds the station's points to the field, through `points`, and their sums to `totals`. `skip`: as in
 // Tracer::CountOptions. Returns false if it was stopped before the end.
-bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
+bool count_station(const StationRays& rays, const TraceStation& station, bool skip, PassField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress);
 
 }  // namespace vantage

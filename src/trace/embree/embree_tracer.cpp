@@ -67,7 +67,7 @@ class EmbreeTracer final : public Tracer {
  private:
   std::vector<StationRays> scanners_;
   EngineInfo info_;
-  VoxelField field_;
+  PassField field_;
   LruCache<SampledVoxels> samples_;
 };
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/add_saturating.hpp"
-#include "vantage/trace.hpp"
+#include "trace/pass_field.hpp"
 
 namespace vantage {
 
@@ -43,7 +43,7 @@ class PointBuckets {
   std::uint32_t shift() const { return shift_; }
 
   // Adds all points to the field under the bit of their station, and empties the buckets. Counts saturate.
-  void flush(VoxelField& field, std::uint64_t bit) {
+  void flush(PassField& field, std::uint64_t bit) {
     const bool masks = !field.stations.empty();
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t b) {
       for (Local& local : local_) {

@@ -45,7 +45,7 @@ std::uint32_t StationPoints::count_of(std::uint32_t voxel_index) const {
   return std::lower_bound(many_.begin(), many_.end(), std::pair{voxel_index, 0u})->second;
 }
 
-void StationPoints::add_to(VoxelField& field, std::uint64_t bit) const {
+void StationPoints::add_to(PassField& field, std::uint64_t bit) const {
   const bool masks = !field.stations.empty();
   each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
     const std::uint8_t* few = few_.data() + first_[c];

@@ -19,7 +19,7 @@ class StationPoints {
   const StationTotals& totals() const { return totals_; }
   std::size_t bytes() const { return seen_.size() * sizeof(seen_[0]) + few_.size() + many_.size() * sizeof(many_[0]); }
   // Adds them to a field of as many voxels, under the station's bit. Counts saturate.
-  void add_to(VoxelField& field, std::uint64_t bit) const;
+  void add_to(PassField& field, std::uint64_t bit) const;
 
  private:
   static constexpr std::size_t word = 64, chunk = 1024 * word;  // voxels; a chunk is a task

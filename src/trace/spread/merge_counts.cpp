@@ -19,7 +19,7 @@ void add_each(std::vector<T>& sums, const std::vector<T>& parts) {
 
 }  // namespace
 
-void add_field(VoxelField& field, VoxelField&& part) {
+void add_field(PassField& field, PassField&& part) {
   if (field.count.empty()) {
     field = std::move(part);
     return;

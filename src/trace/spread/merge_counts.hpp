@@ -7,7 +7,7 @@
 namespace vantage {
 
 // Adds another part's counts voxel by voxel. An empty `field` becomes the part.
-void add_field(VoxelField& field, VoxelField&& part);
+void add_field(PassField& field, PassField&& part);
 // Adds per-station sums and rays; values reduced from voxels stay as they are.
 void add_station_sums(NetworkCounts& counts, const NetworkCounts& part);
 // Adds the counts of the same network over other voxels of a sample. REQUIRES: without groups and registration.

@@ -138,12 +138,12 @@ NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stati
                                              const CountOptions& options, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   std::mutex mutex;
-  VoxelField field;
+  PassField field;
   NetworkCounts sums;
   double tracing = 0, merging = 0;
   std::size_t merged = 0;
   const auto one = [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const auto&) {
-    VoxelField part;
+    PassField part;
     const auto begun = Clock::now();
     const NetworkCounts counts = tracer.count(stations.subspan(chunk.first, chunk.size()), station_count,
                                               {.masks = options.masks, .skip = options.skip, .field = &part}, own);

@@ -233,7 +233,7 @@ class VulkanTracer::ExactCount {
     result.rays = options_.skip ? tile_rays_ : all_rays_;
   }
 
-  void read_field(VoxelField& field) {
+  void read_field(PassField& field) {
     field.count.resize(voxels_);
     t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * word);
     field.stations.assign(options_.masks ? voxels_ : 0, 0);

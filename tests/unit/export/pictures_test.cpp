@@ -370,11 +370,13 @@ TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
   VoxelField field;
   field.count.assign(simulator.voxel_count(), 1);
   const std::size_t voxels = simulator.voxel_count();
-  field.stations.assign(voxels * (last / 64 + 1), 0);
+  std::vector<std::vector<std::uint64_t>> words(last / 64 + 1, std::vector<std::uint64_t>(voxels, 0));
   for (std::size_t k = 1; k < voxels; ++k) {
-    field.stations[k] = 1;
-    if (k % 2 == 0) field.stations[last / 64 * voxels + k] |= std::uint64_t{1} << (last % 64);
+    words.front()[k] = 1;
+    if (k % 2 == 0) words.back()[k] |= std::uint64_t{1} << (last % 64);
   }
+  field.stations = StationMasks(voxels, count);
+  for (std::size_t w = 0; w < words.size(); ++w) field.stations.set_words(w, words[w]);
   // Shifts of 1 mm and 7 mm, one sigma along x.
   RegistrationError error;
   error.stations.resize(count), error.poses.resize(count);
@@ -389,11 +391,21 @@ TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
     ASSERT_FLOAT_EQ(test::take<float>(ply, at), k % 2 ? 1.0f : 5.0f) << k;
   }
   EXPECT_EQ(at, ply.size());
+  write_coverage_ply(folder / "coverage.ply", simulator, field);
+  const std::string coverage = test::content(folder / "coverage.ply");
+  EXPECT_EQ(coverage.find("property uint stations_low\nproperty uint stations_high\n") == std::string::npos,
+            count > 64);
+  EXPECT_EQ(coverage.find("property uint stations\n") == std::string::npos, count <= 64);
+  const std::size_t many = coverage.size() - sizeof(std::uint32_t);  // stations of the last voxel
+  if (count > 64) {
+    std::size_t last_number = many;
+    EXPECT_EQ(test::take<std::uint32_t>(coverage, last_number), voxels % 2 == 1 ? 2u : 1u);
+  }
   const std::vector<PlacedStation> stations{{.uv = {}, .position = {0, 0, 0}, .status = StationStatus::ok}};
   for (const char* name : {"error.png", "error.svg"})
     draw_registration(folder / name, site, field, error, stations, "Where scans are off");
   EXPECT_GT(test::Drawn(folder / "error.png").near(kRisingRamp.back(), 40), 500u) << "the largest on top";
-  field.stations.pop_back();
+  field.stations = StationMasks(voxels - 1, count);
   EXPECT_THROW(write_registration_ply(folder / "bad.ply", simulator, field, error), Error);
 }
 

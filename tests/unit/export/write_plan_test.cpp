@@ -86,7 +86,8 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const PlanEntry& entry = result.front[answer(result)];
   VoxelField seen;
   survey.simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &seen});
-  const std::size_t chosen = write_plan(folder / "out", result, survey.site, &seen);
+  EXPECT_TRUE(write_plan(folder / "out", result, survey.site, &seen).empty());
+  const std::size_t chosen = answer(result);
   ASSERT_EQ(chosen, answer(result));
 
   for (const char* name :
@@ -137,7 +138,7 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
     ASSERT_TRUE(ratio > 0 || red > 2 * green);
     ASSERT_TRUE(ratio < 1 || green > 2 * red);
     ASSERT_EQ(test::take<std::uint32_t>(ply, at), field.count[k]);
-    ASSERT_EQ(test::take<std::uint32_t>(ply, at), static_cast<std::uint32_t>(field.stations[k]));
+    ASSERT_EQ(test::take<std::uint32_t>(ply, at), static_cast<std::uint32_t>(field.stations.word(0, k)));
     filled += ratio;
   }
   EXPECT_NEAR(filled / static_cast<double>(survey.simulator.voxel_count()), entry.value("coverage"), 1e-6);
@@ -247,6 +248,15 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   write_plan(folder / "out", result, survey.site);
   EXPECT_NE(test::content(folder / "out/front.csv").find(",exact_walk,"), std::string::npos);
   EXPECT_NE(test::content(folder / "out/front.svg").size(), 0u);
+
+  // Once the time is over, only plan.png is drawn of the plan, and no picture of an earlier one stays.
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/plan.svg"));
+  std::stop_source late;
+  late.request_stop();
+  EXPECT_EQ(write_plan(folder / "out", result, survey.site, nullptr, late.get_token()),
+            std::vector<std::string>{"plan.svg"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/plan.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/plan.png"));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "core/philox.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "scan/voxel_sample.hpp"
+#include "trace/field_counts.hpp"
 #include "trace/registration_sums.hpp"
 #include "vantage/error.hpp"
 #include "vantage/measure.hpp"
@@ -465,6 +466,45 @@ TEST(Registration, OfALinkInOneGroupIsNotFreeOfError) {
   const Estimate estimate = registration_estimate(counts, 20 * counts.voxels);
   EXPECT_GT(estimate.standard_error, seen);
   EXPECT_DOUBLE_EQ(estimate.value, seen / 2);
+}
+
+TEST(Registration, SumsOfAFieldDoNotDependOnTheParts) {
+  Made made;
+  made.heads = {{0.1, 0, 0}, {-0.4, 0.3, 0.2}, {0.5, -0.2, -0.3}};
+  made.room({0, 0, 0}, 4, 3, 12, 0b111);
+  for (std::size_t k = 0; k < made.masks.size(); ++k) made.masks[k] = k % 8;
+  const Patches patches = made.patches();
+  const std::size_t voxels = made.masks.size();
+  for (const std::uint32_t station_count : {3u, 150u}) {
+    SCOPED_TRACE(std::to_string(station_count) + " stations");
+    std::vector<TraceStation> stations = made.stations();
+    stations.back().place = station_count - 1;
+    std::vector<std::uint64_t> words(voxels * mask_words(station_count));
+    for (std::size_t k = 0; k < voxels; ++k) {
+      words[k] |= made.masks[k] & 3;
+      words[(station_count - 1) / 64 * voxels + k] |= (made.masks[k] >> 2) << ((station_count - 1) % 64);
+    }
+    StationMasks masks(voxels, station_count);
+    for (std::size_t w = 0; w < masks.words(); ++w) masks.set_words(w, std::span(words).subspan(w * voxels, voxels));
+    const std::vector<std::uint32_t> counts(voxels, 1);
+    const NetworkCounts network = reduce_field(counts, words, station_count, 1);
+    const RegistrationSums whole = sum_patches(patches, scanner_with({}), stations, station_count, words, 0).front();
+    for (const std::size_t at_once : {std::size_t{1000}, voxels - 1, voxels}) {
+      const auto some = [&](std::size_t first, std::size_t many) {
+        Patches part = patches;
+        part.patches.assign(patches.patches.begin() + static_cast<std::ptrdiff_t>(first),
+                            patches.patches.begin() + static_cast<std::ptrdiff_t>(first + many));
+        return std::make_shared<const Patches>(std::move(part));
+      };
+      const auto sums = sum_patches(some, at_once, scanner_with({}), stations, network, masks);
+      ASSERT_TRUE(sums);
+      EXPECT_EQ(sums->pairs, whole.pairs);
+      EXPECT_EQ(sums->surface, whole.surface);
+      EXPECT_TRUE(std::ranges::any_of(sums->pairs, [](double sum) { return sum != 0; }));
+    }
+    const auto stopped = [](std::size_t, std::size_t) { return std::shared_ptr<const Patches>(); };
+    EXPECT_FALSE(sum_patches(stopped, 1000, scanner_with({}), stations, network, masks));
+  }
 }
 
 TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {

@@ -208,7 +208,7 @@ TEST(Ranks, CountEveryRayAsOneDoes) {
              each_spread = spread->count_each(work.networks, work.sizes, {}, {});
   for (std::size_t k = 0; k < each.size(); ++k) expect_all_equal(each_spread[k], each[k]);
   for (const bool skip : {true, false}) {
-    VoxelField field, field_there;
+    PassField field, field_there;
     const auto expected = single->count(work.networks[3], work.sizes[3], {.skip = skip, .field = &field}, {});
     expect_all_equal(there->count(work.networks[3], work.sizes[3], {.skip = skip, .field = &field_there}, {}),
                      expected);

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "support/quad_scene.hpp"
+#include "trace/pass_field.hpp"
 #include "trace/tracer_maker.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
@@ -348,7 +349,7 @@ TEST(Simulator, HasScannersThatStationsChooseFrom) {
     EXPECT_EQ(own.points_on_surveyed[0], counts.points_on_surveyed[k]);
     std::size_t differing = 0;
     for (std::size_t v = 0; v < field.count.size(); ++v)
-      differing += (field.count[v] > 0) != ((together.stations[v] >> k & 1) != 0);
+      differing += (field.count[v] > 0) != ((together.stations.word(0, v) >> k & 1) != 0);
     EXPECT_EQ(differing, 0u);
   }
   const auto refusal = [&](const StationSetup& setup) {
@@ -438,8 +439,8 @@ TEST(Evaluate, AgreesWithScans) {
   const Network network{{{0, 0, 0}}, {{1, -2, 0.5}}};
   VoxelField field;
   const NetworkCounts counts = simulator.evaluate(network, {.skip = false, .field = &field});
-  VoxelField expected{std::vector<std::uint32_t>(simulator.voxel_count()),
-                      std::vector<std::uint64_t>(simulator.voxel_count())};
+  PassField expected{std::vector<std::uint32_t>(simulator.voxel_count()),
+                     std::vector<std::uint64_t>(simulator.voxel_count())};
   for (std::uint32_t place = 0; place < 2; ++place) {
     ScanSummary summary;
     for (const std::uint32_t voxel : whole_scan(simulator, network[place], place, scan_voxel, &summary).voxel) {
@@ -451,7 +452,7 @@ TEST(Evaluate, AgreesWithScans) {
     EXPECT_EQ(counts.points_on_surveyed.at(place), summary.points_on_surveyed);
   }
   EXPECT_EQ(field.count, expected.count);
-  EXPECT_EQ(field.stations, expected.stations);
+  EXPECT_EQ(field.stations.all_words(), expected.stations);
   const double share = coverage(counts, simulator.goal_density());
   EXPECT_GT(share, 0.3);
   EXPECT_LT(share, 1.0);

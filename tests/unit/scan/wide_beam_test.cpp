@@ -302,7 +302,7 @@ TEST(WideBeam, CountsOfANetworkAreThoseOfItsScans) {
       }
     }
     EXPECT_EQ(field.count, points);
-    EXPECT_EQ(field.stations, stations);
+    EXPECT_EQ(field.stations.all_words(), stations);
     EXPECT_EQ(counts.voxels, simulator.voxel_count());
     EXPECT_EQ(counts.seen[0], static_cast<std::uint64_t>(
                                   std::ranges::count_if(stations, [](std::uint64_t mask) { return (mask & 1) != 0; })));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "core/philox.hpp"
 #include "support/expect_counts.hpp"
@@ -13,9 +14,9 @@
 namespace vantage {
 namespace {
 
-VoxelField random_field(std::size_t voxels, std::uint32_t stations, std::uint64_t seed) {
+PassField random_field(std::size_t voxels, std::uint32_t stations, std::uint64_t seed) {
   RandomStream random(seed);
-  VoxelField field;
+  PassField field;
   field.count.resize(voxels);
   for (std::uint32_t first = 0; first < stations; first += 64)
     for (std::size_t k = 0; k < voxels; ++k) {
@@ -34,7 +35,7 @@ TEST(FieldCounts, EqualTheBookForAnySizeAndNumberOfStations) {
                                      std::size_t{3000}, std::size_t{70'001}}) {
       if (stations > 64 && voxels > 3000) continue;  // the reference is slow
       SCOPED_TRACE(std::to_string(stations) + " stations, " + std::to_string(voxels) + " voxels");
-      VoxelField field = random_field(voxels, stations, stations * 1000 + voxels);
+      PassField field = random_field(voxels, stations, stations * 1000 + voxels);
       if (voxels > 0)
         test::expect_equal_counts(reduce_field(field.count, field.stations, stations, 37.3),
                                   test::reference_counts(field, stations, 37.3));
@@ -45,8 +46,62 @@ TEST(FieldCounts, EqualTheBookForAnySizeAndNumberOfStations) {
   }
 }
 
+// Each 64 stations see their own stretch of the voxels, as they do of a large site.
+PassField field_of_stretches(std::size_t voxels, std::uint32_t stations) {
+  PassField field = random_field(voxels, stations, 11);
+  const std::size_t words = mask_words(stations);
+  for (std::size_t w = 0; w < words; ++w)
+    for (std::size_t k = 0; k < voxels; ++k)
+      if (k * words / voxels != w) field.stations[w * voxels + k] = 0;
+  return field;
+}
+
+StationMasks kept(const PassField& field, std::uint32_t stations) {
+  StationMasks masks(field.count.size(), stations);
+  for (std::size_t w = 0; w < masks.words(); ++w)
+    masks.set_words(w, std::span(field.stations).subspan(w * field.count.size(), field.count.size()));
+  return masks;
+}
+
+TEST(FieldCounts, OfKeptMasksAreThoseOfAllWords) {
+  for (const std::uint32_t stations : {1u, 64u, 65u, 200u})
+    for (const std::size_t voxels : {std::size_t{1}, std::size_t{4096}, std::size_t{4097}, std::size_t{70'001}}) {
+      SCOPED_TRACE(std::to_string(stations) + " stations, " + std::to_string(voxels) + " voxels");
+      const PassField field = field_of_stretches(voxels, stations);
+      test::expect_equal_counts(reduce_field({field.count, kept(field, stations)}, stations, 37.3),
+                                reduce_field(field.count, field.stations, stations, 37.3));
+    }
+}
+
+TEST(StationMasks, KeepOnlyBlocksWithAPoint) {
+  constexpr std::size_t voxels = 70'001;
+  constexpr std::uint32_t stations = 200;
+  const PassField field = field_of_stretches(voxels, stations);
+  StationMasks masks = kept(field, stations);
+  EXPECT_EQ(masks.voxels(), voxels);
+  ASSERT_EQ(masks.words(), 4u);
+  EXPECT_EQ(masks.all_words(), field.stations);
+  for (std::size_t w = 0; w < 4; ++w) {
+    std::size_t empty = 0;
+    for (std::size_t k = 0; k < 18; ++k) empty += masks.block(w, k).empty();
+    EXPECT_GE(empty, 12u) << "of 18";
+  }
+  for (const std::size_t voxel : {std::size_t{1}, std::size_t{40'001}, voxels - 1}) {
+    std::vector<std::size_t> expected, seen;
+    for (std::size_t s = 0; s < stations; ++s)
+      if (field.stations[s / 64 * voxels + voxel] >> (s % 64) & 1) expected.push_back(s);
+    masks.for_each_station(voxel, [&](std::size_t s) { seen.push_back(s); });
+    EXPECT_EQ(seen, expected);
+    EXPECT_FALSE(seen.empty());
+  }
+  const std::vector<std::uint64_t> none(voxels, 0);
+  for (std::size_t w = 0; w < 4; ++w) masks.set_words(w, none);
+  EXPECT_EQ(masks, StationMasks(voxels, stations)) << "as if no station had had a point";
+  EXPECT_TRUE(StationMasks().empty());
+}
+
 TEST(FieldCounts, WeightsAndGoalsCountInCoverageAlone) {
-  const VoxelField field = random_field(70'001, 15, 3);
+  const PassField field = random_field(70'001, 15, 3);
   RandomStream random(8);
   VoxelDemands demands;
   for (std::size_t k = 0; k < field.count.size(); ++k)
@@ -76,12 +131,12 @@ TEST(FieldCounts, SumsDoNotWrap) {
 }
 
 TEST(SampleCounts, GroupsInterleaveAndAddUp) {
-  const VoxelField field = random_field(1003, 7, 5);
+  const PassField field = random_field(1003, 7, 5);
   const NetworkCounts all = reduce_sample(field.count, field.stations, 20, 7, 50);
   test::expect_equal_counts(all, test::reference_counts(field, 7, 50));
   ASSERT_EQ(all.groups.size(), 20u);
   for (std::size_t g = 0; g < 20; ++g) {
-    VoxelField part;
+    PassField part;
     for (std::size_t i = g; i < field.count.size(); i += 20) {
       part.count.push_back(field.count[i]);
       part.stations.push_back(field.stations[i]);
@@ -95,7 +150,7 @@ TEST(SampleCounts, GroupsInterleaveAndAddUp) {
 }
 
 TEST(SampleCounts, MoreGroupsThanVoxelsLeaveSomeEmpty) {
-  const VoxelField field = random_field(3, 4, 9);
+  const PassField field = random_field(3, 4, 9);
   const NetworkCounts all = reduce_sample(field.count, field.stations, 20, 4, 50);
   ASSERT_EQ(all.groups.size(), 20u);
   EXPECT_EQ(all.groups[2].voxels, 1u);

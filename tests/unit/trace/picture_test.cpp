@@ -214,7 +214,7 @@ TEST(Picture, CountsAreThoseOfTracing) {
         for (const bool skip : {false, true}) {
           SCOPED_TRACE("seed " + std::to_string(seed) + (noisy ? ", noise" : "") + (limited ? ", limits" : "") +
                        (skip ? ", skipping" : ""));
-          VoxelField drawn, traced;
+          PassField drawn, traced;
           expect_equal(drawing->count(stations, n, {true, skip, &drawn}, {}),
                        tracing->count(stations, n, {true, skip, &traced}, {}));
           EXPECT_EQ(drawn.count, traced.count);

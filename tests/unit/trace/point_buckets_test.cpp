@@ -7,7 +7,7 @@ namespace vantage {
 namespace {
 
 TEST(PointBuckets, CountsSaturateAndMasksAdd) {
-  VoxelField field;
+  PassField field;
   field.count = {0, 0xFFFFFFFDu, 5, 7};
   field.stations = {0, 0, 1, 0};
   PointBuckets buckets(4);

@@ -23,13 +23,13 @@ TEST(StationPoints, AreAddedAsTheyWereCounted) {
   counts.back() = full;
   const StationPoints points(counts, {.rays = 7});
   EXPECT_EQ(points.totals().rays, 7u);
-  VoxelField field{std::vector<std::uint32_t>(counts.size(), 2), std::vector<std::uint64_t>(counts.size(), 1)};
+  PassField field{std::vector<std::uint32_t>(counts.size(), 2), std::vector<std::uint64_t>(counts.size(), 1)};
   points.add_to(field, 8);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     ASSERT_EQ(field.count[k], counts[k] == full ? full : counts[k] + 2) << k;
     ASSERT_EQ(field.stations[k], counts[k] > 0 ? 9u : 1u) << k;
   }
-  VoxelField unmasked{std::vector<std::uint32_t>(counts.size()), {}};
+  PassField unmasked{std::vector<std::uint32_t>(counts.size()), {}};
   points.add_to(unmasked, 1);
   EXPECT_EQ(unmasked.count, counts);
   EXPECT_LT(points.bytes(), counts.size());

@@ -71,6 +71,25 @@ TEST(VoxelTriangles, EqualClippingForSparseAndDenseSamples) {
     }
 }
 
+TEST(VoxelTriangles, ListsOfAStretchEqualThoseOfAllVoxels) {
+  const SceneData scene = scene_with_blocking();
+  const VoxelGrid grid = VoxelGrid::build(scene, 0.02);
+  std::vector<std::uint32_t> all(grid.size());
+  std::iota(all.begin(), all.end(), 0u);
+  for (const double margin : {0.0, 0.03}) {
+    const VoxelTriangles of_all = triangles_touching(scene, grid, all, margin);
+    for (std::uint32_t part = 0; part < 7; ++part) {
+      const std::size_t first = part * grid.size() / 7, end = (part + 1) * grid.size() / 7;
+      const VoxelTriangles found = triangles_touching(scene, grid, std::span(all).subspan(first, end - first), margin);
+      ASSERT_EQ(found.offset.size(), end - first + 1);
+      for (std::size_t i = first; i <= end; ++i)
+        ASSERT_EQ(found.offset[i - first], of_all.offset[i] - of_all.offset[first]);
+      EXPECT_TRUE(std::ranges::equal(found.triangle,
+                                     std::span(of_all.triangle).subspan(of_all.offset[first], found.triangle.size())));
+    }
+  }
+}
+
 TEST(VoxelTriangles, SparseListsEqualThoseOfAllVoxels) {
   const SceneData scene = scene_with_blocking();
   const VoxelGrid grid = VoxelGrid::build(scene, 0.02);

@@ -103,6 +103,18 @@ TEST(TriangleCells, WidenedCellsEqualClipping) {
         EXPECT_TRUE(walked.insert({std::uint32_t(c[0]), std::uint32_t(c[1]), std::uint32_t(c[2])}).second);
       });
       EXPECT_EQ(walked, test::clipped_voxels(positions, std::span(&t, 1), {-8, -8, -8}, 1.0, 4, margin));
+      const TriangleCells::Cell low{5, 3, 7}, high{12, 8, 7};
+      std::size_t within = 0;
+      for (const auto& c : walked) {
+        bool in = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) in = in && c[axis] >= low[axis] && c[axis] <= high[axis];
+        within += in;
+      }
+      cells.for_each_within(low, high, [&](const TriangleCells::Cell& c) {
+        EXPECT_TRUE(walked.contains({std::uint32_t(c[0]), std::uint32_t(c[1]), std::uint32_t(c[2])}));
+        --within;
+      });
+      EXPECT_EQ(within, 0u);
       for (int x = 0; x < 16; ++x)
         for (int y = 0; y < 16; ++y)
           for (int z = 0; z < 16; ++z)

@@ -145,7 +145,7 @@ void expect_all_equal(const NetworkCounts& got, const NetworkCounts& expected) {
 struct Answers {
   Tracer::RawChunk scan;
   NetworkCounts exact;
-  VoxelField field;
+  PassField field;
   std::vector<NetworkCounts> each, sampled, searched;
   std::vector<std::vector<std::uint32_t>> points;
   std::vector<std::vector<std::uint64_t>> masks;
