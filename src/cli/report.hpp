@@ -2,11 +2,14 @@
 // Writing of reports, shared by commands.
 #pragma once
 
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "cli/command.hpp"
@@ -39,14 +42,20 @@ struct ReportHead {
   }
 };
 
-// Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation.
+// Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation. Tells which file a
+// stop left out.
 template <class Shown>
 void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Site& site, ReportOptions options,
                    Program& program, std::stop_token stop) {
   options.command = program.command;
   ProgressLine line(program.console, "writing the report");
-  for (const std::filesystem::path& file : files)
-    write_report(file, shown, site, options, {.report = [&](double done) { line.update(done); }, .stop = stop});
+  for (const std::filesystem::path& file : files) {
+    if (write_report(file, shown, site, options, {.report = [&](double done) { line.update(done); }, .stop = stop}))
+      continue;
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);  // that of an earlier run is not this one's
+    spdlog::warn("stopped: {} is not written", file.string());
+  }
 }
 
 }  // namespace vantage::cli

@@ -438,7 +438,7 @@ class SheetPanel {
 }  // namespace
 
 FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
-                         const std::vector<TargetFacts>& of_targets, Site& site) {
+                         const std::vector<TargetFacts>& of_targets, Site& site, const std::stop_token& stop) {
   const Scene& scene = site.scene();
   const Evaluation& network = report.shown();
   const std::vector<PlacedStation>& stations = network.stations;
@@ -451,6 +451,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
 
   const auto draw = [&](const SheetLayout& layout, const MapTile& tile, const PlanLevel& level, const std::string& name,
                         const std::vector<MapTile>* overview) {
+    if (stop.stop_requested()) return;
     MapSheet map(layout, tile, level);
     map.clip();
     map.site(scene, site.area(), surfaces);

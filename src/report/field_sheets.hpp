@@ -2,6 +2,7 @@
 // The maps that a crew carries: each storey at a round ratio.
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct FieldSheets {
   std::vector<std::size_t> of_station = {};  // the sheet that shows it best, from 1; 0: none does
 };
 
-// Each level with a station, from the lowest; an overview before those that take several sheets.
+// Each level with a station, from the lowest; an overview before those that take several sheets. A stop leaves out the
+// sheets that are not begun.
 FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
-                         const std::vector<TargetFacts>& of_targets, Site& site);
+                         const std::vector<TargetFacts>& of_targets, Site& site, const std::stop_token& stop);
 
 }  // namespace vantage

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,7 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
 std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator);
 
 void write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
-void write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site);
+// False, and no file, if stopped before the sheets were drawn.
+bool write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site, const std::stop_token& stop);
 
 }  // namespace vantage

@@ -38,7 +38,7 @@ void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
 }
 
 // The plan view; of several storeys those with most stations, below each other as far as there is room.
-void front_plans(Sheet& sheet, const Evaluation& network, Site& site) {
+void front_plans(Sheet& sheet, const Evaluation& network, Site& site, const std::stop_token& stop) {
   std::span<const StationError> errors;
   if (network.registration) errors = network.registration->stations;
   const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
@@ -49,7 +49,9 @@ void front_plans(Sheet& sheet, const Evaluation& network, Site& site) {
                                          .links = links,
                                          .title = "Stations and links",
                                          .errors = errors,
-                                         .targets = network.targets});
+                                         .targets = network.targets},
+                                        stop);
+  if (stop.stop_requested()) return;  // the sheet is not kept
   std::vector<const Canvas*> plans;
   for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k) plans.push_back(pages[k].canvas.get());
   const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), network.stations);
@@ -76,7 +78,7 @@ void front_plans(Sheet& sheet, const Evaluation& network, Site& site) {
   }
 }
 
-Sheet front_sheet(const Report& report, Site& site) {
+Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop) {
   const Evaluation& network = report.shown();
   const double margin = Sheet::kMargin;
   Sheet sheet(a4());
@@ -115,7 +117,7 @@ Sheet front_sheet(const Report& report, Site& site) {
   for (const auto& [heading, text] : report.facts)
     line(heading, text + (heading == "computed" ? "; report.html has every parameter" : ""), false);
   sheet.y += 8;
-  front_plans(sheet, network, site);
+  front_plans(sheet, network, site, stop);
   return sheet;
 }
 
@@ -343,13 +345,15 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
 
 }  // namespace
 
-void write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site) {
+bool write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site,
+                      const std::stop_token& stop) {
   const Evaluation& network = report.shown();
   const std::vector<StationFacts> facts = station_facts(report, site.simulator());
   std::vector<Sheet> sheets;
-  sheets.push_back(front_sheet(report, site));
+  sheets.push_back(front_sheet(report, site, stop));
   const std::vector<TargetFacts> of_targets = target_facts(report, site.simulator());
-  FieldSheets maps = field_sheets(report, facts, of_targets, site);
+  FieldSheets maps = field_sheets(report, facts, of_targets, site, stop);
+  if (stop.stop_requested()) return false;
   const std::size_t first_map = sheets.size() + 1;
   std::ranges::move(maps.sheets, std::back_inserter(sheets));
   stations_table(sheets, network, facts, maps.of_station, first_map);
@@ -382,6 +386,7 @@ void write_report_pdf(const std::filesystem::path& file, const Report& report, S
     pages.push_back(std::move(sheet.canvas));
   }
   Canvas::save_pages(file, pages, report.options.title);
+  return true;
 }
 
 }  // namespace vantage

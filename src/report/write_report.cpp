@@ -6,28 +6,29 @@
 namespace vantage {
 namespace {
 
-void write(const std::filesystem::path& file, Report report, Site& site, const Progress& progress) {
+bool write(const std::filesystem::path& file, Report report, Site& site, const Progress& progress) {
   report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
-  if (file.extension() == ".pdf") return write_report_pdf(file, report, site);
+  if (file.extension() == ".pdf") return write_report_pdf(file, report, site, progress.stop);
   if (file.extension() != ".html")
     throw Error(Errc::invalid_argument, "report: " + file.string() + " ends with neither .html nor .pdf");
   if (report.options.pictures)
     report.pictures = station_pictures(site.simulator(), report.shown().stations, progress.stop);
   write_report_html(file, report, site, progress);
+  return true;
 }
 
 }  // namespace
 
 std::string why_no_report() { return ""; }
 
-void write_report(const std::filesystem::path& file, const PlanResult& result, Site& site, const ReportOptions& options,
+bool write_report(const std::filesystem::path& file, const PlanResult& result, Site& site, const ReportOptions& options,
                   const Progress& progress) {
-  write(file, report_of(result, site, options), site, progress);
+  return write(file, report_of(result, site, options), site, progress);
 }
 
-void write_report(const std::filesystem::path& file, const Evaluation& evaluation, Site& site,
+bool write_report(const std::filesystem::path& file, const Evaluation& evaluation, Site& site,
                   const ReportOptions& options, const Progress& progress) {
-  write(file, report_of(evaluation, site, options), site, progress);
+  return write(file, report_of(evaluation, site, options), site, progress);
 }
 
 }  // namespace vantage

@@ -10,11 +10,11 @@ std::string why_no_report() {
          "zlib1g-dev)";
 }
 
-void write_report(const std::filesystem::path&, const PlanResult&, Site&, const ReportOptions&, const Progress&) {
+bool write_report(const std::filesystem::path&, const PlanResult&, Site&, const ReportOptions&, const Progress&) {
   throw Error(Errc::invalid_argument, "report: " + why_no_report());
 }
 
-void write_report(const std::filesystem::path&, const Evaluation&, Site&, const ReportOptions&, const Progress&) {
+bool write_report(const std::filesystem::path&, const Evaluation&, Site&, const ReportOptions&, const Progress&) {
   throw Error(Errc::invalid_argument, "report: " + why_no_report());
 }
 

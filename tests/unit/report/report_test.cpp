@@ -228,6 +228,11 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
       if (word.text.starts_with("S")) names.insert(word.text);
   for (std::size_t k = 0; k < max_stations; ++k) EXPECT_TRUE(names.contains("S" + std::to_string(k + 1))) << k + 1;
   EXPECT_LT(sheets.size(), 60u);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_FALSE(write_report(folder / "stopped.pdf", survey.result, survey.site, {.missed = &missed},
+                            {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "stopped.pdf"));
   write_report(folder / "report.html", survey.result, survey.site, {.pictures = false});
   EXPECT_LT(std::filesystem::file_size(folder / "report.html"), 5'000'000u);
 }
