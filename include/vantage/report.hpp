@@ -31,10 +31,9 @@ struct ReportOptions {
 
 /// Writes the front of a plan, its answer first, as a page (.html), or the answer as sheets A4 or A3 (.pdf): its
 /// summary, each storey at a round ratio with stations, their distances to corners and the round, a table of all
-/// stations, links, missed surface. A page loads nothing from anywhere. A stop leaves out what is not drawn yet:
-/// pictures and colours of a page, a .pdf as a whole; then it returns false. Borrows everything for the call. Throws
-/// Error: io; invalid_argument (an empty front, another extension, a build that writes no reports), malformed_file (a
-/// logo that is no picture); and as the simulator does.
+/// stations, links, missed surface. A page loads nothing from anywhere. A stop before the file is complete leaves it out
+/// and returns false. Borrows everything for the call. Throws Error: io; invalid_argument (an empty front, another
+/// extension, a build that writes no reports), malformed_file (a logo that is no picture); and as the simulator does.
 bool write_report(const std::filesystem::path& file, const PlanResult& result, Site& site,
                   const ReportOptions& options = {}, const Progress& progress = {});
 /// Writes the report of a single network, without a plan. Throws as above.

@@ -61,8 +61,8 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
 // sentence each.
 std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator);
 
-void write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
-// False, and no file, if stopped before the sheets were drawn.
+// False, and no file, if stopped before the page or the sheets were made.
+bool write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
 bool write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site, const std::stop_token& stop);
 
 }  // namespace vantage

@@ -8,12 +8,14 @@
 
 namespace vantage {
 
-void write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress) {
+bool write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress) {
   nlohmann::ordered_json json = report_json(report);
   json["view"] = view_json(report, site, progress);
+  if (progress.stop.stop_requested()) return false;
   const std::array scripts{page_three, page_orbit,  page_unpack,   page_site_view,
                            page_chart, page_tables, page_report_js};
   write_atomically(file, make_page(page_report_html, {&page_report_css, 1}, scripts, report.options.title, json));
+  return true;
 }
 
 }  // namespace vantage

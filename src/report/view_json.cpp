@@ -160,7 +160,9 @@ ordered_json site_json(Site& site, std::span<const PlacedStation> stations, cons
 
 ordered_json view_json(const Report& report, Site& site, const Progress& progress) {
   Simulator& simulator = site.simulator();
+  if (progress.stop.stop_requested()) return {};
   const CoverageCells cells = coverage_cells(simulator, kVoxels, kCells);
+  if (progress.stop.stop_requested()) return {};
   ordered_json json = site_json(site, report.shown().stations, cells);
   if (cells.keys.empty()) return json;
   json["cells"]["networks"] = colours_json(report, simulator, cells, progress);

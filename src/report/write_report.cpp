@@ -13,8 +13,7 @@ bool write(const std::filesystem::path& file, Report report, Site& site, const P
     throw Error(Errc::invalid_argument, "report: " + file.string() + " ends with neither .html nor .pdf");
   if (report.options.pictures)
     report.pictures = station_pictures(site.simulator(), report.shown().stations, progress.stop);
-  write_report_html(file, report, site, progress);
-  return true;
+  return write_report_html(file, report, site, progress);
 }
 
 }  // namespace

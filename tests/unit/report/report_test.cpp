@@ -230,9 +230,11 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
   EXPECT_LT(sheets.size(), 60u);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_FALSE(write_report(folder / "stopped.pdf", survey.result, survey.site, {.missed = &missed},
-                            {.report = {}, .stop = stop.get_token()}));
-  EXPECT_FALSE(std::filesystem::exists(folder / "stopped.pdf"));
+  for (const char* name : {"stopped.pdf", "stopped.html"}) {
+    EXPECT_FALSE(write_report(folder / name, survey.result, survey.site, {.missed = &missed},
+                              {.report = {}, .stop = stop.get_token()}));
+    EXPECT_FALSE(std::filesystem::exists(folder / name));
+  }
   write_report(folder / "report.html", survey.result, survey.site, {.pictures = false});
   EXPECT_LT(std::filesystem::file_size(folder / "report.html"), 5'000'000u);
 }
