@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "core/target_clones.hpp"
 #include "trace/embree/drawn_triangle.hpp"
@@ -121,6 +122,18 @@ bool Picture::Item::operator<(const Item& other) const {
 constexpr std::uint64_t least_rays_a_triangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
   return triangles < none && rays >= least_rays_a_triangle * triangles;
+}
+
+std::unique_ptr<const Picture> Picture::where_it_pays(const StationRays& rays, const TraceStation& station,
+                                                      const TileEnds& ends) {
+  const SceneData& scene = rays.scene();
+  // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
+  if (rays.whole_scans() == WholeScans::traced || scene.shares()) return nullptr;
+  std::uint64_t within = 0;
+  for (const SelectedTile& each : selected(ends, rays.pattern())) within += each.tile.rows * each.tile.columns;
+  if (rays.whole_scans() == WholeScans::faster && !pays(scene.opaque_count(), within)) return nullptr;
+  auto picture = std::make_unique<const Picture>(rays, station, ends);
+  return picture->drawable() ? std::move(picture) : nullptr;
 }
 
 namespace {
@@ -564,6 +577,36 @@ void Picture::draw_triangles(std::uint32_t index, Strip& strip) const { StripDra
 void Picture::draw(std::uint32_t index, Strip& strip) const {
   draw_triangles(index, strip);
   trace_doubts(index, strip);
+}
+
+VANTAGE_TARGET_CLONES
+void Picture::fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const {
+  alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
+  for (std::uint32_t k = 0; k < rays.size; ++k) {
+    x[k] = RayCaster::safe(rays.x[k]);
+    y[k] = RayCaster::safe(rays.y[k]);
+    z[k] = RayCaster::safe(rays.z[k]);
+  }
+  for (std::uint32_t j = 0; j < tile.columns; ++j) {
+    const std::uint32_t* const triangles = strip.triangles(tile.column + j - strip.first) + tile.row;
+    for (std::uint32_t i = 0; i < tile.rows; ++i) rays.primitive[i * tile.columns + j] = triangles[i];
+  }
+  const Planes& planes = rays_.planes();
+  const Float3& o = station_.origin;
+  for (std::uint32_t k = 0; k < rays.size;) {
+    const std::uint32_t triangle = rays.primitive[k];
+    std::uint32_t end = k + 1;
+    while (end < rays.size && rays.primitive[end] == triangle) ++end;
+    if (triangle == none) {
+      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::no_hit);
+      std::fill(rays.t + k, rays.t + end, std::numeric_limits<float>::infinity());
+      k = end;
+      continue;
+    }
+    const Planes::Seen plane = planes.seen(triangle, o);
+    for (; k + lanes <= end; k += lanes) planes.distances<lanes>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
+    for (; k < end; ++k) planes.distances<1>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
+  }
 }
 
 }  // namespace vantage

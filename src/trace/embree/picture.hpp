@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "trace/embree/station_rays.hpp"
@@ -22,8 +23,11 @@ class Picture {
 
   // Whether drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
+  // Of the rays within `ends`. Null where they are to be traced. Borrows all.
+  static std::unique_ptr<const Picture> where_it_pays(const StationRays& rays, const TraceStation& station,
+                                                      const TileEnds& ends);
 
-  // Of the rays within `ends`. Borrows all.
+  // Of the rays within `ends`. Borrows all. REQUIRES: the scene shares no meshes.
   Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends);
 
   // It cannot from a head that stands in a surface.
@@ -58,6 +62,8 @@ class Picture {
 
   // Finds the hits of a strip's rays; those outside `ends` have none.
   void draw(std::uint32_t index, Strip& strip) const;
+  // Fills t and primitive of a drawn strip's tile, as RayCaster::cast() does. REQUIRES: the tile's rays.
+  void fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const;
 
  private:
   // Where a triangle is to be drawn.

@@ -6,7 +6,7 @@
 namespace vantage {
 
 // Tracer::scan on the CPU.
-void scan_station(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
+void scan_station(const StationRays& scanner, const TraceStation& station, std::uint64_t first_ray,
                   std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk);
 
 }  // namespace vantage
