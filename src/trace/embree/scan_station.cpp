@@ -8,11 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <memory>
 
 #include "core/target_clones.hpp"
-#include "trace/embree/picture.hpp"
-#include "trace/embree/tile_selection.hpp"
 
 namespace vantage {
 namespace {
@@ -144,8 +141,14 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
 
 }  // namespace
 
-void scan_station(const StationRays& scanner, const TraceStation& station, std::uint64_t first_ray,
-                  std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
+bool StationScan::View::is_of(const StationRays& other, const TraceStation& from) const {
+  const auto same_turn = [](const Turn& a, const Turn& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  return &other == &rays && from.origin == station.origin && from.turn.has_value() == station.turn.has_value() &&
+         (!from.turn || same_turn(*from.turn, *station.turn));
+}
+
+void StationScan::scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
+                       std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
   const auto size = [&](std::uint32_t output) { return static_cast<std::size_t>(outputs & output ? ray_count : 0); };
   chunk.range.resize(size(Tracer::range));
   chunk.position.resize(size(Tracer::position));
@@ -154,23 +157,30 @@ void scan_station(const StationRays& scanner, const TraceStation& station, std::
   chunk.primitive.resize(size(Tracer::primitive));
   chunk.barycentric.resize(size(Tracer::barycentric));
   chunk.voxel.resize(size(Tracer::voxel));
+  if (ray_count == 0) return;
 
-  const std::uint32_t columns = scanner.pattern().columns();
-  const StationRays rays = scanner.only_rows(static_cast<std::uint32_t>(first_ray / columns),
-                                             static_cast<std::uint32_t>(ray_count / columns));
+  if (!view_ || !view_->is_of(rays, station)) {
+    view_.reset();
+    view_ = std::make_unique<const View>(rays, station);
+  }
+  const Picture* const picture = view_->picture.get();
   const RayPattern& pattern = rays.pattern();
-  const TileEnds ends = all_tiles(pattern);
+  const auto first_row = static_cast<std::uint32_t>(first_ray / pattern.columns()),
+             end_row = first_row + static_cast<std::uint32_t>(ray_count / pattern.columns());
+  const Picture::Tiles tiles{first_row / RayTile::side, (end_row - 1) / RayTile::side + 1};
   const Wanted wanted{chunk, outputs, first_ray};
-  const std::unique_ptr<const Picture> picture = Picture::where_it_pays(rays, station, ends);
   tbb::enumerable_thread_specific<Picture::Strip> strips;
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, ends.wide), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, view_->ends.wide), [&](const auto& range) {
     VoxelLookup voxels = rays.voxels();
     RayBundle bundle;
+    Picture::Strip& strip = strips.local();
     for (std::uint32_t b = range.begin(); b < range.end(); ++b) {
-      Picture::Strip& strip = strips.local();
-      if (picture) picture->draw(b, strip);
-      for (std::uint32_t a = 0; a < ends.tall; ++a) {
-        const RayTile tile = tile_at(pattern, a, b);
+      if (picture) picture->draw(b, tiles, strip);
+      for (std::uint32_t a = tiles.first; a < tiles.end; ++a) {
+        RayTile tile = tile_at(pattern, a, b);
+        const std::uint32_t end = std::min(tile.row + tile.rows, end_row);
+        tile.row = std::max(tile.row, first_row);
+        tile.rows = end - tile.row;
         rays.gather(station, tile, pattern.max_range, bundle);
         if (picture) {
           picture->fill(strip, tile, bundle);
@@ -181,6 +191,7 @@ void scan_station(const StationRays& scanner, const TraceStation& station, std::
       }
     }
   });
+  if (end_row == pattern.rows()) view_.reset();
 }
 
 }  // namespace vantage

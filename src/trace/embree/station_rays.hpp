@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <utility>
-#include <vector>
 
 #include "trace/embree/glass_panes.hpp"
 #include "trace/embree/hits.hpp"
@@ -90,19 +88,7 @@ class StationRays {
   VoxelLookup voxels() const { return {grid(), scene_->prefixes}; }
 
   std::uint64_t ray(std::uint32_t row, std::uint32_t column) const {
-    return first_ray_ + std::uint64_t{row} * pattern_->columns() + column;
-  }
-
-  // A scanner of only these rows, whose rays keep their numbers.
-  StationRays only_rows(std::uint32_t first, std::uint32_t count) const {
-    RayPattern part = *pattern_;
-    for (std::vector<float>* const table : {&part.sin_zenith, &part.cos_zenith})
-      *table = {table->begin() + first, table->begin() + first + count};
-    part.first_zenith += first * part.zenith_step;
-    StationRays rays = *this;
-    rays.pattern_ = std::make_shared<const RayPattern>(std::move(part));
-    rays.first_ray_ = ray(first, 0);
-    return rays;
+    return std::uint64_t{row} * pattern_->columns() + column;
   }
 
   // Gathers the tile's rays, row by row, into a bundle that ends at `end`.
@@ -169,7 +155,6 @@ class StationRays {
  private:
   std::shared_ptr<const EmbreeScene> scene_;
   std::shared_ptr<const RayPattern> pattern_;
-  std::uint64_t first_ray_ = 0;  // number of ray (0, 0)
   RangeNoise noise_;
   PointJudge judge_;
   const GlassPanes* glass_;
