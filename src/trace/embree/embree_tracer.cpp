@@ -67,7 +67,7 @@ class EmbreeTracer final : public Tracer {
  private:
   std::vector<StationRays> scanners_;
   EngineInfo info_;
-  StationScan scan_;
+  ChunkedScan scan_;
   VoxelField field_;
   LruCache<SampledVoxels> samples_;
 };

@@ -141,13 +141,13 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
 
 }  // namespace
 
-bool StationScan::View::is_of(const StationRays& other, const TraceStation& from) const {
+bool ChunkedScan::View::is_of(const StationRays& other, const TraceStation& from) const {
   const auto same_turn = [](const Turn& a, const Turn& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   return &other == &rays && from.origin == station.origin && from.turn.has_value() == station.turn.has_value() &&
          (!from.turn || same_turn(*from.turn, *station.turn));
 }
 
-void StationScan::scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
+void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
                        std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
   const auto size = [&](std::uint32_t output) { return static_cast<std::size_t>(outputs & output ? ray_count : 0); };
   chunk.range.resize(size(Tracer::range));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "trace/embree/picture.hpp"
 #include "trace/embree/station_rays.hpp"
@@ -11,7 +10,7 @@
 namespace vantage {
 
 // Whole scans, chunk by chunk. Not thread-safe.
-class StationScan {
+class ChunkedScan {
  public:
   // Tracer::scan on the CPU. What is drawn of a station's last chunk serves its next; the chunk with the last ray ends
   // that.
