@@ -10,7 +10,6 @@
 #include <array>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/target_clones.hpp"
@@ -46,9 +45,9 @@ namespace {
   } else {
     voxels.set(hits.size, [&](std::uint32_t k) { return hits.point(origin, k); });
   }
-  voxels.each_run([&](std::uint32_t voxel_index, std::uint32_t many) {
-    points.add(voxel_index, shift, many);
-    totals.points_on_surveyed += many;
+  voxels.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
+    points.add(voxel_index, shift, end - begin);
+    totals.points_on_surveyed += end - begin;
   });
 }
 
@@ -202,19 +201,9 @@ StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, cons
 
 bool count_station(const StationRays& rays, const TraceStation& station, bool skip, PassField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress) {
-  const RayPattern& pattern = rays.pattern();
-  const TileEnds ends = skip ? tiles_with_bricks(rays, station) : all_tiles(pattern);
-  const std::vector<SelectedTile> tiles = selected(ends, pattern);
-  std::uint64_t selected_rays = 0;
-  for (const SelectedTile& tile : tiles) selected_rays += tile.tile.rows * tile.tile.columns;
-
-  std::optional<Picture> picture;
-  const WholeScans way = rays.whole_scans();
-  // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
-  const bool drawn = way == WholeScans::drawn ||
-                     (way == WholeScans::faster && Picture::pays(rays.scene().opaque_count(), selected_rays));
-  if (drawn && !rays.scene().shares()) picture.emplace(rays, station, ends);
-  if (picture && !picture->drawable()) picture.reset();
+  const TileEnds ends = skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
+  const std::unique_ptr<const Picture> picture = Picture::where_it_pays(rays, station, ends);
+  const std::vector<SelectedTile> tiles = picture ? std::vector<SelectedTile>() : selected(ends, rays.pattern());
   const std::unique_ptr<const PaneView> panes = rays.glass() ? rays.glass()->view(station.origin) : nullptr;
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   const std::size_t parts = picture ? picture->strips() : tiles.size();

@@ -37,7 +37,7 @@ class EmbreeTracer final : public Tracer {
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override {
-    scan_station(scanners_[station.scanner], station, first_ray, ray_count, outputs, chunk);
+    scan_.scan(scanners_[station.scanner], station, first_ray, ray_count, outputs, chunk);
   }
 
   std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
@@ -67,6 +67,7 @@ class EmbreeTracer final : public Tracer {
  private:
   std::vector<StationRays> scanners_;
   EngineInfo info_;
+  ChunkedScan scan_;
   PassField field_;
   LruCache<SampledVoxels> samples_;
 };

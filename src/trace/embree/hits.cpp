@@ -42,7 +42,8 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
   }
   for (std::uint32_t first = 0; first < hits.size; first += lanes)
     noise.draw<lanes>(hits.ray_low + first, hits.ray_high + first, place, bits + first);
-  for (std::uint32_t k = 0; k < hits.size; ++k) hits.range[k] = noise.displaced(hits.t[k], reflectivity[k], bits[k]);
+  for (std::uint32_t first = 0; first < hits.size; first += lanes)
+    noise.displace_eight(hits.t + first, reflectivity + first, bits + first, hits.range + first);
 }
 
 }  // namespace

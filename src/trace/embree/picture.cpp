@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "core/target_clones.hpp"
 #include "trace/embree/drawn_triangle.hpp"
@@ -123,6 +124,18 @@ bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
   return triangles < none && rays >= least_rays_a_triangle * triangles;
 }
 
+std::unique_ptr<const Picture> Picture::where_it_pays(const StationRays& rays, const TraceStation& station,
+                                                      const TileEnds& ends) {
+  const SceneData& scene = rays.scene();
+  // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
+  if (rays.whole_scans() == WholeScans::traced || scene.shares()) return nullptr;
+  std::uint64_t within = 0;
+  for (const SelectedTile& each : selected(ends, rays.pattern())) within += each.tile.rows * each.tile.columns;
+  if (rays.whole_scans() == WholeScans::faster && !pays(scene.opaque_count(), within)) return nullptr;
+  auto picture = std::make_unique<const Picture>(rays, station, ends);
+  return picture->drawable() ? std::move(picture) : nullptr;
+}
+
 namespace {
 
 DrawnTriangle drawn(const StationRays& rays, const TraceStation& station, std::uint32_t triangle) {
@@ -209,14 +222,15 @@ bool Picture::place(std::uint32_t triangle, std::vector<Item>& items) const {
 // Draws one strip.
 class Picture::StripDrawing {
  public:
-  StripDrawing(const Picture& picture, std::uint32_t index, Strip& strip) : picture_(picture), strip_(strip) {
+  StripDrawing(const Picture& picture, std::uint32_t index, const Tiles& tiles, Strip& strip)
+      : picture_(picture), tiles_(tiles), strip_(strip) {
     const RayPattern& pattern = picture.rays_.pattern();
     const TileEnds& ends = picture.ends_;
     strip.first = index * wide;
     strip.columns = std::min(wide, pattern.columns() - strip.first);
     strip.blocks_ = ends.tall;
     strip.rays = strip.traced = 0;
-    for (std::uint32_t a = 0; a < ends.tall; ++a)
+    for (std::uint32_t a = tiles.first; a < tiles.end; ++a)
       if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(block, pattern.rows() - a * block);
     strip.inverse_.resize(std::size_t{wide} * ends.tall);
     strip.triangle_.resize(std::size_t{wide} * ends.tall + 1);  // whoever looks for runs reads on
@@ -225,7 +239,7 @@ class Picture::StripDrawing {
     strip.doubts_.assign(ends.tall, 0);
     constexpr float nowhere = std::numeric_limits<float>::infinity();
     for (std::uint32_t j = 0; j < wide; ++j) {
-      for (std::uint32_t a = 0; a < ends.tall; ++a) {
+      for (std::uint32_t a = tiles.first; a < tiles.end; ++a) {
         Block<float>& inverse = strip.inverse_[j * ends.tall + a];
         const float end = ends.of(a, index);
         std::fill_n(inverse.of, block, j < strip.columns && end > 0 ? 1 / end : nowhere);
@@ -251,15 +265,21 @@ class Picture::StripDrawing {
     const std::size_t end = picture_.begin_[index + 1];
     for (std::size_t k = picture_.begin_[index]; k < end; ++k) {
       // By distance, triangles are anywhere in memory.
-      if (k + 8 < end) __builtin_prefetch(&scene.triangles[picture_.items_[k + 8].triangle]);
-      if (k + 4 < end)
+      if (k + 8 < end && in_sight(picture_.items_[k + 8]))
+        __builtin_prefetch(&scene.triangles[picture_.items_[k + 8].triangle]);
+      if (k + 4 < end && in_sight(picture_.items_[k + 4]))
         for (const std::uint32_t corner : scene.triangles[picture_.items_[k + 4].triangle])
           __builtin_prefetch(&scene.positions[corner]);
-      draw(picture_.items_[k]);
+      if (in_sight(picture_.items_[k])) draw(picture_.items_[k]);
     }
   }
 
  private:
+  // Whether it is to be drawn in any of the tiles.
+  bool in_sight(const Item& item) const {
+    return item.row_begin < tiles_.end * block && item.row_end > tiles_.first * block;
+  }
+  // REQUIRES: in_sight(item).
   [[gnu::always_inline]] void draw(const Item& item);
 
   float* inverse(std::uint32_t column) { return strip_.inverse_[column * strip_.blocks_].of; }
@@ -429,6 +449,7 @@ class Picture::StripDrawing {
   }
 
   const Picture& picture_;
+  const Tiles tiles_;
   Strip& strip_;
   Columns columns_;
   float first_, step_;
@@ -438,7 +459,8 @@ class Picture::StripDrawing {
 inline void Picture::StripDrawing::draw(const Item& item) {
   const std::uint32_t first_column = std::max(item.column_begin, strip_.first) - strip_.first,
                       last_column = std::min(item.column_end, strip_.first + strip_.columns) - strip_.first;
-  std::uint32_t top = item.row_begin / block, bottom = (item.row_end - 1) / block + 1;  // tiles
+  std::uint32_t top = std::max(item.row_begin / block, tiles_.first),
+                bottom = std::min((item.row_end - 1) / block + 1, tiles_.end);  // tiles
   while (top < bottom && hidden(top, item.nearest)) ++top;
   while (bottom > top && hidden(bottom - 1, item.nearest)) --bottom;
   if (top == bottom) return;
@@ -528,13 +550,13 @@ struct DoubtBundle {
 
 }  // namespace
 
-void Picture::trace_doubts(std::uint32_t index, Strip& strip) const {
+void Picture::trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip) const {
   const RayPattern& pattern = rays_.pattern();
   DoubtBundle bundle;
   bundle.rays.origin = station_.origin;
   bundle.rays.start = pattern.min_range;
   bundle.rays.size = 0;
-  for (std::uint32_t tile = 0; tile < strip.blocks_; ++tile) {
+  for (std::uint32_t tile = tiles.first; tile < tiles.end; ++tile) {
     if (strip.doubts_[tile] == 0) continue;
     for (std::uint32_t j = 0; j < strip.columns; ++j) {
       std::uint32_t* const triangles = strip.triangle_[j * strip.blocks_ + tile].of;
@@ -559,11 +581,43 @@ void Picture::trace_doubts(std::uint32_t index, Strip& strip) const {
 }
 
 VANTAGE_TARGET_CLONES
-void Picture::draw_triangles(std::uint32_t index, Strip& strip) const { StripDrawing(*this, index, strip).draw_all(); }
+void Picture::draw_triangles(std::uint32_t index, const Tiles& tiles, Strip& strip) const {
+  StripDrawing(*this, index, tiles, strip).draw_all();
+}
 
-void Picture::draw(std::uint32_t index, Strip& strip) const {
-  draw_triangles(index, strip);
-  trace_doubts(index, strip);
+void Picture::draw(std::uint32_t index, const Tiles& tiles, Strip& strip) const {
+  draw_triangles(index, tiles, strip);
+  trace_doubts(index, tiles, strip);
+}
+
+VANTAGE_TARGET_CLONES
+void Picture::fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const {
+  alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
+  for (std::uint32_t k = 0; k < rays.size; ++k) {
+    x[k] = RayCaster::safe(rays.x[k]);
+    y[k] = RayCaster::safe(rays.y[k]);
+    z[k] = RayCaster::safe(rays.z[k]);
+  }
+  for (std::uint32_t j = 0; j < tile.columns; ++j) {
+    const std::uint32_t* const triangles = strip.triangles(tile.column + j - strip.first) + tile.row;
+    for (std::uint32_t i = 0; i < tile.rows; ++i) rays.primitive[i * tile.columns + j] = triangles[i];
+  }
+  const Planes& planes = rays_.planes();
+  const Float3& o = station_.origin;
+  for (std::uint32_t k = 0; k < rays.size;) {
+    const std::uint32_t triangle = rays.primitive[k];
+    std::uint32_t end = k + 1;
+    while (end < rays.size && rays.primitive[end] == triangle) ++end;
+    if (triangle == none) {
+      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::no_hit);
+      std::fill(rays.t + k, rays.t + end, std::numeric_limits<float>::infinity());
+      k = end;
+      continue;
+    }
+    const Planes::Seen plane = planes.seen(triangle, o);
+    for (; k + lanes <= end; k += lanes) planes.distances<lanes>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
+    for (; k < end; ++k) planes.distances<1>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
+  }
 }
 
 }  // namespace vantage

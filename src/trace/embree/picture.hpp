@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "trace/embree/station_rays.hpp"
@@ -22,8 +23,11 @@ class Picture {
 
   // Whether drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
+  // Of the rays within `ends`. Null where they are to be traced. Borrows all.
+  static std::unique_ptr<const Picture> where_it_pays(const StationRays& rays, const TraceStation& station,
+                                                      const TileEnds& ends);
 
-  // Of the rays within `ends`. Borrows all.
+  // Of the rays within `ends`. Borrows all. REQUIRES: the scene shares no meshes.
   Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends);
 
   // It cannot from a head that stands in a surface.
@@ -37,7 +41,7 @@ class Picture {
   // A column of tiles: `wide` columns of rays, with all rows. Kept to be used again.
   struct Strip {
     std::uint32_t first = 0, columns = 0;  // of the pattern
-    std::uint64_t rays = 0;                // within the ends
+    std::uint64_t rays = 0;                // drawn, within the ends
     std::uint64_t traced = 0;              // of these, rays that drawing was not certain of
     // Of the rays of a column, by rows.
     const std::uint32_t* triangles(std::uint32_t column) const { return triangle_[column * blocks_].of; }
@@ -56,8 +60,16 @@ class Picture {
   const float* sines() const { return sine_.front().of; }
   const float* cosines() const { return cosine_.front().of; }
 
-  // Finds the hits of a strip's rays; those outside `ends` have none.
-  void draw(std::uint32_t index, Strip& strip) const;
+  // Rows of tiles from `first` to `end`.
+  struct Tiles {
+    std::uint32_t first = 0, end = 0;
+  };
+  // Finds the hits of a strip's rays; those outside `ends` have none. Only these rows of tiles are drawn, and can be
+  // read afterwards.
+  void draw(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
+  void draw(std::uint32_t index, Strip& strip) const { draw(index, {0, ends_.tall}, strip); }
+  // Fills t and primitive of a drawn strip's tile, as RayCaster::cast() does. REQUIRES: the tile's rays.
+  void fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const;
 
  private:
   // Where a triangle is to be drawn.
@@ -71,8 +83,8 @@ class Picture {
 
   // Appends where it is to be drawn. Returns false if nothing can be, for the sake of this triangle.
   bool place(std::uint32_t triangle, std::vector<Item>& items) const;
-  void draw_triangles(std::uint32_t index, Strip& strip) const;
-  void trace_doubts(std::uint32_t index, Strip& strip) const;
+  void draw_triangles(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
+  void trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
 
   const StationRays& rays_;
   const TraceStation& station_;

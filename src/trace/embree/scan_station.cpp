@@ -1,20 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/scan_station.hpp"
 
-#include <tbb/blocked_range2d.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
+
+#include "core/target_clones.hpp"
 
 namespace vantage {
 namespace {
 
-// Fills the elements of one tile. `first_ray` is the chunk's.
-void scan_tile(const StationRays& station_rays, const TraceStation& station, const RayTile& tile,
-               std::uint64_t first_ray, std::uint32_t outputs, Tracer::RawChunk& chunk) {
-  RayBundle rays;
-  station_rays.gather(station, tile, station_rays.pattern().max_range, rays);
-  station_rays.caster().cast(rays);
+// What is wanted of a chunk's rays, and where it goes.
+struct Wanted {
+  Tracer::RawChunk& chunk;
+  std::uint32_t outputs;
+  std::uint64_t first_ray;  // of the chunk
+};
+
+// The elements of rays that hit nothing.
+void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
+  for (std::uint32_t i = 0; i < tile.rows; ++i) {
+    const std::uint64_t first = rays.ray(tile.row + i, tile.column) - wanted.first_ray;
+    const auto fill = [&](std::uint32_t output, auto& values, auto value) {
+      if (wanted.outputs & output)
+        std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), tile.columns, value);
+    };
+    Tracer::RawChunk& chunk = wanted.chunk;
+    fill(Tracer::range, chunk.range, std::numeric_limits<float>::infinity());
+    fill(Tracer::position, chunk.position, Float3{});
+    fill(Tracer::normal, chunk.normal, Float3{});
+    fill(Tracer::reflectivity, chunk.reflectivity, 0.0f);
+    fill(Tracer::primitive, chunk.primitive, RayBundle::no_hit);
+    fill(Tracer::barycentric, chunk.barycentric, Float2{});
+    fill(Tracer::voxel, chunk.voxel, no_voxel);
+  }
+}
+
+// The tile's points: hits, or panes that return the beam, without those whose echo is too weak. `counts`: whether a
+// point meets all limits. Overwrites the bundle's hits.
+void find_points(const StationRays& station_rays, const RayTile& tile, RayBundle& rays, Hits& points, bool* counts) {
   std::array<Passed, RayBundle::capacity> passed;
   bool behind_glass = false;
   if (station_rays.glass()) {
@@ -24,61 +52,103 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
       if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);
   }
-  const Surface& surface = station_rays.surface();
-  const RangeNoise& noise = station_rays.noise();
-  const bool need_normal = (outputs & (Tracer::normal | Tracer::reflectivity)) != 0 || noise.enabled();
-  const bool need_weights = need_normal || (outputs & Tracer::barycentric) != 0;
-
-  for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
-    const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
-    const std::uint64_t k = ray - first_ray;
-    std::uint32_t triangle = rays.primitive[slot];
-    DroppedPoints dropped;
-    if (const Passed way = behind_glass ? passed[slot] : Passed{1, RayBundle::no_hit, 0};
-        way.pane != RayBundle::no_hit && way.t >= station_rays.pattern().min_range) {
-      triangle = way.pane;
+  std::array<bool, RayBundle::capacity> returned{};  // by a pane
+  if (behind_glass)
+    for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
+      const Passed& way = passed[slot];
+      if (way.pane == RayBundle::no_hit || way.t < station_rays.pattern().min_range) continue;
+      rays.primitive[slot] = way.pane;
       rays.t[slot] = way.t;
-    } else if (triangle != RayBundle::no_hit && station_rays.limited()) {
-      dropped = station_rays.dropped(rays, slot, way.share);
+      returned[slot] = true;
     }
-    if (dropped.echo > 0) triangle = RayBundle::no_hit;
-    const bool hit = triangle != RayBundle::no_hit;
-    float range = std::numeric_limits<float>::infinity(), reflectivity = 0;
-    Float3 point, normal;
-    std::array<double, 2> weights{};
-    if (hit) {
-      const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-      range = rays.t[slot];
-      if (need_weights) {
-        const Facet facet = surface.facet(triangle);
-        weights = facet.weights(rays.origin, d, range);
-        if (need_normal) {
-          const Vec3 unit = facet.normal(d, weights);
-          normal = narrow(unit);
-          reflectivity = facet.reflectivity(d, unit);
-        }
-      }
-      if (noise.enabled()) range = noise.displaced(range, reflectivity, ray, station.place);
-      point = point_at(rays.origin, d, range);
-    }
-    if (outputs & Tracer::range) chunk.range[k] = range;
-    if (outputs & Tracer::position) chunk.position[k] = point;
-    if (outputs & Tracer::normal) chunk.normal[k] = normal;
-    if (outputs & Tracer::reflectivity) chunk.reflectivity[k] = reflectivity;
-    if (outputs & Tracer::primitive) chunk.primitive[k] = triangle;
-    if (outputs & Tracer::barycentric)
-      chunk.barycentric[k] = {static_cast<float>(weights[0]), static_cast<float>(weights[1])};
-    if (outputs & Tracer::voxel) {
-      const bool counts = hit && surface.surveyed(triangle) && dropped.points == 0;
-      chunk.voxel[k] = counts ? station_rays.grid().index_of(point) : no_voxel;
+  points.size = 0;
+  std::uint32_t slot = 0;
+  for (std::uint32_t row = tile.row; row < tile.row + tile.rows; ++row)
+    for (std::uint32_t column = tile.column; column < tile.column + tile.columns; ++column, ++slot)
+      if (rays.primitive[slot] != RayBundle::no_hit) points.add(rays, slot, station_rays.ray(row, column));
+  std::fill_n(counts, points.size, true);
+  if (!station_rays.limited() || (!behind_glass && station_rays.all_count(points))) return;
+
+  const std::uint32_t all = points.size;
+  points.size = 0;
+  for (std::uint32_t k = 0; k < all; ++k) {
+    const std::uint32_t from = points.slot[k];
+    DroppedPoints dropped;
+    if (!returned[from]) dropped = station_rays.dropped(rays, from, behind_glass ? passed[from].share : 1);
+    if (dropped.echo > 0) continue;
+    counts[points.size] = dropped.points == 0;
+    points.add(rays, from, points.ray_low[k] | std::uint64_t{points.ray_high[k]} << 32);
+  }
+}
+
+// Fills normals, reflectivities and weights of corners, triangle by triangle.
+[[gnu::always_inline]] inline void shade(const Surface& surface, const Float3& origin, const Hits& points,
+                                         const std::uint64_t* at, const Wanted& wanted) {
+  Tracer::RawChunk& chunk = wanted.chunk;
+  for (std::uint32_t k = 0; k < points.size;) {
+    const std::uint32_t triangle = points.primitive[k];
+    const Facet facet = surface.facet(triangle);
+    for (; k < points.size && points.primitive[k] == triangle; ++k) {
+      const Float3 d{points.x[k], points.y[k], points.z[k]};
+      const std::array<double, 2> weights = facet.weights(origin, d, points.t[k]);
+      if (wanted.outputs & Tracer::barycentric)
+        chunk.barycentric[at[k]] = {static_cast<float>(weights[0]), static_cast<float>(weights[1])};
+      const Vec3 normal = facet.normal(d, weights);
+      if (wanted.outputs & Tracer::normal) chunk.normal[at[k]] = narrow(normal);
+      if (wanted.outputs & Tracer::reflectivity) chunk.reflectivity[at[k]] = facet.reflectivity(d, normal);
     }
   }
 }
 
+// Fills the elements of one tile. `rays`: its rays with their hits.
+VANTAGE_TARGET_CLONES
+void fill_tile(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
+               VoxelLookup& voxels, const Wanted& wanted) {
+  const std::uint32_t outputs = wanted.outputs;
+  Tracer::RawChunk& chunk = wanted.chunk;
+  clear(tile, station_rays, wanted);
+  Hits points;
+  bool counts[RayBundle::capacity];
+  find_points(station_rays, tile, rays, points, counts);
+  if (points.size == 0) return;
+  std::uint64_t at[RayBundle::capacity];  // in the chunk
+  for (std::uint32_t k = 0; k < points.size; ++k)
+    at[k] = (points.ray_low[k] | std::uint64_t{points.ray_high[k]} << 32) - wanted.first_ray;
+
+  if (outputs & (Tracer::normal | Tracer::reflectivity | Tracer::barycentric))
+    shade(station_rays.surface(), station.origin, points, at, wanted);
+  if (outputs & Tracer::primitive)
+    for (std::uint32_t k = 0; k < points.size; ++k) chunk.primitive[at[k]] = points.primitive[k];
+  if ((outputs & (Tracer::range | Tracer::position | Tracer::voxel)) == 0) return;
+  station_rays.find_ranges(station, points);
+  if (outputs & Tracer::range)
+    for (std::uint32_t k = 0; k < points.size; ++k) chunk.range[at[k]] = points.range[k];
+  if (outputs & Tracer::position)
+    for (std::uint32_t k = 0; k < points.size; ++k) chunk.position[at[k]] = points.point(station.origin, k);
+  if ((outputs & Tracer::voxel) == 0) return;
+  std::uint64_t counted[RayBundle::capacity];  // in the chunk
+  std::uint32_t many = 0;
+  voxels.clear();
+  for (std::uint32_t k = 0; k < points.size; ++k) {
+    if (!counts[k] || !station_rays.surface().surveyed(points.primitive[k])) continue;
+    counted[many++] = at[k];
+    voxels.add(points.point(station.origin, k));
+  }
+  voxels.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t k = begin; k < end; ++k) chunk.voxel[counted[k]] = voxel_index;
+  });
+}
+
 }  // namespace
 
-void scan_station(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
-                  std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
+bool ChunkedScan::View::is_of(const StationRays& other, const TraceStation& from) const {
+  const auto same_turn = [](const Turn& a, const Turn& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  return &other == &rays && from.origin == station.origin && from.turn.has_value() == station.turn.has_value() &&
+         (!from.turn || same_turn(*from.turn, *station.turn));
+}
+
+void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
+                       std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
   const auto size = [&](std::uint32_t output) { return static_cast<std::size_t>(outputs & output ? ray_count : 0); };
   chunk.range.resize(size(Tracer::range));
   chunk.position.resize(size(Tracer::position));
@@ -87,22 +157,41 @@ void scan_station(const StationRays& rays, const TraceStation& station, std::uin
   chunk.primitive.resize(size(Tracer::primitive));
   chunk.barycentric.resize(size(Tracer::barycentric));
   chunk.voxel.resize(size(Tracer::voxel));
+  if (ray_count == 0) return;
 
-  const std::uint32_t columns = rays.pattern().columns();
-  const auto first_row = static_cast<std::uint32_t>(first_ray / columns),
-             row_count = static_cast<std::uint32_t>(ray_count / columns);
-  const std::uint32_t tall = (row_count + RayTile::side - 1) / RayTile::side,
-                      wide = (columns + RayTile::side - 1) / RayTile::side;
-  tbb::parallel_for(tbb::blocked_range2d<std::uint32_t>(0, tall, 1, 0, wide, 16), [&](const auto& range) {
-    for (std::uint32_t a = range.rows().begin(); a < range.rows().end(); ++a) {
-      for (std::uint32_t b = range.cols().begin(); b < range.cols().end(); ++b) {
-        RayTile tile{first_row + a * RayTile::side, b * RayTile::side, 0, 0};
-        tile.rows = std::min(RayTile::side, first_row + row_count - tile.row);
-        tile.columns = std::min(RayTile::side, columns - tile.column);
-        scan_tile(rays, station, tile, first_ray, outputs, chunk);
+  if (!view_ || !view_->is_of(rays, station)) {
+    view_.reset();
+    view_ = std::make_unique<const View>(rays, station);
+  }
+  const Picture* const picture = view_->picture.get();
+  const RayPattern& pattern = rays.pattern();
+  const auto first_row = static_cast<std::uint32_t>(first_ray / pattern.columns()),
+             end_row = first_row + static_cast<std::uint32_t>(ray_count / pattern.columns());
+  const Picture::Tiles tiles{first_row / RayTile::side, (end_row - 1) / RayTile::side + 1};
+  const Wanted wanted{chunk, outputs, first_ray};
+  tbb::enumerable_thread_specific<Picture::Strip> strips;
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, view_->ends.wide), [&](const auto& range) {
+    VoxelLookup voxels = rays.voxels();
+    RayBundle bundle;
+    Picture::Strip& strip = strips.local();
+    for (std::uint32_t b = range.begin(); b < range.end(); ++b) {
+      if (picture) picture->draw(b, tiles, strip);
+      for (std::uint32_t a = tiles.first; a < tiles.end; ++a) {
+        RayTile tile = tile_at(pattern, a, b);
+        const std::uint32_t end = std::min(tile.row + tile.rows, end_row);
+        tile.row = std::max(tile.row, first_row);
+        tile.rows = end - tile.row;
+        rays.gather(station, tile, pattern.max_range, bundle);
+        if (picture) {
+          picture->fill(strip, tile, bundle);
+        } else {
+          rays.caster().cast(bundle);
+        }
+        fill_tile(rays, station, tile, bundle, voxels, wanted);
       }
     }
   });
+  if (end_row == pattern.rows()) view_.reset();
 }
 
 }  // namespace vantage

@@ -14,13 +14,6 @@ namespace {
 
 std::uint32_t tiles_across(std::uint32_t rays) { return (rays + RayTile::side - 1) / RayTile::side; }
 
-RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b) {
-  RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
-  tile.rows = std::min(RayTile::side, pattern.rows() - tile.row);
-  tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
-  return tile;
-}
-
 void raise(float& value, float to) {
   const std::atomic_ref<float> shared(value);
   float old = shared.load(std::memory_order_relaxed);
@@ -29,6 +22,13 @@ void raise(float& value, float to) {
 }
 
 }  // namespace
+
+RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b) {
+  RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
+  tile.rows = std::min(RayTile::side, pattern.rows() - tile.row);
+  tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
+  return tile;
+}
 
 TileEnds all_tiles(const RayPattern& pattern) {
   TileEnds ends{tiles_across(pattern.rows()), tiles_across(pattern.columns()), {}};

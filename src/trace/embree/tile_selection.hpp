@@ -23,6 +23,9 @@ TileEnds all_tiles(const RayPattern& pattern);
 // no point that counts and no hit that hides one.
 TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station);
 
+// The rays of tile (a, b).
+RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b);
+
 struct SelectedTile {
   RayTile tile;
   float end = 0;  // rays need not be traced further

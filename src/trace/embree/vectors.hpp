@@ -11,6 +11,7 @@ namespace vantage {
 using Floats8 = float __attribute__((vector_size(32)));
 using Ints8 = std::int32_t __attribute__((vector_size(32)));
 using Floats4 = float __attribute__((vector_size(16)));
+using Longs4 = std::int64_t __attribute__((vector_size(32)));
 using Doubles4 = double __attribute__((vector_size(32)));
 
 // Unaligned.
@@ -30,6 +31,26 @@ template <class Vector>
 [[gnu::always_inline]] inline void narrow(const Doubles4& low, const Doubles4& high, Floats8& v) {
   v = __builtin_shufflevector(__builtin_convertvector(low, Floats4), __builtin_convertvector(high, Floats4), 0, 1, 2, 3,
                               4, 5, 6, 7);
+}
+// Lower halves of all elements.
+[[gnu::always_inline]] inline void narrow(const Longs4& low, const Longs4& high, Ints8& v) {
+  Ints8 a, b;
+  load(a, &low);
+  load(b, &high);
+  v = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+}
+// Eight rows of four elements each, as columns.
+[[gnu::always_inline]] inline void transpose(const Floats4 (&row)[8], Floats8 (&column)[4]) {
+  Floats8 pair[4];  // rows k and k + 4
+  for (int k = 0; k < 4; ++k) pair[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  const Floats8 a = __builtin_shufflevector(pair[0], pair[1], 0, 8, 1, 9, 4, 12, 5, 13),
+                b = __builtin_shufflevector(pair[2], pair[3], 0, 8, 1, 9, 4, 12, 5, 13),
+                c = __builtin_shufflevector(pair[0], pair[1], 2, 10, 3, 11, 6, 14, 7, 15),
+                d = __builtin_shufflevector(pair[2], pair[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  column[0] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  column[2] = __builtin_shufflevector(c, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[3] = __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 // Whether any element of a comparison is true.
 [[gnu::always_inline]] inline bool any(const Ints8& mask) {

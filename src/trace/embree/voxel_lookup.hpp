@@ -73,8 +73,8 @@ class VoxelLookup {
     }
   }
 
-  // Calls f(index, points) with the surveyed voxel of each run of points that lie in one, in order. Inlined, to be
-  // compiled for the caller's target.
+  // Calls f(index, begin, end) with the surveyed voxel of each run of points that lie in one, in order: points are
+  // numbered as they were added. Inlined, to be compiled for the caller's target.
   template <class F>
   [[gnu::always_inline]] void each_run(const F& f) {
     if (size_ == 0) return;
@@ -95,7 +95,7 @@ class VoxelLookup {
         const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code % 64);
         if ((word & flag) == 0) continue;
         f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))),
-          begin_[c + 1] - begin_[c]);
+          begin_[c], begin_[c + 1]);
       }
     }
   }

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "scan/limit_model.hpp"
@@ -224,6 +226,81 @@ TEST(Picture, CountsAreThoseOfTracing) {
       }
   }
   EXPECT_GT(points, 10'000u);
+}
+
+template <class Value>
+void expect_same_bits(const std::vector<Value>& a, const std::vector<Value>& b, const char* name) {
+  ASSERT_EQ(a.size(), b.size()) << name;
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)), 0) << name;
+}
+
+// Scans in chunks of any rows, too, with glass that weakens echoes or returns the beam.
+TEST(Picture, ScansAreThoseOfTracing) {
+  constexpr std::uint32_t outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
+                                    Tracer::primitive | Tracer::barycentric | Tracer::voxel;
+  std::uint64_t points = 0, on_glass = 0, stations_drawn = 0;
+  const auto compare_scans = [&](const TraceScene& scene, std::span<const TraceStation> stations) {
+    const RayPattern& pattern = *scene.scanners[0].pattern;
+    TraceScene with = scene;
+    with.whole_scans = WholeScans::drawn;
+    const auto drawing = make_embree_tracer(with);
+    const StationRays rays(std::make_shared<const EmbreeScene>(with), scene.scanners[0]);
+    with.whole_scans = WholeScans::traced;
+    const auto tracing = make_embree_tracer(with);
+    Tracer::RawChunk drawn, traced;
+    // Stations take turns, and then are scanned one by one.
+    const std::uint32_t middle = pattern.rows() / 2;
+    for (const std::uint32_t begin : {middle, 0u})
+      for (const TraceStation& station : stations) {
+        stations_drawn += Picture::where_it_pays(rays, station, all_tiles(pattern)) != nullptr;
+        for (std::uint32_t row = begin, many = 1; row < (begin == 0 ? pattern.rows() : middle + 1);
+             row += many, many = 2 * many + 3) {
+          many = std::min(many, pattern.rows() - row);
+          SCOPED_TRACE("rows from " + std::to_string(row));
+          const std::uint64_t columns = pattern.columns();
+          drawing->scan(station, row * columns, many * columns, outputs, drawn);
+          tracing->scan(station, row * columns, many * columns, outputs, traced);
+          expect_same_bits(drawn.range, traced.range, "range");
+          expect_same_bits(drawn.position, traced.position, "position");
+          expect_same_bits(drawn.normal, traced.normal, "normal");
+          expect_same_bits(drawn.reflectivity, traced.reflectivity, "reflectivity");
+          expect_same_bits(drawn.primitive, traced.primitive, "primitive");
+          expect_same_bits(drawn.barycentric, traced.barycentric, "barycentric");
+          expect_same_bits(drawn.voxel, traced.voxel, "voxel");
+          for (const std::uint32_t triangle : drawn.primitive) {
+            points += triangle != RayBundle::no_hit;
+            on_glass += triangle != RayBundle::no_hit && triangle >= scene.scene->opaque_count();
+          }
+        }
+      }
+  };
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::RandomSite site = test::random_site(seed);
+    site.stations[1].turn = make_turn({.heading = Angle::degrees(20), .tilt = Angle::degrees(120)});
+    LimitModel limits;
+    limits.meshes.assign(site.scene.scene->meshes.size(), {.least_cosine_square = 0.2f});
+    if (seed % 2 == 0) site.scene.scanners[0].limits = std::make_shared<const LimitModel>(limits);
+    if (seed > 2) site.scene.scanners[0].noise = std::make_shared<const NoiseModel>();
+    compare_scans(site.scene, site.stations);
+  }
+  Scanner with = scanner(0.5);
+  with.detection_range_m = 9;
+  with.detection_reflectivity = 0.5;
+  const Corners room = box({-4, -3, 0}, {5, 6, 2.5});
+  const auto scene =
+      std::make_shared<SceneData>(*test::SceneBuilder()
+                                       .mesh(Role::surveyed, room)
+                                       .mesh(Role::blocking, test::quad({3, -3, 0}, {0, 9, 0}, {0, 0, 2.5f}))
+                                       .finish());
+  scene->meshes[1].glass = true;
+  TraceScene behind_glass = test::trace_scene(scene, with, 1);
+  behind_glass.scanners[0].limits = std::make_shared<const LimitModel>(make_limit_model(*scene, with, {}));
+  ASSERT_TRUE(behind_glass.scanners[0].limits->glass);
+  compare_scans(behind_glass, std::vector<TraceStation>{{{0.3f, 0.2f, 1.6f}}});
+  EXPECT_GT(points, 100'000u);
+  EXPECT_GT(on_glass, 0u);
+  EXPECT_GT(stations_drawn, 10u);
 }
 
 // Drawing has to look at every triangle, and most pay for themselves only where they are larger than a few rays.

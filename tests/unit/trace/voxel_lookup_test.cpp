@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <vector>
+
 #include "support/trace_scenes.hpp"
 
 namespace vantage {
@@ -21,6 +24,7 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
     std::size_t found = 0;
     for (int run = 0; run < 100; ++run) {
       lookup.clear();
+      std::array<std::uint32_t, VoxelLookup::capacity> voxel_of;
       std::vector<std::uint32_t> expected, voxel_indices;
       const Float3 centre{test::between(random, -3.3, 3.3), test::between(random, -2.3, 2.3),
                           test::between(random, -0.3, 1.8)};
@@ -33,10 +37,12 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
         if (k % 50 == 9) p.z = 3e38f;
         if (k % 50 == 10) p = {grid.min()[0], grid.min()[1], grid.min()[2]};
         lookup.add(p);
-        if (grid.index_of(p) != no_voxel) expected.push_back(grid.index_of(p));
+        voxel_of[k] = grid.index_of(p);
+        if (voxel_of[k] != no_voxel) expected.push_back(voxel_of[k]);
       }
-      lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t many) {
-        voxel_indices.insert(voxel_indices.end(), many, voxel_index);
+      lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t k = begin; k < end; ++k) ASSERT_EQ(voxel_index, voxel_of[k]);
+        voxel_indices.insert(voxel_indices.end(), end - begin, voxel_index);
       });
       ASSERT_EQ(voxel_indices, expected);
       found += voxel_indices.size();
