@@ -111,33 +111,34 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
   return static_cast<std::size_t>(std::unique(surveyed.begin(), surveyed.end()) - surveyed.begin());
 }
 
-// Takes the triangles with these numbers out of shared meshes, and stores them at each place. Returns whether there are
-// any. Throws Error out_of_memory.
+// Takes the triangles with these numbers out of shared meshes, at all places that have one of them. Returns whether
+// there are any. Throws Error out_of_memory.
 bool take_out_cut(RawScene& raw, std::vector<Float3>& positions, const Vec3& origin,
                   const std::vector<std::uint32_t>& cut) {
-  const std::vector<PlacedRun> runs = placed_runs(raw);
+  const std::vector<PlacedRun> all = placed_runs(raw);
   std::vector<std::vector<std::uint8_t>> taken(raw.shared.size());
+  std::vector<std::uint8_t> runs(all.size());
+  const auto mesh_of = [&](std::size_t run) { return static_cast<std::size_t>(all[run].shared - raw.shared.data()); };
   for (const std::uint32_t t : cut) {
     if (t < raw.triangles.size()) continue;
-    const PlacedRun& run = runs[run_of(runs, t)];
-    std::vector<std::uint8_t>& of_mesh = taken[static_cast<std::size_t>(run.shared - raw.shared.data())];
-    of_mesh.resize(run.count());
-    of_mesh[t - run.first] = 1;
+    const std::size_t run = run_of(all, t);
+    taken[mesh_of(run)].resize(all[run].count());
+    taken[mesh_of(run)][t - all[run].first] = 1;
+    runs[run] = 1;
   }
   std::uint64_t stored = 0;
-  for (const PlacedRun& run : runs) {
-    const auto& of_mesh = taken[static_cast<std::size_t>(run.shared - raw.shared.data())];
-    stored += static_cast<std::uint64_t>(std::ranges::count(of_mesh, 1));
-  }
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (runs[k]) stored += static_cast<std::uint64_t>(std::ranges::count(taken[mesh_of(k)], 1));
   if (stored == 0) return false;
   constexpr std::uint64_t kStored = 3 * (24 + 2 * 12 + 8 + 4 + 12) + 12;  // corners in double and float with attributes
   if (stored > raw.spare_bytes / 2 / kStored || raw.triangles.size() + stored > std::uint64_t{1} << 31)
     throw Error(Errc::out_of_memory,
                 std::to_string(stored) +
                     " triangles of meshes that nodes share, over all places, lie in one plane with "
-                    "surveyed ones and do not fit into memory; leave either of them out");
+                    "surveyed ones and do not fit into memory; leave either of them out, or allow "
+                    "more memory");
   raw.positions.resize(positions.size());
-  take_out(raw, taken);
+  take_out(raw, runs, taken);
   for (std::size_t v = positions.size(); v < raw.positions.size(); ++v)
     positions.push_back(without_minus_zero(to_float3(raw.positions[v] - to_glm(origin))));
   raw.positions = {};

@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -160,30 +161,48 @@ void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored) {
   raw.triangles = std::move(triangles);
 }
 
-void take_out(RawScene& raw, const std::vector<std::vector<std::uint8_t>>& taken) {
-  // What is taken is a mesh of its own until it is stored.
+void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
+              const std::vector<std::vector<std::uint8_t>>& taken) {
+  // Per mesh: the mesh without what is taken, which takes its number if no run is left to it.
   const std::size_t count = raw.shared.size();
-  std::vector<std::uint32_t> part(count);
-  for (std::size_t m = 0; m < count; ++m) {
+  std::vector<std::uint32_t> rest(count), part(count);
+  std::vector<std::uint8_t> whole(count, 0);
+  auto run = runs.begin();
+  for (const auto& range : raw.placed)
+    for (const PlacedShared& placed : range)
+      if (*run++ == 0) whole[placed.mesh] = 1;
+  std::vector<SharedMesh> parts;
+  for (std::uint32_t m = 0; m < count; ++m) {
     if (taken[m].empty()) continue;
-    part[m] = static_cast<std::uint32_t>(raw.shared.size());
-    raw.shared.push_back(SharedMesh(raw.shared[m]));
-    keep(raw.shared.back(), taken[m]);
     std::vector<std::uint8_t> left;
     for (const std::uint8_t t : taken[m]) left.push_back(t == 0);
-    keep(raw.shared[m], left);
+    part[m] = static_cast<std::uint32_t>(parts.size());
+    keep(parts.emplace_back(raw.shared[m]), taken[m]);
+    rest[m] = whole[m] ? static_cast<std::uint32_t>(raw.shared.size()) : m;
+    if (whole[m]) raw.shared.push_back(SharedMesh(raw.shared[m]));
+    keep(raw.shared[rest[m]], left);
   }
+  // What is taken is a mesh of its own until it is stored.
+  const std::size_t left = raw.shared.size();
+  raw.shared.insert(raw.shared.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   std::vector<std::uint8_t> stored;
+  run = runs.begin();
   for (auto& range : raw.placed) {
     std::vector<PlacedShared> placements;
+    const auto add = [&](std::size_t mesh, const MeshPlace& place, bool stores) {
+      if (raw.shared[mesh].triangles.empty()) return;
+      placements.push_back({static_cast<std::uint32_t>(mesh), place});
+      stored.push_back(stores);
+    };
     for (const PlacedShared& placed : range) {
-      if (!taken[placed.mesh].empty()) placements.push_back({part[placed.mesh], placed.place}), stored.push_back(1);
-      if (!raw.shared[placed.mesh].triangles.empty()) placements.push_back(placed), stored.push_back(0);
+      const bool of_run = *run++ != 0;
+      if (of_run) add(left + part[placed.mesh], placed.place, true);
+      add(of_run ? rest[placed.mesh] : placed.mesh, placed.place, false);
     }
     range = std::move(placements);
   }
   store_placed(raw, stored);
-  raw.shared.resize(count);
+  raw.shared.resize(left);
 }
 
 RawScene excerpt(const RawScene& raw, std::size_t most) {

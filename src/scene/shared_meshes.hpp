@@ -37,9 +37,11 @@ std::size_t run_of(std::span<const PlacedRun> runs, std::uint32_t triangle);
 
 // Stores runs where they stand, behind the range's own triangles: those that are not 0, one for each run.
 void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored);
-// Takes triangles out of shared meshes and stores them at each place of their mesh, likewise. `taken` has an entry for
-// each shared mesh: empty, or per triangle what is not 0 if it is taken.
-void take_out(RawScene& raw, const std::vector<std::vector<std::uint8_t>>& taken);
+// Stores some triangles of the runs that are not 0 where these stand, likewise, and shares the others. `taken` has an
+// entry for each shared mesh: empty, or per triangle what is not 0 if it is taken. REQUIRES: it is not empty for these
+// runs.
+void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
+              const std::vector<std::vector<std::uint8_t>>& taken);
 
 // Calls visit(a, b, c) with the corners of each triangle of a range, those of shared meshes where they stand.
 template <class Visit>
