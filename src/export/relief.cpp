@@ -110,21 +110,30 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   heights.triangle.assign(window.columns * window.rows, kNothing);
   for_row_bands(window, [&](const RowBand& band) {
     Painter painter(heights, z_cut - scene.origin.z, cuts, band);
-    // The search goes on below a glass roof.
-    for (std::uint32_t t = 0; t < scene.opaque_count(); ++t) {
-      std::array<MapPoint, 3> c;
-      std::array<double, 3> z;
-      const auto p = scene.corners(t);
-      for (std::size_t k = 0; k < 3; ++k) {
-        c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
-        z[k] = p[k].z;
+    const auto paint = [&](std::uint32_t first, std::uint32_t count) {
+      for (std::uint32_t t = first; t < first + count; ++t) {
+        std::array<MapPoint, 3> c;
+        std::array<double, 3> z;
+        const auto p = scene.corners(t);
+        for (std::size_t k = 0; k < 3; ++k) {
+          c[k] = window.at(scene.origin + widen(p[k]));
+          z[k] = p[k].z;
+        }
+        if (!painter.reaches(c)) continue;
+        painter.triangle(c, z, t);
+        // Parts in the cutting plane are drawn as its section.
+        const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
+        if (below && normal_of(scene, t)[2] < kSteep)
+          for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
       }
-      if (!painter.reaches(c)) continue;
-      painter.triangle(c, z, t);
-      // Parts in the cutting plane are drawn as its section.
-      const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
-      if (below && normal_of(scene, t)[2] < kSteep)
-        for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
+    };
+    // The search goes on below a glass roof.
+    const std::uint32_t opaque = scene.opaque_count();
+    if (!scene.shares()) paint(0, opaque);
+    for (const MeshInstance& run : scene.instances) {
+      if (run.first_triangle >= opaque) break;
+      const MapPoint low = window.at(scene.origin + run.bounds.min), high = window.at(scene.origin + run.bounds.max);
+      if (run.bounds.empty() || painter.reaches({low, high, high})) paint(run.first_triangle, run.triangle_count);
     }
   });
   return heights;
