@@ -23,9 +23,18 @@ std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> t
   return {low, high};
 }
 
-Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
+namespace {
+
+// In line, since every pass over a scene that shares meshes places each corner.
+[[gnu::always_inline]] inline Float3 position_at(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
   const Float3 p = narrow(place(stored) - origin);
   return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+}
+
+}  // namespace
+
+Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
+  return position_at(place, stored, origin);
 }
 
 Float3 placed_normal(const MeshPlace& place, const Float3& n) {
@@ -70,7 +79,8 @@ std::array<Float3, 3> SceneData::placed_corners(std::uint32_t triangle) const {
   if (instance.place == MeshInstance::kNoPlace) return {positions[t[0]], positions[t[1]], positions[t[2]]};
   const MeshPlace& place = places[instance.place];
   const Triangle v = turned(t, place.mirrored);
-  return {placed(place, positions[v[0]]), placed(place, positions[v[1]]), placed(place, positions[v[2]])};
+  return {position_at(place, positions[v[0]], origin), position_at(place, positions[v[1]], origin),
+          position_at(place, positions[v[2]], origin)};
 }
 
 Triangle SceneData::attributes(std::uint32_t triangle) const {

@@ -15,7 +15,7 @@
 #include "placement/mesh_tree.hpp"
 #include "scene/sound_triangle.hpp"
 #include "scene/surface_colour.hpp"
-#include "support/box.hpp"
+#include "support/boxes_on_ground.hpp"
 #include "support/glb_builder.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
@@ -325,35 +325,6 @@ std::vector<std::array<Float3, 3>> sorted_triangles(const Scene& scene, std::siz
   return all;
 }
 
-// Boxes of 1 m: one on the ground, one that touches its side and hovers, one turned by a right angle, one turned askew,
-// a mirrored one, and one with legs under the ground; the box has a bumpy plate in it, of which nothing is cut.
-GlbBuilder boxes_on_ground() {
-  GlbBuilder builder;
-  builder.json["asset"]["extras"]["vantage"] = json::object();
-  std::vector<float> corners;
-  const auto box = test::box_corners({-0.5, 0, -0.5}, {0.5, 1, 0.5});
-  for (const auto& t : test::box_triangles)
-    for (const std::uint32_t v : t)
-      for (const double c : {box[v].x, box[v].y, box[v].z}) corners.push_back(static_cast<float>(c));
-  const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.positions(corners)}}}});
-  const std::vector<json> places{{{"translation", {0, 0, 0}}},
-                                 {{"translation", {1, 0.4, 0.3}}},
-                                 {{"translation", {0, 0, 4}}, {"rotation", {0, 0.7071068, 0, 0.7071068}}},
-                                 {{"translation", {4, 0, 3}}, {"rotation", {0, 0.2588190, 0, 0.9659258}}},
-                                 {{"translation", {-4, 0, -3}}, {"scale", {-1.5, 1, 1}}},
-                                 {{"translation", {-6, -0.5, 0}}}};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    json node = places[k];
-    node["name"] = "box " + std::to_string(k), node["mesh"] = mesh;
-    builder.node(node);
-  }
-  const int ground =
-      builder.mesh({{"attributes",
-                     {{"POSITION", builder.positions({-8, 0, -8, -8, 0, 9, 9, 0, -8, 9, 0, -8, -8, 0, 9, 9, 0, 9})}}}});
-  builder.node({{"name", "ground"}, {"mesh", ground}});
-  return builder;
-}
-
 // What is surveyed; all else blocks.
 const std::vector<std::vector<std::string>> kSurveyed{{"ground"}, {"box *"}, {"box 0", "box 4"}, {"ground", "box 1"}};
 
@@ -361,9 +332,9 @@ TEST(SharedMeshes, SurfacesOfBothRolesInOnePlaneAreCutAtEachPlace) {
   for (const auto& surveyed : kSurveyed) {
     SCOPED_TRACE(surveyed.back());
     SceneOptions options{.surveyed = surveyed, .shared_meshes = SharedMeshes::always};
-    const Scene once = load(boxes_on_ground(), options);
+    const Scene once = load(test::boxes_on_ground(), options);
     options.shared_meshes = SharedMeshes::never;
-    const Scene each = load(boxes_on_ground(), options);
+    const Scene each = load(test::boxes_on_ground(), options);
     ASSERT_TRUE(once.data().shares());
     EXPECT_EQ(once.data().places.size(), 6u) << "what is not cut is shared still";
     ASSERT_EQ(once.meshes().size(), each.meshes().size());
@@ -393,7 +364,7 @@ TEST(SharedMeshes, BothRolesAreCountedAsWhereNothingIsShared) {
       SCOPED_TRACE(surveyed.back() + ", " + std::string(to_string(engine)));
       std::vector<NetworkCounts> counts;
       for (const SharedMeshes shared : {SharedMeshes::always, SharedMeshes::never}) {
-        const Scene scene = load(boxes_on_ground(), {.surveyed = surveyed, .shared_meshes = shared});
+        const Scene scene = load(test::boxes_on_ground(), {.surveyed = surveyed, .shared_meshes = shared});
         Simulator simulator(scene, scanner, {.engine = engine, .user_size_m = 0.1});
         counts.push_back(simulator.evaluate(network));
       }
