@@ -104,7 +104,9 @@ struct Grid {
 
  private:
   Span within(double low, double high, double from, std::uint32_t n) const {
-    const auto clamped = [&](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, static_cast<double>(n))); };
+    const auto clamped = [&](double x) {
+      return static_cast<std::uint32_t>(std::clamp(x, 0.0, static_cast<double>(n)));
+    };
     const std::uint32_t first = clamped(std::ceil((low - from) / cell - 0.5)),
                         end = clamped(std::floor((high - from) / cell - 0.5) + 1);
     return {first, std::max(first, end)};
