@@ -48,6 +48,8 @@ constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 // Likewise of a mesh that is stored once: corners, corners in order, whether it is kept.
 constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
+// Of other meshes beside them, with both roles: NearPlaced.
+constexpr double kVertexBeside = 12, kTriangleBeside = 12 + 4;
 // Of the scene, above which SharedMeshes::automatic shares; of a mesh, below which it does not: a tree of trees pays
 // for larger ones alone.
 constexpr double kManyTriangles = 8e6;
@@ -322,7 +324,8 @@ class Loader {
                           (colours ? sizeof(std::uint32_t) : 0);
     const bool both =
         roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
-    const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles +
+    const double beside = both && !shared.empty() ? kVertexBeside * vertices + kTriangleBeside * triangles : 0;
+    const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles + beside +
                          kSearchVertex * search_vertices + kSearchTriangle * search_triangles + shared_bytes +
                          3 * places * (sizeof(MeshPlace) + sizeof(MeshInstance)) +
                          kSharedTriangleSorted * static_cast<double>(largest_shared);
