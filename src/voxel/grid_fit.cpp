@@ -86,6 +86,29 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
   return all;
 }
 
+Box bounds_of(const SceneData& scene, std::uint32_t first, std::uint32_t count) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::uint32_t>(first, first + count, 4096), Box{},
+      [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
+        for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+          for (const Float3& p : scene.corners(t)) box.extend(widen(p));
+        return box;
+      },
+      united);
+}
+// Those of places are known.
+Box bounds_of(const SceneData& scene, const MeshRange& mesh) {
+  if (!scene.shares()) return bounds_of(scene, mesh.first_triangle, mesh.triangle_count);
+  Box bounds;
+  const std::uint32_t end = mesh.first_triangle + mesh.triangle_count;
+  for (std::uint32_t t = mesh.first_triangle; t < end;) {
+    const MeshInstance& run = scene.instance_of(t);
+    t = run.first_triangle + run.triangle_count;
+    bounds = united(bounds, run.bounds.empty() ? bounds_of(scene, run.first_triangle, run.triangle_count) : run.bounds);
+  }
+  return bounds;
+}
+
 // Weight of the slabs within `clearance` of a face.
 std::uint64_t weight_near_faces(std::span<const Slab> slabs, double voxel, double clearance) {
   std::uint64_t sum = 0;
@@ -152,15 +175,7 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
   }
   GridFit fit;
   Box bounds;
-  for (const MeshRange& mesh : surveyed)
-    bounds = tbb::parallel_reduce(
-        tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096), bounds,
-        [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
-          for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-            for (const Float3& p : scene.corners(t)) box.extend(widen(p));
-          return box;
-        },
-        united);
+  for (const MeshRange& mesh : surveyed) bounds = united(bounds, bounds_of(scene, mesh));
   if (bounds.empty()) {
     fit.inverse_size = static_cast<float>(1 / user_size_m);
     return fit;
