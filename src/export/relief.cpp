@@ -24,10 +24,12 @@ class Painter {
   Painter(HeightBuffer& target, double z_cut, std::span<const float> cuts, const RowBand& band)
       : target_(target), z_cut_(z_cut), cuts_(cuts), band_(band) {}
 
-  // True if anything of a triangle, or of the widest line along it, may lie in the band.
+  // True if anything of a triangle, or of a line along it, may lie in the band.
   bool reaches(const std::array<MapPoint, 3>& c) const {
+    const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
     const auto [low, high] = std::minmax({c[0].y, c[1].y, c[2].y});
-    return high + kWidest >= static_cast<double>(band_.first) && low - kWidest <= static_cast<double>(band_.end);
+    const double beside = line_width(std::max(right - left, high - low)) / 2 + 1;
+    return high + beside >= static_cast<double>(band_.first) && low - beside <= static_cast<double>(band_.end);
   }
 
   void triangle(const std::array<MapPoint, 3>& c, const std::array<double, 3>& z, std::uint32_t id) {
@@ -66,8 +68,7 @@ class Painter {
 };
 
 // Unit normal, upwards.
-std::array<double, 3> normal_of(const SceneData& scene, std::uint32_t triangle) {
-  const auto p = scene.corners(triangle);
+std::array<double, 3> normal_of(const std::array<Float3, 3>& p) {
   const double ax = double{p[1].x} - p[0].x, ay = double{p[1].y} - p[0].y, az = double{p[1].z} - p[0].z;
   const double bx = double{p[2].x} - p[0].x, by = double{p[2].y} - p[0].y, bz = double{p[2].z} - p[0].z;
   std::array<double, 3> n{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx};
@@ -110,21 +111,30 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   heights.triangle.assign(window.columns * window.rows, kNothing);
   for_row_bands(window, [&](const RowBand& band) {
     Painter painter(heights, z_cut - scene.origin.z, cuts, band);
-    // The search goes on below a glass roof.
-    for (std::uint32_t t = 0; t < scene.opaque_count(); ++t) {
-      std::array<MapPoint, 3> c;
-      std::array<double, 3> z;
-      const auto p = scene.corners(t);
-      for (std::size_t k = 0; k < 3; ++k) {
-        c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
-        z[k] = p[k].z;
+    const auto paint = [&](std::uint32_t first, std::uint32_t count) {
+      for (std::uint32_t t = first; t < first + count; ++t) {
+        std::array<MapPoint, 3> c;
+        std::array<double, 3> z;
+        const auto p = scene.corners(t);
+        for (std::size_t k = 0; k < 3; ++k) {
+          c[k] = window.at(scene.origin + widen(p[k]));
+          z[k] = p[k].z;
+        }
+        if (!painter.reaches(c)) continue;
+        painter.triangle(c, z, t);
+        // Parts in the cutting plane are drawn as its section.
+        const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
+        if (below && normal_of(p)[2] < kSteep)
+          for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
       }
-      if (!painter.reaches(c)) continue;
-      painter.triangle(c, z, t);
-      // Parts in the cutting plane are drawn as its section.
-      const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
-      if (below && normal_of(scene, t)[2] < kSteep)
-        for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
+    };
+    // The search goes on below a glass roof.
+    const std::uint32_t opaque = scene.opaque_count();
+    if (!scene.shares()) paint(0, opaque);
+    for (const MeshInstance& run : scene.instances) {
+      if (run.first_triangle >= opaque) break;
+      const MapPoint low = window.at(scene.origin + run.bounds.min), high = window.at(scene.origin + run.bounds.max);
+      if (run.bounds.empty() || painter.reaches({low, high, high})) paint(run.first_triangle, run.triangle_count);
     }
   });
   return heights;
@@ -155,7 +165,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
       const std::uint32_t t = heights.triangle[k];
       if (t == kNothing) continue;
       if (t != last) {
-        const auto n = normal_of(scene, t);
+        const auto n = normal_of(scene.corners(t));
         const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
         facing = n[2] < kSteep ? 0.62 : 0.58 + 0.52 * lit;
         const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;

@@ -39,6 +39,11 @@ constexpr std::uint8_t beside = 1, overhead = 2, at_door = 4;
 
 using Corners = std::array<glm::dvec3, 3>;
 
+Box box_of(const Corners& t) {
+  Box box;
+  for (const glm::dvec3& p : t) box.extend(to_vec3(p));
+  return box;
+}
 double squared(const glm::dvec2& v) { return v.x * v.x + v.y * v.y; }
 double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -88,22 +93,30 @@ struct Grid {
   glm::dvec2 corner;
   double cell;
   std::uint32_t columns, rows;
+
+  struct Span {
+    std::uint32_t first, end;
+    std::uint32_t count() const { return end - first; }
+  };
+  // Columns and rows whose middles lie from `low` to `high`.
+  Span columns_within(double low, double high) const { return within(low, high, corner.x, columns); }
+  Span rows_within(double low, double high) const { return within(low, high, corner.y, rows); }
+
+ private:
+  Span within(double low, double high, double from, std::uint32_t n) const {
+    const auto clamped = [&](double x) {
+      return static_cast<std::uint32_t>(std::clamp(x, 0.0, static_cast<double>(n)));
+    };
+    const std::uint32_t first = clamped(std::ceil((low - from) / cell - 0.5)),
+                        end = clamped(std::floor((high - from) / cell - 0.5) + 1);
+    return {first, std::max(first, end)};
+  }
 };
 template <class Visit>
 void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
-  const auto clamp_to = [](double x, std::uint32_t n) {
-    return static_cast<std::int64_t>(std::clamp(x, -1.0, static_cast<double>(n)));
-  };
-  const auto first_at = [&](double x, double corner, std::uint32_t n) {
-    return std::max<std::int64_t>(0, clamp_to(std::ceil((x - corner) / grid.cell - 0.5), n));
-  };
-  const auto last_at = [&](double x, double corner, std::uint32_t n) {
-    return std::min<std::int64_t>(std::int64_t{n} - 1, clamp_to(std::floor((x - corner) / grid.cell - 0.5), n));
-  };
   const double y_min = std::min({t[0].y, t[1].y, t[2].y}), y_max = std::max({t[0].y, t[1].y, t[2].y});
-  for (std::int64_t row = first_at(y_min - reach, grid.corner.y, grid.rows),
-                    last = last_at(y_max + reach, grid.corner.y, grid.rows);
-       row <= last; ++row) {
+  const Grid::Span rows = grid.rows_within(y_min - reach, y_max + reach);
+  for (std::uint32_t row = rows.first; row < rows.end; ++row) {
     // Part of the triangle within this row, widened by `reach` on either side.
     const double y = grid.corner.y + (static_cast<double>(row) + 0.5) * grid.cell, low = y - reach, high = y + reach;
     double x_min = std::numeric_limits<double>::infinity(), x_max = -x_min;
@@ -116,10 +129,9 @@ void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
           x_min = std::min(x_min, x), x_max = std::max(x_max, x);
         }
     }
-    const std::int64_t from = first_at(x_min - reach, grid.corner.x, grid.columns),
-                       to = last_at(x_max + reach, grid.corner.x, grid.columns);
-    if (x_min <= x_max && from <= to)
-      visit(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to));
+    if (x_min > x_max) continue;
+    if (const Grid::Span in = grid.columns_within(x_min - reach, x_max + reach); in.count() > 0)
+      visit(row, in.first, in.end - 1);
   }
 }
 
@@ -218,52 +230,104 @@ void GroundField::find_room(const SceneData& scene) {
   const auto mark = [&](std::uint32_t sample, std::uint8_t what) {
     std::atomic_ref<std::uint8_t>(taken_[sample]).fetch_or(what, std::memory_order_relaxed);
   };
-  const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
-    std::size_t mesh = scene.mesh_of(range.begin());
-    for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-      while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
-      const bool door = scene.meshes[mesh].door;
-      const Corners t = corners_of(scene, i);
-      const double z_min = std::min({t[0].z, t[1].z, t[2].z}), z_max = std::max({t[0].z, t[1].z, t[2].z});
-      const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
-      for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
-        for (std::uint32_t c = from; c <= to; ++c) {
-          const std::uint32_t column = row * columns_ + c;
-          double whole = -1;  // squared distance to the whole triangle, once computed
-          for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
-            const double low = z_[s] + climb_, high = z_[s] + height_;
-            if (z_max <= low || z_min >= high) continue;
-            const std::uint8_t known = std::atomic_ref<std::uint8_t>(taken_[s]).load(std::memory_order_relaxed);
-            const std::uint8_t all = door ? at_door : beside | overhead;  // that this triangle may mark
-            if ((known & all) == all) continue;
-            const glm::dvec2 p = middle(column);
-            if (whole < 0) whole = squared_distance(p, plan);
-            if (whole >= widest * widest) break;
-            if (door) {
-              mark(s, at_door);
-              continue;
+  const auto known_of = [&](std::uint32_t sample) {
+    return std::atomic_ref<std::uint8_t>(taken_[sample]).load(std::memory_order_relaxed);
+  };
+  const double rounding = 1e-6 * cell_;
+  const auto look = [&](const Corners& t, bool door) {
+    const Box box = box_of(t);
+    const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
+    for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
+      for (std::uint32_t c = from; c <= to; ++c) {
+        const std::uint32_t column = row * columns_ + c;
+        double whole = -1;  // squared distance to the whole triangle, once computed
+        for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
+          const double low = z_[s] + climb_, high = z_[s] + height_;
+          if (box.max.z <= low || box.min.z >= high) continue;
+          const std::uint8_t known = known_of(s);
+          const std::uint8_t all = door ? at_door : beside | overhead;  // that this triangle may mark
+          if ((known & all) == all) continue;
+          const glm::dvec2 p = middle(column);
+          if (whole < 0) whole = squared_distance(p, plan);
+          if (whole >= widest * widest) break;
+          if (door) {
+            mark(s, at_door);
+            continue;
+          }
+          if (whole > 0 && (known & beside)) continue;
+          for (int k = cylinders - 1; k >= 0; --k) {
+            const double bottom = low + k * shorter, top = high - k * shorter;
+            if (whole >= radius[k] * radius[k]) break;
+            if (box.max.z <= bottom || box.min.z >= top) continue;
+            double distance = whole;
+            if (box.min.z < bottom || box.max.z > top) {
+              const Slice part = slice(t, bottom, top);
+              if (part.count == 0) continue;
+              distance = squared_distance(p, std::span(part.corners).first(part.count));
             }
-            if (whole > 0 && (known & beside)) continue;
-            for (int k = cylinders - 1; k >= 0; --k) {
-              const double bottom = low + k * shorter, top = high - k * shorter;
-              if (whole >= radius[k] * radius[k]) break;
-              if (z_max <= bottom || z_min >= top) continue;
-              double distance = whole;
-              if (z_min < bottom || z_max > top) {
-                const Slice part = slice(t, bottom, top);
-                if (part.count == 0) continue;
-                distance = squared_distance(p, std::span(part.corners).first(part.count));
-              }
-              if (distance >= radius[k] * radius[k]) continue;
-              mark(s, distance == 0 ? overhead : beside);
-              break;
-            }
+            if (distance >= radius[k] * radius[k]) continue;
+            mark(s, distance == 0 ? overhead : beside);
+            break;
           }
         }
-      });
+      }
+    });
+  };
+  // Small triangles mark hardly anything that others have not marked. A block of them is compared with the samples
+  // near it, and those that can still change one are looked at.
+  constexpr std::uint32_t block = 64;
+  constexpr std::size_t most_compared = 64 * block;  // columns, with which looking at each triangle takes as long
+  struct Open {
+    glm::dvec2 p;
+    double low, high;
+    bool is_beside;  // something may only be over it
+  };
+  const auto may_mark = [&](const Box& box, const Open& o) {
+    const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),
+                 dy = std::max({0.0, box.min.y - o.p.y, o.p.y - box.max.y});
+    if (o.is_beside) return std::max(dx, dy) <= rounding && box.max.z > o.low && box.min.z < o.high;
+    for (int k = 0; k < cylinders; ++k)
+      if (dx * dx + dy * dy < (radius[k] + rounding) * (radius[k] + rounding) && box.max.z > o.low + k * shorter &&
+          box.min.z < o.high - k * shorter)
+        return true;
+    return false;
+  };
+  const auto look_at_block = [&](std::uint32_t first, std::uint32_t end, std::vector<Open>& open) {
+    std::array<Corners, block> corners;
+    std::array<bool, block> doors{};
+    Box all;
+    std::size_t mesh = scene.mesh_of(first);
+    for (std::uint32_t i = first; i < end; ++i) {
+      while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
+      doors[i - first] = scene.meshes[mesh].door;
+      corners[i - first] = corners_of(scene, i);
+      all = united(all, box_of(corners[i - first]));
+    }
+    const auto rows = grid.rows_within(all.min.y - widest - rounding, all.max.y + widest + rounding),
+               columns = grid.columns_within(all.min.x - widest - rounding, all.max.x + widest + rounding);
+    const bool compared =
+        std::ranges::count(doors, true) == 0 && std::size_t{rows.count()} * columns.count() <= most_compared;
+    open.clear();
+    for (std::uint32_t row = rows.first; compared && row < rows.end; ++row)
+      for (std::uint32_t column = row * columns_ + columns.first; column < row * columns_ + columns.end; ++column)
+        for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
+          const std::uint8_t known = known_of(s);
+          if ((known & (beside | overhead)) == (beside | overhead)) continue;
+          const Open sample{middle(column), z_[s] + climb_, z_[s] + height_, (known & beside) != 0};
+          if (may_mark(all, sample)) open.push_back(sample);
+        }
+    for (std::uint32_t i = 0; i < end - first; ++i) {
+      const Box box = box_of(corners[i]);
+      if (!compared || std::ranges::any_of(open, [&](const Open& o) { return may_mark(box, o); }))
+        look(corners[i], doors[i]);
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + block - 1) / block),
+                    [&](const tbb::blocked_range<std::uint32_t>& range) {
+                      std::vector<Open> open;
+                      for (std::uint32_t k = range.begin(); k != range.end(); ++k)
+                        look_at_block(k * block, std::min(scene.triangle_count(), (k + 1) * block), open);
+                    });
 }
 
 template <class Visit>

@@ -275,17 +275,40 @@ std::vector<glm::dvec3> stored_points(const SceneData& scene) {
 // Area of the model's convex outline seen from above.
 double outline_area(const SceneData& scene) {
   using Hull = std::vector<Uv>;
-  return hull_area(tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 1 << 14), Hull{},
-      [&](const tbb::blocked_range<std::uint32_t>& range, Hull own) {
-        for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-          for (const Float3& p : scene.corners(t)) own.push_back({p.x, p.y});
-        return convex_hull(std::move(own));
-      },
-      [](Hull a, const Hull& b) {
-        a.insert(a.end(), b.begin(), b.end());
-        return convex_hull(std::move(a));
-      }));
+  const auto hull_of = [](std::uint32_t count, const auto& add) {
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::uint32_t>(0, count, 1 << 14), Hull{},
+        [&](const tbb::blocked_range<std::uint32_t>& range, Hull own) {
+          for (std::uint32_t k = range.begin(); k != range.end(); ++k) add(own, k);
+          return convex_hull(std::move(own));
+        },
+        [](Hull a, const Hull& b) {
+          a.insert(a.end(), b.begin(), b.end());
+          return convex_hull(std::move(a));
+        });
+  };
+  const auto hull_of_triangles = [&](std::uint32_t first, std::uint32_t count) {
+    return hull_of(count, [&](Hull& hull, std::uint32_t k) {
+      for (const Float3& p : scene.corners(first + k)) hull.push_back({p.x, p.y});
+    });
+  };
+  if (!scene.shares()) return hull_area(hull_of_triangles(0, scene.triangle_count()));
+  std::vector<Hull> hulls(scene.instances.size());
+  tbb::parallel_for(std::size_t{0}, hulls.size(), [&](std::size_t k) {
+    const MeshInstance& run = scene.instances[k];
+    if (run.place == MeshInstance::kNoPlace) {
+      hulls[k] = hull_of_triangles(run.first_triangle, run.triangle_count);
+      return;
+    }
+    const std::pair vertices = corner_range(scene.stored(run));  // each belongs to a triangle
+    hulls[k] = hull_of(vertices.second - vertices.first + 1, [&](Hull& hull, std::uint32_t v) {
+      const Float3 p = scene.placed(scene.places[run.place], scene.positions[vertices.first + v]);
+      hull.push_back({p.x, p.y});
+    });
+  });
+  Hull all;
+  for (const Hull& hull : hulls) all.insert(all.end(), hull.begin(), hull.end());
+  return hull_area(convex_hull(std::move(all)));
 }
 
 std::vector<glm::dvec3> local_entries(const SceneData& scene, const WalkableOptions& options) {

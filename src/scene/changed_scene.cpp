@@ -52,10 +52,10 @@ void add_cells(SceneData& data, const SolidCells& solid, MeshInfo mesh) {
 
 Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
                     const SolidCells& unknown, std::uint32_t unknown_weight) {
-  const auto flat = flattened({std::shared_ptr<const SceneData>(), &scene.data()});  // borrows, where nothing is shared
-  const SceneData& before = *flat;
-  auto after = std::make_shared<SceneData>(before);
-  after->triangles.clear(), after->ranges.clear(), after->meshes.clear();
+  const std::shared_ptr<SceneData> after = flat_copy(scene.data());
+  const std::vector<Triangle> triangles = std::exchange(after->triangles, {});
+  const std::vector<MeshRange> ranges = std::exchange(after->ranges, {});
+  const std::vector<MeshInfo> meshes = std::exchange(after->meshes, {});
   after->local_bounds = {};
   bool added = false;
   const auto add = [&] {
@@ -63,14 +63,14 @@ Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const
     add_cells(*after, cells, {.name = kNotInModel, .role = Role::blocking});
     add_cells(*after, unknown, {.name = kUnknown, .role = Role::surveyed, .weight = unknown_weight});
   };
-  for (std::uint32_t m = 0; m < before.meshes.size(); ++m) {
-    if (before.meshes[m].glass) add();  // meshes of glass come last
+  for (std::uint32_t m = 0; m < meshes.size(); ++m) {
+    if (meshes[m].glass) add();  // meshes of glass come last
     if (std::ranges::find(removed, m) != removed.end()) continue;
-    const MeshRange& range = before.ranges[m];
-    const auto first = before.triangles.begin() + range.first_triangle;
+    const MeshRange& range = ranges[m];
+    const auto first = triangles.begin() + range.first_triangle;
     after->ranges.push_back(
         {static_cast<std::uint32_t>(after->triangles.size()), range.triangle_count, range.material});
-    after->meshes.push_back(before.meshes[m]);
+    after->meshes.push_back(meshes[m]);
     after->triangles.insert(after->triangles.end(), first, first + range.triangle_count);
   }
   add();
@@ -78,7 +78,7 @@ Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const
     throw Error(Errc::malformed_file, "the scans saw through all that is to be surveyed: are they of another site?");
   for (const Triangle& t : after->triangles)
     for (const std::uint32_t v : t) after->local_bounds.extend(widen(after->positions[v]));
-  return Scene(std::move(after));
+  return Scene(after);
 }
 
 }  // namespace vantage

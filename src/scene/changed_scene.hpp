@@ -25,7 +25,8 @@ struct SolidCells {
 
 // Returns the scene without the triangles of the meshes `removed`, and with a blocking mesh, the outside of these
 // cells. That of `unknown` cells is surveyed, with a weight. It keeps its local origin, weights and search area. Throws
-// Error malformed_file if nothing is left to survey.
+// Error: malformed_file if nothing is left to survey; out_of_memory if meshes that nodes share do not fit at each
+// place.
 Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
                     const SolidCells& unknown = {}, std::uint32_t unknown_weight = 1);
 

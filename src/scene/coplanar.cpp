@@ -109,7 +109,8 @@ void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
 }  // namespace
 
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs) {
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs,
+                       const Box& beside) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
     if (meshes[m].glass) continue;  // it hides nothing
@@ -117,12 +118,8 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
     for (std::uint32_t t = 0; t < ranges[m].triangle_count; ++t) chosen.push_back(ranges[m].first_triangle + t);
   }
   if (surveyed.chosen.empty() || blocking.chosen.empty()) return {};
-  Box box;
-  for (std::size_t k = 0; k < surveyed.chosen.size(); ++k) {
-    const Box own = surveyed.box(k);
-    box.extend(own.min);
-    box.extend(own.max);
-  }
+  Box box = beside;
+  for (std::size_t k = 0; k < surveyed.chosen.size(); ++k) box = united(box, surveyed.box(k));
   double reach = 0;
   for (const double c : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
     reach = std::max(reach, std::abs(c));

@@ -22,10 +22,11 @@ struct Coplanar {
   std::vector<CoplanarPair> pairs;  // ascending
 };
 
-// Finds triangles of surveyed meshes that lie in the plane of a blocking one and overlap it. Throws Error:
-// out_of_memory, also for more than `most_pairs` pairs; device_failure.
+// Finds triangles of surveyed meshes that lie in the plane of a blocking one and overlap it. `beside`: bounds of
+// further surveyed triangles, which overlap none. Throws Error: out_of_memory, also for more than `most_pairs` pairs;
+// device_failure.
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
                        std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes,
-                       std::uint64_t most_pairs = std::uint64_t{1} << 25);
+                       std::uint64_t most_pairs = std::uint64_t{1} << 25, const Box& beside = {});
 
 }  // namespace vantage

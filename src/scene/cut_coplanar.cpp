@@ -13,7 +13,9 @@
 
 #include "scene/coplanar.hpp"
 #include "scene/cut_polygon.hpp"
+#include "scene/near_placed.hpp"
 #include "scene/positions.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
@@ -92,12 +94,12 @@ std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Fr
   return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
-// Runs of pairs with the same blocking triangle.
-std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs) {
+// Runs of pairs with the same blocking triangle, which has in the scene the number of the pair.
+std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs, std::span<const std::uint32_t> numbers) {
   std::vector<Covered> runs;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     while (end < pairs.size() && pairs[end].blocking == pairs[begin].blocking) ++end;
-    runs.push_back({pairs[begin].blocking, pairs.subspan(begin, end - begin)});
+    runs.push_back({numbers[begin], pairs.subspan(begin, end - begin)});
   }
   return runs;
 }
@@ -109,15 +111,69 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
   return static_cast<std::size_t>(std::unique(surveyed.begin(), surveyed.end()) - surveyed.begin());
 }
 
+// Takes the triangles with these numbers out of shared meshes, at all places that have one of them. Returns whether
+// there are any. Throws Error out_of_memory.
+bool take_out_cut(RawScene& raw, std::vector<Float3>& positions, const Vec3& origin,
+                  const std::vector<std::uint32_t>& cut) {
+  const std::vector<PlacedRun> all = placed_runs(raw);
+  std::vector<std::vector<std::uint8_t>> taken(raw.shared.size());
+  std::vector<std::uint8_t> runs(all.size());
+  const auto mesh_of = [&](std::size_t run) { return static_cast<std::size_t>(all[run].shared - raw.shared.data()); };
+  for (const std::uint32_t t : cut) {
+    if (t < raw.triangles.size()) continue;
+    const std::size_t run = run_of(all, t);
+    taken[mesh_of(run)].resize(all[run].count());
+    taken[mesh_of(run)][t - all[run].first] = 1;
+    runs[run] = 1;
+  }
+  std::uint64_t stored = 0;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (runs[k]) stored += static_cast<std::uint64_t>(std::ranges::count(taken[mesh_of(k)], 1));
+  if (stored == 0) return false;
+  constexpr std::uint64_t kStored = 3 * (24 + 2 * 12 + 8 + 4 + 12) + 12;  // corners in double and float with attributes
+  if (stored > raw.spare_bytes / 2 / kStored || raw.triangles.size() + stored > std::uint64_t{1} << 31)
+    throw Error(Errc::out_of_memory,
+                std::to_string(stored) +
+                    " triangles of meshes that nodes share, over all places, lie in one plane with "
+                    "surveyed ones and do not fit into memory; leave either of them out, or allow "
+                    "more memory");
+  raw.positions.resize(positions.size());
+  take_out(raw, runs, taken);
+  for (std::size_t v = positions.size(); v < raw.positions.size(); ++v)
+    positions.push_back(without_minus_zero(to_float3(raw.positions[v] - to_glm(origin))));
+  raw.positions = {};
+  return true;
+}
+
 }  // namespace
 
-CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
-  // A pair is listed while the list grows, and a part is a polygon, corners and triangles.
-  constexpr std::uint64_t kPair = 3 * sizeof(CoplanarPair), kPart = 400;
-  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes,
-                                          std::min(std::uint64_t{1} << 25, raw.spare_bytes / 2 / kPair));
+CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions, const Vec3& origin) {
+  const auto has = [&](Role role) {
+    return std::ranges::any_of(raw.meshes, [&](const MeshInfo& mesh) { return !mesh.glass && mesh.role == role; });
+  };
+  if (!has(Role::surveyed) || !has(Role::blocking)) return {};
+  // A pair is listed while the list grows, and a part is a polygon, corners and triangles. A triangle of a shared mesh
+  // is listed with its corners, and leaves of two trees.
+  constexpr std::uint64_t kPair = 3 * sizeof(CoplanarPair), kPart = 400, kNear = 200;
+  const std::uint64_t most_pairs = std::min(std::uint64_t{1} << 25, raw.spare_bytes / 2 / kPair);
+  const bool shares = std::ranges::any_of(raw.placed, [](const auto& placed) { return !placed.empty(); });
+  NearPlaced near;
+  Coplanar coplanar;
+  std::vector<std::uint32_t> cut;  // numbers of blocking triangles in the scene, one for each pair
+  do {
+    if (shares) {
+      near = near_placed(raw, positions, origin, raw.spare_bytes / 2 / kNear);
+      coplanar = find_coplanar(near.positions, near.triangles, near.ranges, raw.meshes, most_pairs, near.surveyed);
+    } else {
+      coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes, most_pairs);
+    }
+    cut.clear();
+    for (const CoplanarPair& pair : coplanar.pairs) cut.push_back(shares ? near.numbers[pair.blocking] : pair.blocking);
+  } while (shares && take_out_cut(raw, positions, origin, cut));  // then all of them are the scene's own
   if (coplanar.pairs.empty()) return {};
-  const std::vector<Covered> covered = by_blocking(coplanar.pairs);
+  const std::span<const Float3> corners = shares ? near.positions : positions;
+  const std::span<const Triangle> covering = shares ? near.triangles : raw.triangles;
+  const std::vector<Covered> covered = by_blocking(coplanar.pairs, cut);
   CutAllowance allowance;
   allowance.parts = std::min(allowance.parts.load(), static_cast<std::int64_t>(raw.spare_bytes / 2 / kPart));
   std::vector<std::vector<ConvexPolygon>> left(covered.size());
@@ -126,7 +182,7 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
     std::vector<ConvexPolygon> holes;
     for (const CoplanarPair& pair : covered[k].by) {
       ConvexPolygon hole;
-      for (const std::uint32_t v : raw.triangles[pair.surveyed]) hole.push_back(frame.flat(to_glm(positions[v])));
+      for (const std::uint32_t v : covering[pair.surveyed]) hole.push_back(frame.flat(to_glm(corners[v])));
       holes.push_back(counter_clockwise(std::move(hole)));
     }
     left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m, allowance);

@@ -13,8 +13,9 @@ struct CoplanarCut {
 };
 
 // Cuts blocking triangles back where surveyed ones lie in their plane, so that rays meet the same surface, and it is
-// the surveyed one. New vertices get interpolated attributes. `positions` are the scene's, in the local frame, as
-// indexed by raw.triangles.
-CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions);
+// the surveyed one. New vertices get interpolated attributes. A shared mesh loses triangles that are cut, at the
+// places where some are, and they are stored there. `positions` are those of the scene's own triangles, in the local
+// frame, as indexed by raw.triangles. Throws Error out_of_memory. REQUIRES: raw.positions is empty.
+CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions, const Vec3& origin);
 
 }  // namespace vantage

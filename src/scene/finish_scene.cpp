@@ -216,7 +216,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   std::size_t flat = drop_unless(raw, has_area_in_float);
   shared.drop_duplicates();
   std::size_t duplicates = drop_duplicates(raw, data->positions);
-  const CoplanarCut cut = cut_coplanar(raw, data->positions);
+  const CoplanarCut cut = cut_coplanar(raw, data->positions, data->origin);
   if (cut.blocking > 0) drop_unless(raw, has_area_in_float);
 
   not_finite += shared.done().not_finite, flat += shared.done().without_area, duplicates += shared.done().duplicates;

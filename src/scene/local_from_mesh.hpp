@@ -10,6 +10,17 @@
 
 namespace vantage {
 
+// By how much a linear map, given by its columns, may multiply the roundings of a ray that is moved through it and
+// back: the product of the Frobenius norms of its matrix and the inverse. 3 if it only turns; not finite if it flattens
+// space.
+inline double condition(const Vec3& x, const Vec3& y, const Vec3& z) {
+  const auto norm = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return std::sqrt(dot(a, a) + dot(b, b) + dot(c, c));
+  };
+  const Vec3 yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);  // cofactors; the inverse has them over
+  return norm(x, y, z) * norm(yz, zx, xy) / std::abs(dot(x, yz));   // the determinant
+}
+
 // Columns of the affine map from the mesh to the scene's local frame, in float.
 inline std::array<float, 12> local_from_mesh(const SceneData& scene, const MeshPlace& place) {
   std::array<float, 12> out{};

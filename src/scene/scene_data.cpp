@@ -6,7 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
+
+#include "core/text.hpp"
+#include "scene/load_budget.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 
@@ -17,9 +23,18 @@ std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> t
   return {low, high};
 }
 
-Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
+namespace {
+
+// In line, since every pass over a scene that shares meshes places each corner.
+[[gnu::always_inline]] inline Float3 position_at(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
   const Float3 p = narrow(place(stored) - origin);
   return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+}
+
+}  // namespace
+
+Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
+  return position_at(place, stored, origin);
 }
 
 Float3 placed_normal(const MeshPlace& place, const Float3& n) {
@@ -64,7 +79,8 @@ std::array<Float3, 3> SceneData::placed_corners(std::uint32_t triangle) const {
   if (instance.place == MeshInstance::kNoPlace) return {positions[t[0]], positions[t[1]], positions[t[2]]};
   const MeshPlace& place = places[instance.place];
   const Triangle v = turned(t, place.mirrored);
-  return {placed(place, positions[v[0]]), placed(place, positions[v[1]]), placed(place, positions[v[2]])};
+  return {position_at(place, positions[v[0]], origin), position_at(place, positions[v[1]], origin),
+          position_at(place, positions[v[2]], origin)};
 }
 
 Triangle SceneData::attributes(std::uint32_t triangle) const {
@@ -83,51 +99,75 @@ std::array<Float3, 3> SceneData::corner_normals(std::uint32_t triangle) const {
   return out;
 }
 
-std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scene) {
-  if (!scene->shares()) return scene;
-  auto flat = std::make_shared<SceneData>(*scene);
-  flat->triangles.resize(scene->triangle_count());
+std::shared_ptr<SceneData> flat_copy(const SceneData& scene) {
+  if (!scene.shares()) return std::make_shared<SceneData>(scene);
+  // A shared mesh's vertices are consecutive, and each belongs to a triangle.
+  std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> corners;  // by the mesh's first stored triangle
+  std::uint64_t vertices = scene.positions.size();  // of the local frame, before those of shared meshes
+  for (const MeshInstance& instance : scene.instances) {
+    if (instance.place == MeshInstance::kNoPlace) continue;
+    const auto [known, first] = corners.try_emplace(instance.first_stored);
+    if (first) known->second = corner_range(scene.stored(instance));
+    vertices = std::min<std::uint64_t>(vertices, known->second.first);
+  }
+  const auto own = static_cast<std::size_t>(vertices);
+  for (const MeshInstance& instance : scene.instances)
+    if (instance.place != MeshInstance::kNoPlace) {
+      const auto [low, high] = corners.at(instance.first_stored);
+      vertices += high - low + 1;
+    }
+  const std::string what = "storing shared meshes at each of their places, " + number(scene.triangle_count()) +
+                           " triangles on " + number(vertices) + " vertices,";
+  if (vertices > 0xFFFFFFFFu)
+    throw Error(Errc::out_of_memory, "the scene: " + what + " is more than 2^32 vertices. Make the scene smaller");
+  const std::uint64_t vertex = sizeof(Float3) + (scene.normals.empty() ? 0 : sizeof(Float3)) +
+                               (scene.texcoords.empty() ? 0 : sizeof(Float2)) +
+                               (scene.colours.empty() ? 0 : sizeof(std::uint32_t));
+  LoadBudget(scene.options.max_memory_bytes, "the scene")
+      .require(vertex * vertices + sizeof(Triangle) * scene.triangle_count(), what);
+
+  auto flat = std::make_shared<SceneData>(scene);
+  flat->triangles.resize(scene.triangle_count());
   flat->set_instances({});
   flat->places.clear();
-  std::size_t stored = scene->positions.size();  // in the local frame
-  for (const MeshInstance& instance : scene->instances) {
-    if (instance.place == MeshInstance::kNoPlace) continue;
-    stored = std::min<std::size_t>(stored, corner_range(scene->stored(instance)).first);
-  }
-  const auto cut = [&](auto& values) {
-    if (!values.empty()) values.resize(stored);
+  const auto for_attributes = [&](const auto& use) {
+    use(flat->positions, scene.positions), use(flat->normals, scene.normals);
+    use(flat->texcoords, scene.texcoords), use(flat->colours, scene.colours);
   };
-  cut(flat->positions), cut(flat->normals), cut(flat->texcoords), cut(flat->colours);
-  for (const MeshInstance& instance : scene->instances) {
-    const std::span<const Triangle> stored_triangles = scene->stored(instance);
+  for_attributes([&](auto& values, const auto&) {
+    if (values.empty()) return;
+    values.resize(own);
+    values.reserve(vertices);
+  });
+  for (const MeshInstance& instance : scene.instances) {
+    const std::span<const Triangle> stored = scene.stored(instance);
     Triangle* const out = flat->triangles.data() + instance.first_triangle;
     if (instance.place == MeshInstance::kNoPlace) {
-      std::ranges::copy(stored_triangles, out);
+      std::ranges::copy(stored, out);
       continue;
     }
-    // A shared mesh's vertices are consecutive, and each belongs to a triangle.
-    const MeshPlace& place = scene->places[instance.place];
-    const std::pair range = corner_range(stored_triangles);
+    const MeshPlace& place = scene.places[instance.place];
+    const std::pair range = corners.at(instance.first_stored);
     const std::uint32_t low = range.first, high = range.second;  // lambdas below take them
-    const std::size_t first = flat->positions.size(), count = high - low + 1;
-    flat->positions.resize(first + count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) {
-      flat->positions[first + v] = scene->placed(place, scene->positions[low + v]);
+    const std::size_t first = flat->positions.size();
+    for_attributes([&](auto& values, const auto& from) {
+      if (!from.empty()) values.insert(values.end(), from.begin() + low, from.begin() + high + 1);
     });
-    if (!scene->normals.empty())
-      for (std::size_t v = 0; v < count; ++v) flat->normals.push_back(placed_normal(place, scene->normals[low + v]));
-    const auto again = [&](auto& values, const auto& from) {
-      if (!from.empty())
-        values.insert(values.end(), from.begin() + low, from.begin() + static_cast<std::ptrdiff_t>(low + count));
-    };
-    again(flat->texcoords, scene->texcoords), again(flat->colours, scene->colours);
+    tbb::parallel_for(first, flat->positions.size(), [&](std::size_t v) {
+      flat->positions[v] = scene.placed(place, flat->positions[v]);
+      if (!flat->normals.empty()) flat->normals[v] = placed_normal(place, flat->normals[v]);
+    });
     const auto shift = static_cast<std::uint32_t>(first) - low;
-    for (std::size_t t = 0; t < stored_triangles.size(); ++t) {
-      const Triangle v = turned(stored_triangles[t], place.mirrored);
+    for (std::size_t t = 0; t < stored.size(); ++t) {
+      const Triangle v = turned(stored[t], place.mirrored);
       out[t] = {v[0] + shift, v[1] + shift, v[2] + shift};
     }
   }
   return flat;
+}
+
+std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scene) {
+  return scene->shares() ? flat_copy(*scene) : scene;
 }
 
 }  // namespace vantage

@@ -65,6 +65,7 @@ struct MeshInstance {
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFu;
   std::uint32_t first_triangle = 0, triangle_count = 0, first_stored = 0;
   std::uint32_t place = kNoPlace;  // index into SceneData::places, or kNoPlace: stored in the local frame
+  Box bounds = {};                 // of its corners in the local frame; empty without a place
 };
 
 struct SceneData {
@@ -130,7 +131,10 @@ struct SceneData {
   std::array<Float3, 3> placed_corners(std::uint32_t triangle) const;  // of corners(). REQUIRES: shares()
 };
 
-// The same scene with every mesh stored where it stands, for those who need flat arrays. Shares `scene` if it is.
+// Copies the scene, with every mesh stored where it stands, for those who need flat arrays. Throws Error out_of_memory
+// if that does not fit.
+std::shared_ptr<SceneData> flat_copy(const SceneData& scene);
+// The same, but shares `scene` if it is flat already.
 std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scene);
 
 }  // namespace vantage

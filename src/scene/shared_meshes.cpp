@@ -9,9 +9,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
+#include "scene/local_from_mesh.hpp"
 #include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
 
@@ -25,13 +27,8 @@ glm::dvec3 survey(const MeshPlace& place, const Float3& p) { return to_glm(place
 bool moves_rays(const MeshPlace& place) {
   constexpr double kMostCondition = 24;  // 3 where axes are equal and upright; some 23 where one is 16 times the others
   constexpr double kLeastScale = 1e-6, kMostScale = 1e4;
-  const auto norm = [](const Vec3& a, const Vec3& b, const Vec3& c) {
-    return std::sqrt(dot(a, a) + dot(b, b) + dot(c, c));
-  };
-  const Vec3 yz = cross(place.y, place.z), zx = cross(place.z, place.x), xy = cross(place.x, place.y);
-  const double size = norm(place.x, place.y, place.z), determinant = std::abs(dot(place.x, yz));
-  // Product of the norms of the matrix and its inverse, whose entries are the cofactors over the determinant.
-  return size >= kLeastScale && size <= kMostScale && size * norm(yz, zx, xy) <= kMostCondition * determinant;
+  const double size = std::sqrt(dot(place.x, place.x) + dot(place.y, place.y) + dot(place.z, place.z));
+  return size >= kLeastScale && size <= kMostScale && condition(place.x, place.y, place.z) <= kMostCondition;
 }
 
 // Appends the vertices of a placed mesh. The arrays are as long as the positions once any mesh has such values.
@@ -62,6 +59,31 @@ void append_triangles(std::vector<Triangle>& out, const SharedMesh& mesh, bool m
   for (const Triangle& t : mesh.triangles) out.push_back(turned({t[0] + v, t[1] + v, t[2] + v}, mirrored));
 }
 
+// Keeps the marked triangles and their vertices. Returns how many triangles the mesh loses.
+std::size_t keep(SharedMesh& mesh, const std::vector<std::uint8_t>& kept) {
+  std::vector<std::uint32_t> place(mesh.positions.size(), 0);
+  std::size_t out = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (kept[t]) mesh.triangles[out++] = mesh.triangles[t];
+  const std::size_t lost = mesh.triangles.size() - out;
+  mesh.triangles.resize(out);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) place[v] = 1;
+  std::vector<std::uint32_t> used;
+  for (std::uint32_t v = 0; v < place.size(); ++v)
+    if (place[v]) place[v] = static_cast<std::uint32_t>(used.size()), used.push_back(v);
+  if (used.size() == place.size()) return lost;
+  for (Triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = place[v];
+  const auto compact = [&](auto& values) {
+    if (values.empty()) return;
+    for (std::size_t k = 0; k < used.size(); ++k) values[k] = values[used[k]];
+    values.resize(used.size());
+  };
+  compact(mesh.positions), compact(mesh.normals), compact(mesh.texcoords), compact(mesh.colours);
+  return lost;
+}
+
 }  // namespace
 
 MeshPlace place_of(const glm::dmat4& m) {
@@ -85,6 +107,17 @@ MeshPlace reinterpreted(const MeshPlace& place, Unit unit, UpAxis up) {
   const double metres = metres_in(unit);
   return {turned(place.x, metres),   turned(place.y, metres),   turned(place.z, metres),   turned(place.origin, metres),
           turned(place.normal_x, 1), turned(place.normal_y, 1), turned(place.normal_z, 1), place.mirrored};
+}
+
+Box placed_bounds(const MeshPlace& place, const std::vector<Float3>& positions, const Vec3& origin) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, positions.size(), 4096), Box{},
+      [&](const auto& part, Box box) {
+        for (std::size_t v = part.begin(); v < part.end(); ++v)
+          box.extend(widen(placed_position(place, positions[v], origin)));
+        return box;
+      },
+      united);
 }
 
 std::vector<PlacedRun> placed_runs(const RawScene& raw) {
@@ -128,6 +161,50 @@ void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored) {
   raw.triangles = std::move(triangles);
 }
 
+void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
+              const std::vector<std::vector<std::uint8_t>>& taken) {
+  // Per mesh: the mesh without what is taken, which takes its number if no run is left to it.
+  const std::size_t count = raw.shared.size();
+  std::vector<std::uint32_t> rest(count), part(count);
+  std::vector<std::uint8_t> whole(count, 0);
+  auto run = runs.begin();
+  for (const auto& range : raw.placed)
+    for (const PlacedShared& placed : range)
+      if (*run++ == 0) whole[placed.mesh] = 1;
+  std::vector<SharedMesh> parts;
+  for (std::uint32_t m = 0; m < count; ++m) {
+    if (taken[m].empty()) continue;
+    std::vector<std::uint8_t> left;
+    for (const std::uint8_t t : taken[m]) left.push_back(t == 0);
+    part[m] = static_cast<std::uint32_t>(parts.size());
+    keep(parts.emplace_back(raw.shared[m]), taken[m]);
+    rest[m] = whole[m] ? static_cast<std::uint32_t>(raw.shared.size()) : m;
+    if (whole[m]) raw.shared.push_back(SharedMesh(raw.shared[m]));
+    keep(raw.shared[rest[m]], left);
+  }
+  // What is taken is a mesh of its own until it is stored.
+  const std::size_t left = raw.shared.size();
+  raw.shared.insert(raw.shared.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
+  std::vector<std::uint8_t> stored;
+  run = runs.begin();
+  for (auto& range : raw.placed) {
+    std::vector<PlacedShared> placements;
+    const auto add = [&](std::size_t mesh, const MeshPlace& place, bool stores) {
+      if (raw.shared[mesh].triangles.empty()) return;
+      placements.push_back({static_cast<std::uint32_t>(mesh), place});
+      stored.push_back(stores);
+    };
+    for (const PlacedShared& placed : range) {
+      const bool of_run = *run++ != 0;
+      if (of_run) add(left + part[placed.mesh], placed.place, true);
+      add(of_run ? rest[placed.mesh] : placed.mesh, placed.place, false);
+    }
+    range = std::move(placements);
+  }
+  store_placed(raw, stored);
+  raw.shared.resize(left);
+}
+
 RawScene excerpt(const RawScene& raw, std::size_t most) {
   RawScene part;
   part.positions = raw.positions;
@@ -151,31 +228,6 @@ std::vector<std::vector<const MeshPlace*>> SharedCleaner::places() const {
   return of;
 }
 
-std::size_t SharedCleaner::keep(std::size_t number, const std::vector<std::uint8_t>& kept) {
-  SharedMesh& mesh = raw_.shared[number];
-  std::vector<std::uint32_t> place(mesh.positions.size(), 0);
-  std::size_t out = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (kept[t]) mesh.triangles[out++] = mesh.triangles[t];
-  const std::size_t lost = mesh.triangles.size() - out;
-  mesh.triangles.resize(out);
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) place[v] = 1;
-  std::vector<std::uint32_t> used;
-  for (std::uint32_t v = 0; v < place.size(); ++v)
-    if (place[v]) place[v] = static_cast<std::uint32_t>(used.size()), used.push_back(v);
-  if (used.size() == place.size()) return lost;
-  for (Triangle& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = place[v];
-  const auto compact = [&](auto& values) {
-    if (values.empty()) return;
-    for (std::size_t k = 0; k < used.size(); ++k) values[k] = values[used[k]];
-    values.resize(used.size());
-  };
-  compact(mesh.positions), compact(mesh.normals), compact(mesh.texcoords), compact(mesh.colours);
-  return lost;
-}
-
 void SharedCleaner::drop_not_finite() {
   const auto finite = [](const Float3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
   std::vector<Box> boxes(raw_.shared.size());
@@ -185,7 +237,7 @@ void SharedCleaner::drop_not_finite() {
     std::vector<std::uint8_t> kept(mesh.triangles.size());
     for (std::size_t t = 0; t < kept.size(); ++t)
       kept[t] = std::ranges::all_of(mesh.triangles[t], [&](std::uint32_t v) { return finite(mesh.positions[v]); });
-    done_.not_finite += keep(m, kept) * of[m].size();
+    done_.not_finite += keep(raw_.shared[m], kept) * of[m].size();
     for (const Float3& p : mesh.positions) boxes[m].extend(widen(p));
   }
   std::vector<std::uint8_t> stored;
@@ -229,7 +281,7 @@ void SharedCleaner::drop_without_area(const Vec3& origin) {
           if (!has_area(corner(0), corner(1), corner(2))) kept[t] = 0;
         }
     });
-    done_.without_area += keep(m, kept) * of[m].size();
+    done_.without_area += keep(raw_.shared[m], kept) * of[m].size();
   }
 }
 
@@ -267,7 +319,7 @@ void SharedCleaner::drop_duplicates() {
     std::vector<std::uint8_t> kept(corners.size(), 1);
     for (std::size_t k = 1; k < corners.size(); ++k)
       if (corners[k].first == corners[k - 1].first) kept[corners[k].second] = 0;
-    done_.duplicates += keep(m, kept) * of[m].size();
+    done_.duplicates += keep(raw_.shared[m], kept) * of[m].size();
   }
   for (auto& range : raw_.placed)
     std::erase_if(range, [&](const PlacedShared& placed) { return raw_.shared[placed.mesh].triangles.empty(); });
@@ -297,7 +349,10 @@ void append_shared(SceneData& data, RawScene& raw) {
     next += own.triangle_count;
     for (const PlacedShared& placed : raw.placed[m]) {
       const auto count = static_cast<std::uint32_t>(raw.shared[placed.mesh].triangles.size());
-      instances.push_back({next, count, first_stored[placed.mesh], static_cast<std::uint32_t>(data.places.size())});
+      const Box bounds = placed_bounds(placed.place, raw.shared[placed.mesh].positions, data.origin);
+      const auto place = static_cast<std::uint32_t>(data.places.size());
+      instances.push_back({next, count, first_stored[placed.mesh], place, bounds});
+      data.local_bounds = united(data.local_bounds, bounds);
       data.places.push_back(placed.place);
       next += count;
     }
@@ -305,19 +360,6 @@ void append_shared(SceneData& data, RawScene& raw) {
   }
   raw.shared.clear(), raw.placed.clear();
   data.set_instances(std::move(instances));
-  for (const MeshInstance& instance : data.instances) {
-    if (instance.place == MeshInstance::kNoPlace) continue;
-    const MeshPlace& place = data.places[instance.place];
-    data.local_bounds = tbb::parallel_reduce(
-        tbb::blocked_range<std::uint32_t>(0, instance.triangle_count, 4096), data.local_bounds,
-        [&](const auto& part, Box box) {
-          for (std::uint32_t t = part.begin(); t < part.end(); ++t)
-            for (const std::uint32_t v : data.triangles[instance.first_stored + t])
-              box.extend(widen(data.placed(place, data.positions[v])));
-          return box;
-        },
-        united);
-  }
 }
 
 }  // namespace vantage

@@ -18,6 +18,9 @@ MeshPlace place_of(const glm::dmat4& survey_from_mesh);
 // The same, followed by the change of axes and unit of reinterpret_axes().
 MeshPlace reinterpreted(const MeshPlace& place, Unit unit, UpAxis up);
 
+// Bounds of placed positions in the local frame around `origin`.
+Box placed_bounds(const MeshPlace& place, const std::vector<Float3>& positions, const Vec3& origin);
+
 // A shared mesh at one of its places. Its triangles have numbers behind those of the scene's own.
 struct PlacedRun {
   std::size_t range = 0;    // of the scene
@@ -34,6 +37,11 @@ std::size_t run_of(std::span<const PlacedRun> runs, std::uint32_t triangle);
 
 // Stores runs where they stand, behind the range's own triangles: those that are not 0, one for each run.
 void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored);
+// Stores some triangles of the runs that are not 0 where these stand, likewise, and shares the others. `taken` has an
+// entry for each shared mesh: empty, or per triangle what is not 0 if it is taken. REQUIRES: it is not empty for these
+// runs.
+void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
+              const std::vector<std::vector<std::uint8_t>>& taken);
 
 // Calls visit(a, b, c) with the corners of each triangle of a range, those of shared meshes where they stand.
 template <class Visit>
@@ -71,8 +79,6 @@ class SharedCleaner {
   const SharedCleaning& done() const { return done_; }
 
  private:
-  // Keeps the marked triangles of a shared mesh and their vertices. Returns how many triangles it loses.
-  std::size_t keep(std::size_t mesh, const std::vector<std::uint8_t>& kept);
   std::vector<std::vector<const MeshPlace*>> places() const;  // per shared mesh
 
   RawScene& raw_;

@@ -44,38 +44,69 @@ void merge(std::vector<Slab>& slabs) {
   slabs.resize(out);
 }
 
-std::vector<Slab> slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, int axis, double min,
-                           double thickest, double area_unit) {
+// Those of each axis.
+using AxisSlabs = std::array<std::vector<Slab>, 3>;
+AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, const std::array<float, 3>& min,
+                   double thickest, double area_unit) {
   constexpr std::size_t least_merged = std::size_t{1} << 18;
   struct Slabs {
     std::vector<Slab> slabs;
     std::size_t merge_at = least_merged;
   };
-  tbb::enumerable_thread_specific<Slabs> collected;
+  tbb::enumerable_thread_specific<std::array<Slabs, 3>> collected;
   for (const MeshRange& mesh : surveyed)
     tbb::parallel_for(
         tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096),
         [&](const tbb::blocked_range<std::uint32_t>& range) {
-          Slabs& own = collected.local();
+          std::array<Slabs, 3>& own = collected.local();
           for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
             const std::array<glm::dvec3, 3> p = corners_of(scene, t);
-            const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
-                         high = std::max({p[0][axis], p[1][axis], p[2][axis]});
-            if (high - low > thickest) continue;
             const glm::dvec3 n = cross(p[1] - p[0], p[2] - p[0]);
-            const double along = n[axis], squared = dot(n, n);
-            if (along * along < squared * (1 - max_tilt * max_tilt)) continue;
-            own.slabs.push_back(
-                {low - min, high - min, static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
+            const double squared = dot(n, n);
+            for (int axis = 0; axis < 3; ++axis) {
+              const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
+                           high = std::max({p[0][axis], p[1][axis], p[2][axis]});
+              if (high - low > thickest || n[axis] * n[axis] < squared * (1 - max_tilt * max_tilt)) continue;
+              own[axis].slabs.push_back({low - min[axis], high - min[axis],
+                                         static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
+            }
           }
-          if (own.slabs.size() < own.merge_at) return;
-          merge(own.slabs);
-          own.merge_at = std::max(least_merged, 2 * own.slabs.size());
+          for (Slabs& of_axis : own) {
+            if (of_axis.slabs.size() < of_axis.merge_at) continue;
+            merge(of_axis.slabs);
+            of_axis.merge_at = std::max(least_merged, 2 * of_axis.slabs.size());
+          }
         });
-  std::vector<Slab> all;
-  for (const Slabs& some : collected) all.insert(all.end(), some.slabs.begin(), some.slabs.end());
-  merge(all);
+  AxisSlabs all;
+  tbb::parallel_for(0, 3, [&](int axis) {
+    for (const auto& some : collected)
+      all[axis].insert(all[axis].end(), some[axis].slabs.begin(), some[axis].slabs.end());
+    merge(all[axis]);
+  });
   return all;
+}
+
+Box bounds_of(const SceneData& scene, std::uint32_t first, std::uint32_t count) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::uint32_t>(first, first + count, 4096), Box{},
+      [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
+        for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+          for (const Float3& p : scene.corners(t)) box.extend(widen(p));
+        return box;
+      },
+      united);
+}
+// Those of places are known.
+Box bounds_of(const SceneData& scene, const MeshRange& mesh) {
+  if (!scene.shares()) return bounds_of(scene, mesh.first_triangle, mesh.triangle_count);
+  Box bounds;
+  const std::uint32_t end = mesh.first_triangle + mesh.triangle_count;
+  for (std::uint32_t t = mesh.first_triangle; t < end;) {
+    const MeshInstance& run = scene.instance_of(t);
+    t = run.first_triangle + run.triangle_count;
+    bounds = united(bounds, run.bounds.empty() ? bounds_of(scene, run.first_triangle, run.triangle_count) : run.bounds);
+  }
+  return bounds;
 }
 
 // Weight of the slabs within `clearance` of a face.
@@ -144,15 +175,7 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
   }
   GridFit fit;
   Box bounds;
-  for (const MeshRange& mesh : surveyed)
-    bounds = tbb::parallel_reduce(
-        tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096), bounds,
-        [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
-          for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-            for (const Float3& p : scene.corners(t)) box.extend(widen(p));
-          return box;
-        },
-        united);
+  for (const MeshRange& mesh : surveyed) bounds = united(bounds, bounds_of(scene, mesh));
   if (bounds.empty()) {
     fit.inverse_size = static_cast<float>(1 / user_size_m);
     return fit;
@@ -186,10 +209,11 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
                            scene.local_bounds.max.x, scene.local_bounds.max.y, scene.local_bounds.max.z})
       reach = std::max(reach, std::abs(c));
   const double clearance = face_clearance(std::max(reach, cube), voxel);
+  for (int axis = 0; axis < 3; ++axis) fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * cube);
+  const AxisSlabs slabs_along = slabs_of(scene, surveyed, fit.min, 4 * clearance, extent * extent * 0x1p-30);
   for (int axis = 0; axis < 3; ++axis) {
-    fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * cube);
     const double min = fit.min[axis];
-    const auto slabs = slabs_of(scene, surveyed, axis, min, 4 * clearance, extent * extent * 0x1p-30);
+    const std::vector<Slab>& slabs = slabs_along[axis];
     if (weight_near_faces(slabs, voxel, clearance) == 0) continue;
     const double slack = std::min(low[axis] - min, min + cube - high[axis]) - 0.25 * margin;
     const double most = std::min(slack, voxel / 2);

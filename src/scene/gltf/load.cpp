@@ -48,6 +48,8 @@ constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 // Likewise of a mesh that is stored once: corners, corners in order, whether it is kept.
 constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
+// Of other meshes beside them, with both roles: NearPlaced.
+constexpr double kVertexBeside = 12, kTriangleBeside = 12 + 4;
 // Of the scene, above which SharedMeshes::automatic shares; of a mesh, below which it does not: a tree of trees pays
 // for larger ones alone.
 constexpr double kManyTriangles = 8e6;
@@ -273,7 +275,6 @@ class Loader {
     const bool always = options_.shared_meshes == SharedMeshes::always;
     double triangles = 0;
     std::map<std::pair<int, std::size_t>, std::size_t> uses;
-    bool roles[2] = {};
     const auto shareable = [&](const Job& job) {
       return !job.glass && (job.role == Role::surveyed || job.role == Role::blocking) &&
              materials_.cutoffs[job.material->index] == 0 && is_exact(file_, job.placed->mesh, job.primitive);
@@ -283,10 +284,8 @@ class Loader {
       const std::size_t places = job.placed->world_from_mesh.size();
       triangles += static_cast<double>(places) *
                    static_cast<double>(primitive_size(file_, job.placed->mesh, job.primitive).triangles);
-      if (!job.glass) roles[job.role == Role::surveyed] = true;
       if (shareable(job)) uses[{job.placed->mesh, job.primitive}] += places;
     }
-    if (roles[0] && roles[1]) return;  // blocking triangles may have to be cut where they stand
     if (!always && triangles <= kManyTriangles) return;
     for (Job& job : jobs)
       job.shared = shareable(job) && uses[{job.placed->mesh, job.primitive}] > 1 &&
@@ -305,6 +304,7 @@ class Loader {
       if (job.role == Role::ignore) continue;
       const PrimitiveSize size = primitive_size(file_, job.placed->mesh, job.primitive);
       const auto instances = static_cast<double>(job.placed->world_from_mesh.size());
+      roles[static_cast<std::size_t>(*job.role)] = true;
       if (job.shared) {
         constexpr double kAttributes = 2 * (sizeof(Float3) + sizeof(Float2) + sizeof(std::uint32_t));
         places += instances;
@@ -319,13 +319,13 @@ class Loader {
       (search ? search_triangles : triangles) += instances * static_cast<double>(size.triangles);
       largest = std::max(largest, size.triangles);
       normals |= size.normals, colours |= size.colours, texcoords |= job.material->texcoord_set >= 0;
-      roles[static_cast<std::size_t>(*job.role)] = true;
     }
     const double vertex = kVertex + (normals ? sizeof(Float3) : 0) + (texcoords ? sizeof(Float2) : 0) +
                           (colours ? sizeof(std::uint32_t) : 0);
     const bool both =
         roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
-    const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles +
+    const double beside = both && !shared.empty() ? kVertexBeside * vertices + kTriangleBeside * triangles : 0;
+    const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles + beside +
                          kSearchVertex * search_vertices + kSearchTriangle * search_triangles + shared_bytes +
                          3 * places * (sizeof(MeshPlace) + sizeof(MeshInstance)) +
                          kSharedTriangleSorted * static_cast<double>(largest_shared);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/placed_meshes.hpp"
 
-#include <cmath>
 #include <map>
 
 #include "scene/local_from_mesh.hpp"
@@ -15,9 +14,8 @@ glm::dmat3 MeshPlacement::linear() const {
 }
 
 double MeshPlacement::condition() const {
-  const auto norm = [](const glm::dmat3& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); };
-  const glm::dmat3 matrix = linear();
-  return norm(matrix) * norm(glm::inverse(matrix));
+  const auto& m = columns;
+  return vantage::condition({m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]});
 }
 
 PlacedMeshes placed_meshes(const SceneData& scene) {

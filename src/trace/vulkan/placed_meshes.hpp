@@ -18,9 +18,7 @@ struct MeshPlacement {
   std::array<float, 12> columns;  // local_from_mesh()
   glm::dmat3 linear() const;
   glm::dvec3 origin() const { return {columns[9], columns[10], columns[11]}; }
-  // By how much it may multiply the roundings of a ray that is moved into the mesh's frame and back: the product of the
-  // norms of its linear part and the inverse, 3 if it only turns.
-  double condition() const;
+  double condition() const;  // of its linear part
 };
 
 struct PlacedMeshes {

@@ -5,6 +5,8 @@
 
 #include <chrono>
 
+#include "scene/scene_data.hpp"
+#include "support/boxes_on_ground.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "unit/placement/placement_scenes.hpp"
@@ -435,6 +437,28 @@ TEST(EditSession, BeginsWithNothing) {
   EXPECT_EQ(state["network"]["coverage"], 0);
   bench.session.change({{"do", "exact"}});
   EXPECT_EQ(bench.finished()["message"], "there is no station to trace");
+}
+
+TEST(EditSession, ShowsTheSameWhereMeshesAreShared) {
+  std::vector<std::string> shown;
+  for (const SharedMeshes shared : {SharedMeshes::always, SharedMeshes::never}) {
+    const Scene scene = load(test::boxes_on_ground(), {.surveyed = {"ground", "box 1"}, .shared_meshes = shared});
+    ASSERT_EQ(scene.data().shares(), shared == SharedMeshes::always);
+    Site site = test::site_of(Simulator(scene, noisy_scanner(), {.engine = Engine::embree, .user_size_m = 0.2}));
+    EditSession session{site,
+                        {},
+                        {.voxels = 300, .cells = 200, .attainable_voxels = 0},
+                        [](const auto&) {},
+                        [](const auto&, const Progress&) { return std::string(); }};
+    session.change({{"do", "add"}, {"to", {2.1, 1.2, 0}}});
+    session.change({{"do", "add"}, {"to", {-2, 2.3, 0}}});
+    session.change({{"do", "move"}, {"id", 1}, {"to", {-1.7, -2.2, 0}}});
+    session.change({{"do", "exact"}});
+    const State state = finished(session);
+    EXPECT_EQ(state["network"]["stations"].size(), 2u);
+    shown.push_back(state["network"].dump() + state["colours"].dump());
+  }
+  EXPECT_EQ(shown[0], shown[1]);
 }
 
 }  // namespace

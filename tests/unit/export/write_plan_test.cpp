@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scene/scene_data.hpp"
+#include "support/boxes_on_ground.hpp"
 #include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
@@ -257,6 +259,27 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
             std::vector<std::string>{"plan.svg"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out/plan.svg"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/plan.png"));
+}
+
+TEST(WritePlan, StationsAreTheSameWhereMeshesAreShared) {
+  const test::TemporaryFolder folder;
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
+  for (const std::vector<std::string>& surveyed : {std::vector<std::string>{}, {"ground", "box 1"}}) {
+    for (const SharedMeshes shared : {SharedMeshes::always, SharedMeshes::never}) {
+      const Scene scene = load(test::boxes_on_ground(), {.surveyed = surveyed, .shared_meshes = shared});
+      ASSERT_EQ(scene.data().shares(), shared == SharedMeshes::always);
+      Site site = test::site_of(Simulator(scene, scanner, {.engine = Engine::embree, .user_size_m = 0.2}));
+      const PlanResult result =
+          plan(site, coverage_overlap_fix(3), {.population = 6, .iterations = 3, .sample_voxels = 300, .seed = 3});
+      write_plan(folder / to_string(shared), result, site);
+    }
+    for (const char* file : {"stations.csv", "front.csv", "fronts.csv", "overlap.csv"}) {
+      const std::string once = test::content(folder / "always" / file);
+      EXPECT_GT(once.size(), 50u) << file;
+      EXPECT_EQ(once, test::content(folder / "never" / file)) << file;
+    }
+  }
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "scene/positions.hpp"
+#include "scene/shared_meshes.hpp"
 #include "support/box.hpp"
 
 namespace vantage {
@@ -45,6 +47,27 @@ class Joinery {
   }
   // A leaf in the opening from x, from one depth to another.
   Joinery& leaf(double x, double front, double back) { return box({x, front, 0}, {x + 0.9, back, 2.1}); }
+  // Stores the last mesh once and places it as it stands, and again in another mesh 100 m away.
+  Joinery& share() {
+    const MeshRange own = raw.ranges.back();
+    SharedMesh shared;
+    for (std::uint32_t t = own.first_triangle; t < own.first_triangle + own.triangle_count; ++t) {
+      for (const std::uint32_t v : raw.triangles[t]) shared.positions.push_back(to_float3(raw.positions[v]));
+      const auto end = static_cast<std::uint32_t>(shared.positions.size());
+      shared.triangles.push_back({end - 3, end - 2, end - 1});
+    }
+    raw.triangles.resize(own.first_triangle);
+    raw.ranges.back().triangle_count = 0;
+    raw.shared = {shared};
+    mesh("far away");
+    raw.placed.resize(raw.ranges.size());
+    for (const double x : {0.0, 100.0}) {
+      glm::dmat4 place(1);
+      place[3].x = x;
+      raw.placed[raw.ranges.size() - (x > 0 ? 1 : 2)] = {{0, place_of(place)}};
+    }
+    return *this;
+  }
   Names open() { return open_doors(raw, std::vector<std::uint8_t>(raw.meshes.size(), 1)); }
 
   RawScene raw;
@@ -78,6 +101,33 @@ TEST(OpenDoors, LeavesAreFoundAmongThePartsOfOneMesh) {
       EXPECT_FALSE(near(t[0]) && near(t[1]) && near(t[2]) && site.raw.positions[t[0]].z < 2.05 &&
                    std::abs(site.raw.positions[t[0]].y - p.y) < 0.1);
     }
+}
+
+TEST(OpenDoors, ASharedMeshLosesItsLeavesWhereTheyLeadThroughAWall) {
+  Joinery site;
+  site.mesh("joinery").leaf(1, 0.08, 0.12).box({1.8, 0.03, 1}, {1.85, 0.07, 1.1}).leaf(4, 0.06, 0.1);
+  site.box({8, -3, 0}, {9, -2, 0.5});
+  const std::size_t before = site.raw.triangles.size();
+  site.share();
+  EXPECT_EQ(site.open(), (Names{"joinery", "joinery"}));
+  EXPECT_EQ(site.raw.triangles.size(), before - 36) << "two leaves and a handle";
+  EXPECT_TRUE(site.raw.placed[1].empty());
+  ASSERT_EQ(site.raw.placed[2].size(), 1U);
+  EXPECT_EQ(site.raw.shared[0].triangles.size(), 48U);
+}
+
+TEST(OpenDoors, ASharedMeshMayBeTheWallOrALeafAlone) {
+  Joinery wall;
+  wall.mesh("slab").leaf(1, 0.08, 0.12);
+  std::swap(wall.raw.ranges[0], wall.raw.ranges[1]), std::swap(wall.raw.meshes[0], wall.raw.meshes[1]);
+  std::ranges::rotate(wall.raw.triangles, wall.raw.triangles.end() - 12);
+  wall.raw.ranges[0].first_triangle = 0, wall.raw.ranges[1].first_triangle = 12;
+  EXPECT_EQ(wall.share().open(), Names{"slab"});
+  EXPECT_EQ(wall.raw.placed.back().size(), 1U);
+  Joinery leaf;
+  leaf.mesh("slab").leaf(1, 0.08, 0.12);
+  EXPECT_EQ(leaf.share().open(), Names{"slab"});
+  EXPECT_EQ(leaf.raw.meshes.size(), 2U) << "the wall, and the slab far away";
 }
 
 // The leaf and its frame are one part, as deep as the wall and its trims.

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "placement/mesh_tree.hpp"
+#include "scene/sound_triangle.hpp"
 #include "scene/surface_colour.hpp"
+#include "support/boxes_on_ground.hpp"
 #include "support/glb_builder.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
@@ -307,9 +309,96 @@ TEST(SharedMeshes, DoorsAreOpenedAtEachPlace) {
   EXPECT_NE(scene.notes().back().find("3 doors are taken as open"), std::string::npos) << scene.notes().back();
 }
 
-TEST(SharedMeshes, ScenesWithBothRolesShareNothing) {
-  const Scene scene = load(site(), {.blocking = {"ground"}, .shared_meshes = SharedMeshes::always});
-  EXPECT_FALSE(scene.data().shares());
+// Corners of all triangles of a mesh in ascending order, whatever the order of the triangles.
+std::vector<std::array<Float3, 3>> sorted_triangles(const Scene& scene, std::size_t mesh) {
+  const SceneData& data = scene.data();
+  std::vector<std::array<Float3, 3>> all;
+  for (std::uint32_t k = 0; k < data.ranges[mesh].triangle_count; ++k) {
+    const auto corners = data.corners(data.ranges[mesh].first_triangle + k);
+    all.push_back(sorted_corners(corners, {0, 1, 2}));
+  }
+  std::ranges::sort(all, [](const auto& a, const auto& b) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (a[k] != b[k]) return comes_before(a[k], b[k]);
+    return false;
+  });
+  return all;
+}
+
+// What is surveyed; all else blocks.
+const std::vector<std::vector<std::string>> kSurveyed{{"ground"}, {"box *"}, {"box 0", "box 4"}, {"ground", "box 1"}};
+
+TEST(SharedMeshes, SurfacesOfBothRolesInOnePlaneAreCutAtEachPlace) {
+  for (const auto& surveyed : kSurveyed) {
+    SCOPED_TRACE(surveyed.back());
+    SceneOptions options{.surveyed = surveyed, .shared_meshes = SharedMeshes::always};
+    const Scene once = load(test::boxes_on_ground(), options);
+    options.shared_meshes = SharedMeshes::never;
+    const Scene each = load(test::boxes_on_ground(), options);
+    ASSERT_TRUE(once.data().shares());
+    EXPECT_EQ(once.data().places.size(), 6u) << "what is not cut is shared still";
+    ASSERT_EQ(once.meshes().size(), each.meshes().size());
+    std::size_t cut = 0;
+    for (std::size_t m = 0; m < each.meshes().size(); ++m) {
+      const auto wanted = sorted_triangles(each, m);
+      EXPECT_EQ(sorted_triangles(once, m), wanted) << "mesh " << each.meshes()[m].name;
+      cut += wanted.size() != (each.meshes()[m].name == "ground" ? 2u : 12u);
+    }
+    EXPECT_GT(cut, 0u);
+    for (std::size_t m = 0; surveyed == kSurveyed[0] && m < once.meshes().size(); ++m) {
+      if (once.meshes()[m].name != "box 5") continue;
+      EXPECT_EQ(once.data().instance_of(once.data().ranges[m].first_triangle).triangle_count, 12u) << "nothing is cut";
+    }
+    EXPECT_EQ(std::vector(once.notes().begin(), once.notes().end()),
+              std::vector(each.notes().begin(), each.notes().end()));
+  }
+}
+
+TEST(SharedMeshes, BothRolesAreCountedAsWhereNothingIsShared) {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.5);
+  scanner.min_range_m = 0.1;
+  const Network network{{{2.03, 1.11, 1.62}}, {{-1.94, -2.07, 1.71}}};
+  for (const auto& surveyed : kSurveyed)
+    for (const Engine engine : {Engine::embree, Engine::compute_bvh, Engine::ray_query}) {
+      SCOPED_TRACE(surveyed.back() + ", " + std::string(to_string(engine)));
+      std::vector<NetworkCounts> counts;
+      for (const SharedMeshes shared : {SharedMeshes::always, SharedMeshes::never}) {
+        const Scene scene = load(test::boxes_on_ground(), {.surveyed = surveyed, .shared_meshes = shared});
+        Simulator simulator(scene, scanner, {.engine = engine, .user_size_m = 0.1});
+        counts.push_back(simulator.evaluate(network));
+      }
+      EXPECT_GT(counts[0].points_on_surveyed[0], 1000u);
+      EXPECT_EQ(counts[0].points_on_surveyed, counts[1].points_on_surveyed);
+      EXPECT_EQ(counts[0].seen, counts[1].seen);
+      EXPECT_EQ(counts[0].saturated, counts[1].saturated);
+      EXPECT_EQ(counts[0].partial_points, counts[1].partial_points);
+    }
+}
+
+TEST(SharedMeshes, WhatDoesNotFitIsNotStoredAtEachPlace) {
+  GlbBuilder builder;
+  builder.json["asset"]["extras"]["vantage"] = json::object();
+  json row{{"name", "row"}, {"mesh", bumpy_plate(builder, 9)}};
+  std::vector<float> places;
+  for (int k = 0; k < 20000; ++k)
+    for (const float c : {static_cast<float>(2 * (k % 150)), 0.0F, static_cast<float>(2 * (k / 150))})
+      places.push_back(c);
+  row["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", builder.accessor(places, 5126, "VEC3")}};
+  builder.node(row);
+  const SceneOptions options{.shared_meshes = SharedMeshes::always, .max_memory_bytes = std::uint64_t{64} << 20};
+  const Scene scene = load(builder, options);
+  EXPECT_EQ(scene.triangle_count(), 20000u * 162);
+  try {
+    flattened(std::make_shared<const SceneData>(scene.data()));
+    FAIL() << "no limit";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::out_of_memory);
+    const std::string text = error.what();
+    for (const char* part : {"3240000 triangles on 2000000 vertices", "the limit is 64 MiB", "Make the scene smaller"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
 }
 
 TEST(SharedMeshes, AreNamedInFull) {
