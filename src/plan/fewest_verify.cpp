@@ -2,6 +2,7 @@
 #include "plan/fewest_verify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,8 @@ namespace {
 constexpr double kBeyond = 1.25;
 // Standard errors of a sampled overlap by which each repair takes links for weaker than they seem, and at most.
 constexpr double kRepairErrors = 1, kMostErrors = 2;
+// Further candidates around each end of a link that is too weak.
+constexpr std::size_t kBetween = 24;
 
 // What an entry is short of the least values that are required of it.
 Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<const Requirement> requirements) {
@@ -164,7 +167,25 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
 }
 
-bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
+// Where no known candidate links a part of a verified network to the rest, looks at further ones around both ends of
+// its best link, as far as these are apart, and chooses again.
+static void look_between(FewestChoice& choice, const PlacementOracle& oracle, const PlanEntry& entry,
+                         const std::stop_token& stop) {
+  const std::optional<StationLinks> links = entry.links();
+  if (!links) return;
+  std::vector<PlacedStation> between;
+  for (const StationLinks::Gap& gap : links->gaps) {
+    const std::array ends{entry.stations[gap.inside], entry.stations[gap.outside]};
+    const Vec3 way = ends[1].ground - ends[0].ground;
+    const auto found = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
+    between.insert(between.end(), found.begin(), found.end());
+  }
+  choice.table.add(between, {.report = {}, .stop = stop});
+  raise_margins(choice, {}, stop);
+}
+
+bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
+            const std::stop_token& stop) {
   const PlanEntry *best = verified.best(), &last = verified.entries().back();
   if (!best) return false;
   const Margins missing = shortfall(*best, choice.asked, verified.problem().requirements);
@@ -177,11 +198,13 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::s
     choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
     choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
   }
-  if (known > 0 && choice.network.violation >= known) return false;  // every ray shows what was known
+  const bool was_known = known > 0 && choice.network.violation >= known;
+  if (was_known && missing.link == 0) return false;
   const std::vector<std::size_t> before = choice.network.chosen;
-  raise_margins(choice, missing, stop);
-  if (choice.network.violation > 0 && choice.network.chosen == before) return false;
-  return true;
+  if (!was_known) raise_margins(choice, missing, stop);
+  if (choice.network.violation > 0 && missing.link > 0) look_between(choice, oracle, last, stop);
+  if (choice.network.violation == 0) return true;
+  return choice.network.chosen != before && (known == 0 || choice.network.violation < known);
 }
 
 bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,

@@ -68,8 +68,10 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
 
 // The same by what the best verified network is short of. If links are too weak, the table takes in the overlaps that
 // every ray showed of the chosen stations, and others for the least that their sample admits: links that hold stay, and
-// only the others are mended. False where that cannot help.
-bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
+// only the others are mended, by candidates on the way between stations where no known one does. False where that
+// cannot help.
+bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
+            const std::stop_token& stop);
 
 // Uses the sample's error, known once the chosen network is verified. If it is below the margin, a station fewer may
 // do, or as many may be linked better. Chooses and verifies such a network, and keeps it, with the new `overstated`, if

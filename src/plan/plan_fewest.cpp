@@ -23,9 +23,9 @@ namespace {
 // Radius of the first round of refinement, in distances between candidates; halved each round.
 constexpr double kAroundRadius = 0.8;
 // Largest number of repairs of a choice, and of new choices by the known error of the sample.
-constexpr std::size_t kRepairs = 3;
+constexpr std::size_t kRepairs = 6, kNewChoices = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
-constexpr std::size_t kRepairStations = 2000, kFewerStations = 500;
+constexpr std::size_t kRepairStations = 6000, kFewerStations = 500;
 
 // Largest networks of a trade-off that are measured together.
 constexpr std::size_t kTogether = 128;
@@ -111,7 +111,7 @@ VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
 // every ray does: chooses anew, with margins, until they show enough.
 void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!choice.asked.captured || choice.asked.most_coverage) return;
-  for (std::size_t k = 0; k < kRepairs && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
+  for (std::size_t k = 0; k < kNewChoices && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
     const Network network = to_network(choice.stations_of(choice.network));
     const auto shares =
         captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
@@ -163,7 +163,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
 
 // Verifies the choice and repairs it if it is not feasible by every ray; otherwise tries fewer stations. Returns the
 // overstatement of its coverage by the sample of a search.
-double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, const PlanWatch& watch,
+double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanContext& context, const PlanWatch& watch,
                          const FewestReport& report) {
   const auto least_violation = [&] {
     const PlanEntry* best = verified.best();
@@ -174,11 +174,11 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, const
   const auto affordable = [&](std::size_t stations) { return traced + choice.network.chosen.size() <= stations; };
   for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
        ++k) {
-    if (!repair(choice, verified, watch.stop)) break;
+    if (!repair(choice, verified, context.oracle(), watch.stop)) break;
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
   }
-  for (std::size_t k = 0; k < kRepairs && least_violation() == 0 && affordable(kFewerStations) && !report.stopped();
+  for (std::size_t k = 0; k < kNewChoices && least_violation() == 0 && affordable(kFewerStations) && !report.stopped();
        ++k, traced += choice.network.chosen.size())
     if (!choose_by_known_error(choice, verified, overstated, watch.stop)) break;
   return overstated;
@@ -267,7 +267,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result = context.result(found);
     result.front = any_position(context, *candidates, verified);
   } else {
-    const double overstated = verify_and_repair(choice, verified, watch, report);
+    const double overstated = verify_and_repair(choice, verified, context, watch, report);
     found = search_from(choice, context, overstated, candidates->stations().size(), config, watch, report);
     verified.add(found, choice.placed());
     result = context.result(found);

@@ -7,6 +7,7 @@ namespace vantage {
 namespace {
 
 bool write(const std::filesystem::path& file, Report report, Site& site, const Progress& progress) {
+  if (progress.stop.stop_requested()) return false;
   report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
   if (file.extension() == ".pdf") return write_report_pdf(file, report, site, progress.stop);
   if (file.extension() != ".html")

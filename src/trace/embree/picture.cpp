@@ -129,6 +129,9 @@ std::unique_ptr<const Picture> Picture::where_it_pays(const StationRays& rays, c
   const SceneData& scene = rays.scene();
   // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
   if (rays.whole_scans() == WholeScans::traced || scene.shares()) return nullptr;
+  // A picture is a grid of azimuths and zeniths. Rays that aim anywhere have no steps.
+  const RayPattern& pattern = rays.pattern();
+  if (!(pattern.zenith_step > 0 && pattern.azimuth_step > 0)) return nullptr;
   std::uint64_t within = 0;
   for (const SelectedTile& each : selected(ends, rays.pattern())) within += each.tile.rows * each.tile.columns;
   if (rays.whole_scans() == WholeScans::faster && !pays(scene.opaque_count(), within)) return nullptr;

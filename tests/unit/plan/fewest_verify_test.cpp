@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "unit/plan/floor_survey.hpp"
 
 namespace vantage {
@@ -45,7 +48,7 @@ TEST_F(FewestVerify, FallsBackToTheMarginWhereItIsAborted) {
   VerifiedNetworks verified = networks();
   EXPECT_EQ(verify(choice, verified), 0.05);
   EXPECT_EQ(verified.best(), nullptr);
-  EXPECT_FALSE(repair(choice, verified, {}));
+  EXPECT_FALSE(repair(choice, verified, oracle, {}));
 }
 
 TEST_F(FewestVerify, RepairsWhatEveryRayShowsToBeShort) {
@@ -54,17 +57,17 @@ TEST_F(FewestVerify, RepairsWhatEveryRayShowsToBeShort) {
   verify(choice, verified);
   ASSERT_GT(verified.best()->violation, 0);
   const double short_of = 0.7 - (choice.network.coverage - 0.04);
-  ASSERT_TRUE(repair(choice, verified, {}));
+  ASSERT_TRUE(repair(choice, verified, oracle, {}));
   EXPECT_NEAR(choice.margins.coverage, 1.25 * short_of, 1e-9);
   EXPECT_EQ(choice.network.violation, 0);
   EXPECT_GE(choice.network.coverage, 0.7 + 1.25 * short_of);
   // The sample goes on to flatter, so that it may take more than one step.
   for (int k = 0; k < 10 && verified.best()->violation > 0; ++k) {
     verify(choice, verified);
-    repair(choice, verified, {});
+    repair(choice, verified, oracle, {});
   }
   EXPECT_EQ(verified.best()->violation, 0);
-  EXPECT_FALSE(repair(choice, verified, {})) << "nothing is short";
+  EXPECT_FALSE(repair(choice, verified, oracle, {})) << "nothing is short";
 }
 
 // Every ray shows the weakest links of the chosen stations to be too weak, and all others as the sample does.
@@ -82,7 +85,7 @@ TEST_F(FewestVerify, MendsLinksThatEveryRayShowsToBeTooWeak) {
   verify(choice, verified);
   ASSERT_GT(verified.best()->violation, 0);
   const StationGraph before = choice.table.graph();
-  ASSERT_TRUE(repair(choice, verified, {}));
+  ASSERT_TRUE(repair(choice, verified, oracle, {}));
   int taken_in = 0;
   for (const std::size_t i : chosen)
     for (const std::size_t j : chosen) {
@@ -96,7 +99,30 @@ TEST_F(FewestVerify, MendsLinksThatEveryRayShowsToBeTooWeak) {
   EXPECT_EQ(choice.network.chosen.size(), chosen.size()) << "no station more";
   verify(choice, verified);
   EXPECT_EQ(verified.best()->violation, 0);
-  EXPECT_FALSE(repair(choice, verified, {})) << "nothing is short";
+  EXPECT_FALSE(repair(choice, verified, oracle, {})) << "nothing is short";
+}
+
+// Every ray shows all links between the candidates to be too weak, so only positions between them link stations.
+TEST_F(FewestVerify, LooksBetweenStationsThatNoCandidateLinks) {
+  const auto candidates = test::floor_candidates(3);
+  const auto is_candidate = [&](const PlacedStation& one) {
+    return std::ranges::any_of(
+        candidates, [&](const PlacedStation& other) { return test::apart_m(one.position, other.position) < 1e-6; });
+  };
+  choice = test::floor_choice(problem);
+  look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
+  choose(choice, {}, {});
+  ASSERT_EQ(choice.network.violation, 0);
+  evaluator.exact_overlap = [&](const PlacedStation& a, const PlacedStation& b, float sampled) {
+    return is_candidate(a) && is_candidate(b) ? 0.05F : sampled;
+  };
+  VerifiedNetworks verified = networks();
+  verify(choice, verified);
+  ASSERT_GT(verified.best()->violation, 0);
+  for (int k = 0; k < 6 && verified.best()->violation > 0 && repair(choice, verified, oracle, {}); ++k)
+    verify(choice, verified);
+  EXPECT_EQ(verified.best()->violation, 0);
+  EXPECT_GT(std::ranges::count_if(verified.best()->stations, std::not_fn(is_candidate)), 0);
 }
 
 TEST_F(FewestVerify, LeavesAloneWhatEveryRayShowsAsItWasKnown) {
@@ -107,7 +133,7 @@ TEST_F(FewestVerify, LeavesAloneWhatEveryRayShowsAsItWasKnown) {
   VerifiedNetworks verified = networks();
   verify(choice, verified);
   const auto chosen = choice.network.chosen;
-  EXPECT_FALSE(repair(choice, verified, {}));
+  EXPECT_FALSE(repair(choice, verified, oracle, {}));
   EXPECT_EQ(choice.network.chosen, chosen);
 }
 
