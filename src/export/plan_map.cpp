@@ -127,7 +127,7 @@ class Stations {
     draw_links(content);
     draw_ellipses();
     for (std::size_t k = 0; k < shown_.size(); ++k)
-      if (!on_level(k)) draw_elsewhere(canvas_, spots_[k], name(k)), content.elsewhere = true;
+      if (elsewhere(k)) draw_elsewhere(canvas_, spots_[k], name(k)), content.elsewhere = true;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!moved(k)) continue;
       content.moved = true;
@@ -146,10 +146,15 @@ class Stations {
   }
 
  private:
-  static constexpr double kFar = 26;  // of a label that has no line to its station
+  static constexpr double kFar = 26;             // of a label that has no line to its station
+  static constexpr std::size_t kAllFloors = 60;  // stations of a site that are shown on every floor
   const PlacedStation& station(std::size_t k) const { return view_.stations[shown_[k]]; }
   const std::string& name(std::size_t k) const { return view_.names[shown_[k]]; }
   bool on_level(std::size_t k) const { return level_.holds(station(k).ground.z); }
+  // Shown, though it stands on another floor: of many stations only those that a link ties to this one.
+  bool elsewhere(std::size_t k) const {
+    return !on_level(k) && (shown_.size() <= kAllFloors || (!tied_.empty() && tied_[k]));
+  }
   bool moved(std::size_t k) const { return std::hypot(discs_[k].x - spots_[k].x, discs_[k].y - spots_[k].y) > 0.5; }
   Colour colour(std::size_t k) const { return station(k).existing ? kExisting : kStation; }
 
@@ -168,11 +173,24 @@ class Stations {
       }
     }
     const std::size_t all = links.size();
+    if (shown_.size() > kAllFloors) keep_strongest_to_other_floors(links);
     links = shown_links(std::move(links), shown_.size());
     content.hidden_links += all - links.size();
+    tied_.assign(shown_.size(), false);
+    for (const ShownLink& link : links) tied_[link.a] = tied_[link.b] = true;
     for (const ShownLink& link : links)
       draw_link(canvas_, spots_[link.a], spots_[link.b], link.overlap, link.bridge,
                 on_level(link.a) != on_level(link.b));
+  }
+
+  // A station at a stair has links to many others of each floor.
+  void keep_strongest_to_other_floors(std::vector<ShownLink>& links) const {
+    std::vector<double> strongest(shown_.size(), 0);
+    const auto between = [&](const ShownLink& link) { return on_level(link.a) != on_level(link.b); };
+    const auto here = [&](const ShownLink& link) { return on_level(link.a) ? link.a : link.b; };
+    for (const ShownLink& link : links)
+      if (between(link)) strongest[here(link)] = std::max(strongest[here(link)], link.overlap);
+    std::erase_if(links, [&](const ShownLink& link) { return between(link) && link.overlap < strongest[here(link)]; });
   }
 
   // Draws one sigma of each head in x and y, on a separate scale.
@@ -204,6 +222,7 @@ class Stations {
     const Rect inside{map_.x + 2, map_.y + 2, map_.width - 4, map_.height - 4};
     std::vector<Rect> taken;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
+      if (!on_level(k) && !elsewhere(k)) continue;
       const double r = on_level(k) ? kDisc : 0.7 * kDisc;
       taken.push_back({discs_[k].x - r, discs_[k].y - r, 2 * r, 2 * r});
       if (moved(k)) taken.push_back({spots_[k].x - 5, spots_[k].y - 5, 10, 10});
@@ -264,6 +283,7 @@ class Stations {
   const PlanLevel& level_;
   std::vector<std::size_t> shown_;
   std::vector<Point> spots_, discs_;
+  std::vector<bool> tied_;  // by a link that is drawn
   std::vector<std::pair<Point, const Target*>> targets_;
 };
 
