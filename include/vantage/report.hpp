@@ -31,8 +31,8 @@ struct ReportOptions {
 
 /// Writes the front of a plan, its answer first, as a page (.html), or the answer as sheets A4 or A3 (.pdf): its
 /// summary, each storey at a round ratio with stations, their distances to corners and the round, a table of all
-/// stations, links, missed surface. A page loads nothing from anywhere. A stop before the file is complete leaves it out
-/// and returns false. Borrows everything for the call. Throws Error: io; invalid_argument (an empty front, another
+/// stations, links, missed surface. A page loads nothing from anywhere. A stop before the file is complete leaves it
+/// out and returns false. Borrows everything for the call. Throws Error: io; invalid_argument (an empty front, another
 /// extension, a build that writes no reports), malformed_file (a logo that is no picture); and as the simulator does.
 bool write_report(const std::filesystem::path& file, const PlanResult& result, Site& site,
                   const ReportOptions& options = {}, const Progress& progress = {});

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/types.hpp"
@@ -141,8 +142,8 @@ struct NetworkCounts {
   std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
 };
 
-/// Which stations have a point in which voxel. A station sees a small part of a large site, so 64 stations take memory
-/// only for those blocks of voxels in which one of them has a point.
+/// Which stations have a point in which voxel. Hundreds of stations see a small part of a site each, so 64 of them take
+/// memory only for those blocks of voxels in which one has a point; up to 64 in all have a word for each voxel.
 class StationMasks {
  public:
   static constexpr std::size_t block_voxels = 4096;
@@ -150,19 +151,27 @@ class StationMasks {
   StationMasks() = default;
   /// No station has a point yet.
   StationMasks(std::size_t voxels, std::size_t stations);
+  /// Of up to 64 stations, a word for each voxel.
+  explicit StationMasks(std::vector<std::uint64_t> words)
+      : voxels_(words.size()), words_(1), only_word_(std::move(words)) {}
 
   bool empty() const { return words_ == 0; }  ///< No masks were asked for.
   std::size_t voxels() const { return voxels_; }
   std::size_t words() const { return words_; }  ///< Of 64 stations each.
   /// Bit b means that station 64 w + b has a point in the voxel. REQUIRES: w < words(), voxel < voxels().
   std::uint64_t word(std::size_t w, std::size_t voxel) const {
-    const std::vector<std::uint64_t>& own = block(w, voxel / block_voxels);
+    if (words_ == 1) return only_word_[voxel];
+    const std::span<const std::uint64_t> own = block(w, voxel / block_voxels);
     return own.empty() ? 0 : own[voxel % block_voxels];
   }
   /// Word w of all voxels. REQUIRES: masks.size() == voxels(). Parallel.
   void set_words(std::size_t w, std::span<const std::uint64_t> masks);
-  /// Word w of the voxels from block_voxels · k on; empty if it is 0 for all of them.
-  const std::vector<std::uint64_t>& block(std::size_t w, std::size_t k) const { return blocks_[w * blocks() + k]; }
+  /// Word w of the voxels from block_voxels · k on; empty if it takes no memory, being 0 for all of them.
+  std::span<const std::uint64_t> block(std::size_t w, std::size_t k) const {
+    if (words_ != 1) return blocks_[w * blocks() + k];
+    const std::size_t first = k * block_voxels, left = voxels_ - first;
+    return std::span(only_word_).subspan(first, left < block_voxels ? left : block_voxels);
+  }
   /// Calls visit(station) for each station with a point in the voxel, ascending.
   template <class Visit>
   void for_each_station(std::size_t voxel, const Visit& visit) const {
@@ -179,7 +188,8 @@ class StationMasks {
   std::size_t blocks() const { return (voxels_ + block_voxels - 1) / block_voxels; }
 
   std::size_t voxels_ = 0, words_ = 0;
-  std::vector<std::vector<std::uint64_t>> blocks_;
+  std::vector<std::uint64_t> only_word_;            // of a single word
+  std::vector<std::vector<std::uint64_t>> blocks_;  // of more
 };
 
 /// Voxel field: the map of coverage. Element k belongs to the k-th surveyed voxel in Morton order.

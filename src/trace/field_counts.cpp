@@ -121,9 +121,8 @@ struct KeptMasks {
   bool empty() const { return masks.empty(); }
   // REQUIRES: within one block of the masks.
   std::span<const std::uint64_t> words(std::size_t w, std::size_t first, std::size_t end) const {
-    const std::vector<std::uint64_t>& own = masks.block(w, first / StationMasks::block_voxels);
-    return own.empty() ? std::span<const std::uint64_t>()
-                       : std::span(own).subspan(first % StationMasks::block_voxels, end - first);
+    const std::span<const std::uint64_t> own = masks.block(w, first / StationMasks::block_voxels);
+    return own.empty() ? own : own.subspan(first % StationMasks::block_voxels, end - first);
   }
 };
 

@@ -53,24 +53,24 @@ NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stat
   if (station_count <= bits && !field) return tracer.count(stations, station_count, options, progress);
   VoxelField own;
   VoxelField& all = field ? *field : own;
-  all.stations = options.masks ? StationMasks(grid.size(), station_count) : StationMasks();
+  all.stations = {};
   PassField part;
   const auto count = [&](const Pass& pass, const Progress& of_pass) {
-    NetworkCounts counts =
-        tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part}, of_pass);
-    if (!counts.cancelled && options.masks) all.stations.set_words(pass.word, part.stations);
-    return counts;
+    return tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part},
+                        of_pass);
   };
   const std::vector<Pass> passes = passes_of(stations, station_count);
   if (station_count <= bits) {
     NetworkCounts counts = count(passes.front(), progress);
     all.count = std::move(part.count);
+    if (options.masks) all.stations = StationMasks(std::move(part.stations));
     return counts;
   }
 
   all.count.assign(grid.size(), 0);
+  if (options.masks) all.stations = StationMasks(grid.size(), station_count);
   NetworkCounts told;
-  for (std::size_t k = 0; k < passes.size() && !told.cancelled; ++k) {
+  for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pass& pass = passes[k];
     const NetworkCounts counts = count(pass, part_of(progress, k, passes.size()));
     told.rays += counts.rays;
@@ -79,7 +79,9 @@ NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stat
     place(told.points_on_surveyed, counts.points_on_surveyed, pass, station_count);
     place(told.dropped, counts.dropped, pass, station_count);
     told.cancelled = counts.cancelled;
-    if (!counts.cancelled) add(all.count, part.count);
+    if (counts.cancelled) break;
+    add(all.count, part.count);
+    if (options.masks) all.stations.set_words(pass.word, part.stations);
   }
   part = {};
   NetworkCounts sums = reduce_field(all, station_count, goal_density, grid.demands());

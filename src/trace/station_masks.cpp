@@ -8,10 +8,17 @@
 namespace vantage {
 
 StationMasks::StationMasks(std::size_t voxels, std::size_t stations) : voxels_(voxels), words_(mask_words(stations)) {
-  blocks_.resize(words_ * blocks());
+  if (words_ == 1)
+    only_word_.assign(voxels, 0);
+  else
+    blocks_.resize(words_ * blocks());
 }
 
 void StationMasks::set_words(std::size_t w, std::span<const std::uint64_t> masks) {
+  if (words_ == 1) {
+    only_word_.assign(masks.begin(), masks.end());
+    return;
+  }
   tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t k) {
     const std::size_t first = k * block_voxels;
     const auto own = masks.subspan(first, std::min(block_voxels, masks.size() - first));
@@ -24,6 +31,7 @@ void StationMasks::set_words(std::size_t w, std::span<const std::uint64_t> masks
 }
 
 std::vector<std::uint64_t> StationMasks::all_words() const {
+  if (words_ == 1) return only_word_;
   std::vector<std::uint64_t> words(words_ * voxels_);
   for (std::size_t w = 0; w < words_; ++w)
     for (std::size_t k = 0; k < blocks(); ++k)
