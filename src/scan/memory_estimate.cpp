@@ -29,7 +29,7 @@ namespace {
 constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
                  kPlaced = 1.0 / 8, kVoxel = 6, kMaskWord = 8;
 constexpr double kVertex = 12;                      // the CPU engine's tree of glass has a copy of all
-constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
+constexpr double kSoftwareDriver = 86 * kMebibyte;  // lavapipe with its compiler
 
 struct SurfaceExtent {
   double cells_m2 = 0;  // an infinite plane with normal n meets |nx| + |ny| + |nz| cells per face of a cell
