@@ -151,7 +151,7 @@ class StationMasks {
   StationMasks() = default;
   /// No station has a point yet.
   StationMasks(std::size_t voxels, std::size_t stations);
-  /// Of up to 64 stations, a word for each voxel.
+  /// The masks of up to 64 stations: a word for each voxel.
   explicit StationMasks(std::vector<std::uint64_t> words)
       : voxels_(words.size()), words_(1), only_word_(std::move(words)) {}
 

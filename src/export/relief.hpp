@@ -54,7 +54,7 @@ void for_row_bands(const MapWindow& window, const Paint& paint) {
   });
 }
 
-// Where a triangle's sides cross the row through y, about.
+// About the least and the largest x at which a triangle's sides cross the row through y.
 inline std::pair<double, double> row_within(const std::array<MapPoint, 3>& c, double y) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -61,6 +61,23 @@ std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, co
   return ordered;
 }
 
+// Looks at further candidates around both ends of the best link of each part of a verified network, as far as these are
+// apart, and chooses again. That serves where no known candidate links a part to the rest.
+void look_between(FewestChoice& choice, const PlacementOracle& oracle, const PlanEntry& entry,
+                  const std::stop_token& stop) {
+  const std::optional<StationLinks> links = entry.links();
+  if (!links) return;
+  std::vector<PlacedStation> between;
+  for (const StationLinks::Gap& gap : links->gaps) {
+    const std::array ends{entry.stations[gap.inside], entry.stations[gap.outside]};
+    const Vec3 way = ends[1].ground - ends[0].ground;
+    const auto found = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
+    between.insert(between.end(), found.begin(), found.end());
+  }
+  choice.table.add(between, {.report = {}, .stop = stop});
+  raise_margins(choice, {}, stop);
+}
+
 }  // namespace
 
 SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
@@ -165,23 +182,6 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   else
     choose_from(choice, std::move(same), stop);
   choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
-}
-
-// Where no known candidate links a part of a verified network to the rest, looks at further ones around both ends of
-// its best link, as far as these are apart, and chooses again.
-static void look_between(FewestChoice& choice, const PlacementOracle& oracle, const PlanEntry& entry,
-                         const std::stop_token& stop) {
-  const std::optional<StationLinks> links = entry.links();
-  if (!links) return;
-  std::vector<PlacedStation> between;
-  for (const StationLinks::Gap& gap : links->gaps) {
-    const std::array ends{entry.stations[gap.inside], entry.stations[gap.outside]};
-    const Vec3 way = ends[1].ground - ends[0].ground;
-    const auto found = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
-    between.insert(between.end(), found.begin(), found.end());
-  }
-  choice.table.add(between, {.report = {}, .stop = stop});
-  raise_margins(choice, {}, stop);
 }
 
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,

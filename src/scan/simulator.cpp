@@ -256,17 +256,15 @@ struct Simulator::Impl {
                        });
   }
 
-  static void check_model(const RegistrationModel& model) {
+  // Empty if stopped: planes of millions of voxels take seconds.
+  Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
+                     const std::stop_token& stop) const {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-  }
-  // Empty if stopped: planes of millions of voxels take seconds.
-  Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
-                     const std::stop_token& stop) const {
     return make_patches(data(), *grid, voxel_indices, make_pattern(registered.front()), model, stop);
   }
   // Their range noise counts, whether it is simulated or not.
@@ -286,7 +284,6 @@ struct Simulator::Impl {
   std::optional<RegistrationJob> registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
                                                  const RegistrationModel& model, bool groups,
                                                  const std::stop_token& stop) {
-    check_model(model);
     const SamplePatches& own = patches.get(
         [&](const SamplePatches& one) {
           return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
@@ -297,11 +294,10 @@ struct Simulator::Impl {
     if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
     return RegistrationJob{own.patches, scanners_of_patches(), groups};
   }
-  // Of every voxel. None if stopped.
+  // The sums of every voxel. None if stopped.
   std::optional<RegistrationSums> register_field(std::span<const TraceStation> stations, const NetworkCounts& counts,
                                                  const StationMasks& masks, const RegistrationModel& model,
                                                  const std::stop_token& stop) {
-    check_model(model);
     const bool kept = grid->size() <= kKeptPlanes;
     const auto planes = [&](std::size_t first, std::size_t many) -> std::shared_ptr<const Patches> {
       std::vector<std::uint32_t> voxel_indices(many);

@@ -10,9 +10,9 @@
 
 namespace vantage {
 
-// By how much a linear map, given by its columns, may multiply the roundings of a ray that is moved through it and
-// back: the product of the Frobenius norms of its matrix and the inverse. 3 if it only turns; not finite if it flattens
-// space.
+// The factor by which a linear map, given by its columns, may multiply the roundings of a ray that is moved through it
+// and back: the product of the Frobenius norms of its matrix and the inverse. 3 if it only turns; not finite if it
+// flattens space.
 inline double condition(const Vec3& x, const Vec3& y, const Vec3& z) {
   const auto norm = [](const Vec3& a, const Vec3& b, const Vec3& c) {
     return std::sqrt(dot(a, a) + dot(b, b) + dot(c, c));

@@ -65,7 +65,7 @@ class RoleCells {
   std::vector<std::uint8_t> roles_;
 };
 
-// Of a mesh: none for glass, which neither counts nor hides.
+// A mesh has one of these roles, but glass has none: it neither counts nor hides.
 constexpr std::uint8_t kSurveyed = 1, kBlocks = 2;
 std::uint8_t role_of(const MeshInfo& mesh) {
   return mesh.glass ? 0 : mesh.role == Role::surveyed ? kSurveyed : kBlocks;

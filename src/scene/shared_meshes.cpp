@@ -182,7 +182,7 @@ void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
     if (whole[m]) raw.shared.push_back(SharedMesh(raw.shared[m]));
     keep(raw.shared[rest[m]], left);
   }
-  // What is taken is a mesh of its own until it is stored.
+  // The triangles that are taken are a mesh of their own until they are stored.
   const std::size_t left = raw.shared.size();
   raw.shared.insert(raw.shared.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   std::vector<std::uint8_t> stored;

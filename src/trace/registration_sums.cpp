@@ -157,13 +157,13 @@ class PairNumbers {
 };
 
 std::vector<std::uint64_t> shared_of(const SeenBy& seen_by, std::size_t stations) {
-  std::vector<std::uint64_t> shared(stations * (stations - 1) / 2, 0);
+  const PairNumbers pairs(stations);
+  std::vector<std::uint64_t> shared(pairs.all(), 0);
   std::array<std::uint16_t, max_stations> seen;
   for (std::size_t k = 0; k < seen_by.voxels; ++k) {
     const std::size_t many = seen_by.stations_of(k, seen);
     for (std::size_t a = 0; a + 1 < many; ++a)
-      for (std::size_t b = a + 1; b < many; ++b)
-        ++shared[seen[a] * (2 * stations - seen[a] - 1) / 2 + seen[b] - seen[a] - 1u];
+      for (std::size_t b = a + 1; b < many; ++b) ++shared[pairs.number(seen[a], seen[b])];
   }
   return shared;
 }

@@ -48,7 +48,7 @@ constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 // Likewise of a mesh that is stored once: corners, corners in order, whether it is kept.
 constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
-// Of other meshes beside them, with both roles: NearPlaced.
+// A scene with both roles keeps its other meshes beside them once more: NearPlaced.
 constexpr double kVertexBeside = 12, kTriangleBeside = 12 + 4;
 // Of the scene, above which SharedMeshes::automatic shares; of a mesh, below which it does not: a tree of trees pays
 // for larger ones alone.
