@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/connected_growth.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
 
@@ -159,7 +158,7 @@ Path Growth::best_path() const {
   std::vector<End> ends;
   for (std::size_t hop = 1; hop <= kLongestPath; ++hop) {
     // Ways back lead over earlier hops, which stay as they are.
-    tbb::parallel_for(std::size_t{0}, free_.size(), [&](std::size_t i) {
+    parallel::for_all(std::size_t{0}, free_.size(), [&](std::size_t i) {
       const std::size_t k = free_[i];
       if (hops[k] < none_ || !joinable_.may_stand(k)) return;
       for (const StationGraph::Overlap& other : problem_.graph->overlaps(k)) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/partial_cover.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -70,7 +70,7 @@ ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : matrix_(matrix), offset
 
 CoverGains::CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen)
     : matrix_(matrix), columns_(columns), cover_(matrix, chosen), gains_(matrix.candidates()) {
-  tbb::parallel_for(std::size_t{0}, gains_.size(), [&](std::size_t k) { gains_[k] = cover_.gain(k); });
+  parallel::for_all(std::size_t{0}, gains_.size(), [&](std::size_t k) { gains_[k] = cover_.gain(k); });
 }
 
 void CoverGains::change(std::optional<std::size_t> leaving, std::size_t joining) {
@@ -89,7 +89,7 @@ void CoverGains::change(std::optional<std::size_t> leaving, std::size_t joining)
     if (has == had || static_cast<double>(std::min(has, had)) >= matrix_.goal(element)) continue;
     for (const ColumnIndex::Column& one : columns_.of(element)) changed[one.candidate] = 1;
   }
-  tbb::parallel_for(std::size_t{0}, gains_.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, gains_.size(), [&](std::size_t k) {
     if (changed[k]) gains_[k] = cover_.gain(k);
   });
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -7,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "cover/partial_cover.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/error.hpp"
@@ -19,7 +19,7 @@ class CommonElements {
  public:
   CommonElements(const CoverageMatrix& seen, std::size_t known)
       : seen_(seen), columns_(seen), words_((seen.elements() + 63) / 64), bits_(known * words_, 0) {
-    tbb::parallel_for(std::size_t{0}, known, [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, known, [&](std::size_t k) {
       for (const CoverageMatrix::Entry& one : seen_.column(k))
         bits_[k * words_ + one.element / 64] |= std::uint64_t{1} << (one.element % 64);
     });
@@ -65,7 +65,7 @@ void for_near_pairs(std::span<const Vec3> positions, std::size_t first, std::siz
   std::iota(by_x.begin(), by_x.end(), std::size_t{0});
   std::ranges::stable_sort(by_x, {}, [&](std::size_t k) { return positions[k].x; });
   for (std::size_t at = 0; at < size; ++at) place[by_x[at]] = at;
-  tbb::parallel_for(first, size, [&](std::size_t i) {
+  parallel::for_all(first, size, [&](std::size_t i) {
     const double x = positions[i].x, reach = reach_of(i);
     for (std::size_t at = place[i]; at-- > 0 && x - positions[by_x[at]].x < reach;)
       if (by_x[at] < i) near(i, by_x[at]);
@@ -94,7 +94,7 @@ void StationGraph::extend(const CoverageMatrix& seen, std::size_t size) {
   excluded_.resize(size);
   if (before >= known) return;
   const CommonElements common(seen, known);
-  tbb::parallel_for(before, known, [&](std::size_t i) {
+  parallel::for_all(before, known, [&](std::size_t i) {
     common.of(i, [&](std::size_t j, std::uint32_t both) {
       const auto fewer = static_cast<float>(std::min(seen.column(i).size(), seen.column(j).size()));
       overlaps_[i].push_back({static_cast<std::uint32_t>(j), static_cast<float>(both) / fewer});

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cover/swaps.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
 
@@ -31,7 +30,7 @@ class SwapSearch {
         known_(in_.size()) {
     for (const std::size_t k : chosen_) in_[k] = 1;
     if (problem.link > 0) links_.emplace(problem, chosen_, problem.link);
-    tbb::parallel_for(std::size_t{0}, bound_.size(), [&](std::size_t k) { bound_[k] = cover_.gain(k); });
+    parallel::for_all(std::size_t{0}, bound_.size(), [&](std::size_t k) { bound_[k] = cover_.gain(k); });
   }
 
   // Runs until no candidate can be replaced, or stopped.
@@ -60,7 +59,7 @@ class SwapSearch {
     // F(S − out + k) − F(S − out) is at most F(S + k) − F(S − out): the gain of k and the loss of `out`.
     for (; looked_at < order.size() && bound_[order[looked_at]] + lost > most; ++looked_at) {
       if (looked_at % kAtOnce == 0)
-        tbb::parallel_for(looked_at, std::min(looked_at + kAtOnce, order.size()), [&](std::size_t i) {
+        parallel::for_all(looked_at, std::min(looked_at + kAtOnce, order.size()), [&](std::size_t i) {
           if (bound_[order[i]] + lost > most) known_[order[i]] = cover_.gain(order[i]);
         });
       const std::size_t k = order[looked_at];

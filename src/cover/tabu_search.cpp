@@ -2,11 +2,12 @@
 #include "cover/tabu_search.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -191,7 +192,7 @@ TabuSearch::Swap TabuSearch::best_swap(State& state) const {
   for (Ranking& ranking : round.rankings) ranking.sort();
   std::vector<Swap> swaps(state.chosen.size());
   tbb::enumerable_thread_specific<Scratch> scratch;
-  tbb::parallel_for(first, state.chosen.size(),
+  parallel::for_all(first, state.chosen.size(),
                     [&](std::size_t at) { swaps[at] = best_swap_at(state, round, at, scratch.local()); });
   Swap best;
   for (std::size_t at = first; at < swaps.size(); ++at)

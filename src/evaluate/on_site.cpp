@@ -3,13 +3,12 @@
 // and Or-opt (Or: Traveling Salesman-Type Combinatorial Problems, 1976).
 #include "vantage/on_site.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/setting_list.hpp"
 #include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
@@ -165,7 +164,7 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
   if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
   std::vector<std::vector<Vec3>> paths(n);
-  tbb::parallel_for(std::size_t{0}, n,
+  parallel::for_all(std::size_t{0}, n,
                     [&](std::size_t k) { paths[k] = impl_->ways.path(stops[round[k]], stops[round[(k + 1) % n]]); });
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t a = round[k], b = round[(k + 1) % n];

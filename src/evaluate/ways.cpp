@@ -2,14 +2,14 @@
 // Shortest paths by Dijkstra: A Note on Two Problems in Connexion with Graphs, 1959.
 #include "evaluate/ways.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <queue>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -146,7 +146,7 @@ Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&
   };
   constexpr std::array<std::pair<int, int>, 4> half{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   std::vector<std::array<std::optional<std::uint32_t>, 4>> ahead(places_.size());
-  tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, places_.size(), [&](std::size_t k) {
     const auto from = static_cast<std::uint32_t>(k);
     for (std::size_t d = 0; d < half.size(); ++d) {
       const auto to = step_to(from, half[d].first, half[d].second);
@@ -187,7 +187,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> Ways::gaps(
     const std::vector<std::pair<std::int64_t, std::int64_t>>& cell_of) const {
   const auto reach = static_cast<std::int64_t>(std::floor(kGap_m / spacing_));
   std::vector<std::vector<std::uint32_t>> across(places_.size());
-  tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, places_.size(), [&](std::size_t k) {
     constexpr std::size_t kAround = 8;  // neighbours of a place in the middle of the ground
     if (reach < 2 || links_[k].size() >= kAround) return;
     const auto from = static_cast<std::uint32_t>(k);
@@ -272,7 +272,7 @@ std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
 
 std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<const Vec3> points) const {
   std::vector<std::optional<std::uint32_t>> places(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) { places[k] = nearest(points[k]); });
+  parallel::for_all(std::size_t{0}, points.size(), [&](std::size_t k) { places[k] = nearest(points[k]); });
   // Each place of the graph is a source once, before the pairs ask for it.
   std::vector<std::uint32_t> sources;
   for (const auto& place : places)
@@ -281,12 +281,12 @@ std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<cons
   sources.erase(std::ranges::unique(sources).begin(), sources.end());
   // Kept here: a thousand stations may be more than the cache holds.
   std::vector<std::shared_ptr<const std::vector<float>>> far(sources.size());
-  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t k) { far[k] = distances_from(sources[k]); });
+  parallel::for_all(std::size_t{0}, sources.size(), [&](std::size_t k) { far[k] = distances_from(sources[k]); });
   const auto from_place = [&](std::uint32_t place) {
     return far[static_cast<std::size_t>(std::ranges::lower_bound(sources, place) - sources.begin())];
   };
   std::vector<std::vector<std::optional<double>>> metres(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, points.size(), [&](std::size_t i) {
     metres[i].resize(points.size());
     for (std::size_t j = i + 1; j < points.size(); ++j)
       metres[i][j] = between(points[i], points[j], places[i], places[j], from_place);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pages of a plan view: the maps, what their marks mean, and a scale bar.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/left_out_hatch.hpp"
@@ -230,7 +230,7 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view, const std::stop_t
   const std::vector<PlanLevel> levels = cut_levels(view.scene, view.area.mesh(), view.stations);
   // One of all levels; of several each on its own, too.
   std::vector<PlanPage> pages(levels.size() > 1 ? levels.size() + 1 : 1);
-  tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, pages.size(), [&](std::size_t k) {
     pages[k].suffix = k == 0 ? "" : "-level-" + std::to_string(k);
     if (k == 0)
       pages[k].canvas = draw_page(view, window, levels, 0, levels.size());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows the predicted registration error on the surface.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/voxel_errors.hpp"
 #include "export/voxel_map.hpp"
@@ -39,7 +39,7 @@ double largest(std::span<const float> errors) {
 std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
                                    std::span<const std::uint32_t> ranks) {
   std::vector<float> found(ranks.size());
-  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, ranks.size(), [&](std::size_t k) {
     const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
     double squares = 0;
     int seen = 0;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/relief.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -90,7 +90,7 @@ std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float fl
     }
   }
   std::vector<float> mean(w * h);
-  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+  parallel::for_all(std::size_t{0}, h, [&](std::size_t y) {
     const std::size_t y0 = y > r ? y - r : 0, y1 = std::min(h, y + r + 1);
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t x0 = x > r ? x - r : 0, x1 = std::min(w, x + r + 1);
@@ -156,7 +156,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
                far_scale = extent * 0.045 * heights.window.pixel_m;
   constexpr double kLight[3] = {-0.5, 0.5, 0.7071067811865476};  // from the north-west, 45° high
 
-  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+  parallel::for_all(std::size_t{0}, h, [&](std::size_t y) {
     std::uint32_t last = kNothing;  // one triangle has many pixels side by side
     double facing = 0;
     Colour base;
@@ -185,7 +185,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns) {
   const std::size_t w = columns / 2, h = pixels.size() / columns / 2;
   std::vector<std::uint32_t> half(w * h);
-  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+  parallel::for_all(std::size_t{0}, h, [&](std::size_t y) {
     for (std::size_t x = 0; x < w; ++x) {
       std::uint32_t mean = 0;
       for (int shift = 0; shift < 32; shift += 8) {

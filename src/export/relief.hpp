@@ -2,7 +2,6 @@
 // Shaded relief of a site in plan view.
 #pragma once
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "export/colour.hpp"
 #include "scene/scene_data.hpp"
 
@@ -49,7 +49,7 @@ struct RowBand {
 template <class Paint>
 void for_row_bands(const MapWindow& window, const Paint& paint) {
   const auto bands = std::min(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), window.rows);
-  tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, bands, [&](std::size_t k) {
     paint(RowBand{window.rows * k / bands, window.rows * (k + 1) / bands});
   });
 }

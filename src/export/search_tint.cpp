@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/search_tint.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -34,7 +33,7 @@ std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z,
 template <class Wanted>
 void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r,
                   Wanted&& wanted, std::vector<std::uint8_t>& near) {
-  tbb::parallel_for(std::size_t{0}, lines, [&](std::size_t line) {
+  parallel::for_all(std::size_t{0}, lines, [&](std::size_t line) {
     for (const bool forth : {true, false}) {
       std::size_t since = 0;
       for (std::size_t i = 0; i < length; ++i) {
@@ -64,7 +63,7 @@ void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& he
                       const SearchMesh& mesh) {
   const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh),
                                   rim = rim_of(cover, heights.window.columns, kRim);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       if (rim[k])
         pixels[k] = laid_over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);

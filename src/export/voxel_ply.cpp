@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/voxel_ply.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "core/atomic_file.hpp"
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -20,7 +19,7 @@ void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulat
   out.write(PlyHeader(properties).text(voxels));
   std::vector<std::string> chunks(kChunksAtOnce);
   for (std::uint64_t first = 0; first < voxels; first += kChunk * kChunksAtOnce) {
-    tbb::parallel_for(std::uint64_t{0}, kChunksAtOnce, [&](std::uint64_t c) {
+    parallel::for_all(std::uint64_t{0}, kChunksAtOnce, [&](std::uint64_t c) {
       std::string &bytes = chunks[c], own;
       bytes.clear();
       const std::uint64_t begin = first + c * kChunk;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <system_error>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/pictures.hpp"
 #include "export/station_files.hpp"
@@ -80,7 +79,7 @@ std::vector<std::string> write_plan(const std::filesystem::path& folder, const P
   tbb::task_group files;
   files.run([&] {
     const std::vector<PlanPage> pages = plan_view_pictures(view, late);
-    tbb::parallel_for(std::size_t{0}, pages.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, pages.size(), [&](std::size_t k) {
       for (const std::string& name : {"plan" + pages[k].suffix + ".png", "plan" + pages[k].suffix + ".svg"})
         if (pages[k].canvas && (name == "plan.png" || !late.stop_requested()))
           pages[k].canvas->save(folder / name);
@@ -102,7 +101,7 @@ std::vector<std::string> write_plan(const std::filesystem::path& folder, const P
     save("hypervolume", *hypervolume_picture(result));
     if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
   });
-  files.wait();
+  parallel::wait(files);
   if (!entry.targets.empty()) write_targets_csv(folder / "targets.csv", entry.targets, names);
   write_station_files(folder, {entry.stations, names, entry.targets}, links, site);
   std::ranges::sort(left_out);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clustering of weighted graphs (equation 13): Zhang, Horvath, A General Framework for Weighted Gene Co-Expression
 // Network Analysis, 2005.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <span>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 #include "vantage/measure.hpp"
 
@@ -88,7 +88,7 @@ double clustering_coefficient(const OverlapMatrix& overlap) {
     for (std::size_t i = 0; i < n; ++i) sum += link_sums(w, n, i).share();
   } else {
     std::vector<LinkSums> sums(n);
-    tbb::parallel_for(std::size_t{0}, (n + kAtOnce - 1) / kAtOnce, [&](std::size_t block) {
+    parallel::for_all(std::size_t{0}, (n + kAtOnce - 1) / kAtOnce, [&](std::size_t block) {
       const std::size_t first = block * kAtOnce, stations = std::min(kAtOnce, n - first);
       link_sums_at_once(w, n, first, std::span(sums).subspan(first, stations));
     });

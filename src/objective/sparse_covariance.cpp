@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "objective/sparse_covariance.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/SparseCholesky>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -37,7 +37,7 @@ PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::
   const Eigen::VectorXd pivots = factor.vectorD();
   const auto& places = factor.permutationP().indices();
   found.blocks.resize(static_cast<std::size_t>(lower.rows() / block));
-  tbb::parallel_for(std::size_t{0}, found.blocks.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, found.blocks.size(), [&](std::size_t k) {
     const Eigen::VectorXi rows = places.segment(static_cast<Eigen::Index>(k) * block, block);
     found.blocks[k] = block == 6   ? inverse_block<6>(l, pivots, rows)
                       : block == 4 ? inverse_block<4>(l, pivots, rows)

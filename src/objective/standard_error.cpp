@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Standard errors of sampled objectives (Wolter: Introduction to Variance Estimation, 2007: chapter 8 for systematic
 // samples, chapter 4 for the jackknife), with the finite-population correction 1 − n/N.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "objective/whole_counts.hpp"
 #include "trace/registration_sums.hpp"
 #include "vantage/objective.hpp"
@@ -71,7 +71,7 @@ std::vector<Value> replicates(const NetworkCounts& counts, Sums sums,
   if (groups.size() < 2) return {};
   std::vector<Value> found(groups.size());
   const NetworkCounts all = without_groups(counts, sums);
-  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel::for_all(std::size_t{0}, groups.size(), [&](std::size_t g) {
     NetworkCounts rest = all;
     take_off(rest, *groups[g]);
     found[g] = of(rest);

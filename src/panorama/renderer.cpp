@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "panorama/false_colours.hpp"
 #include "panorama/shading.hpp"
 #include "vantage/error.hpp"
@@ -139,7 +139,7 @@ struct PanoramaRenderer::Impl {
   void draw_row(std::span<PanoramaImage> images, const RowWindow& window, std::uint32_t y) const {
     for (PanoramaImage& image : images) {
       if (image.view == PanoramaView::range) continue;
-      tbb::parallel_for(std::uint32_t{0}, options.width,
+      parallel::for_all(std::uint32_t{0}, options.width,
                         [&](std::uint32_t x) { set(image.image, x, y, pixel(image.view, window, x, y)); });
     }
   }
@@ -152,7 +152,7 @@ struct PanoramaRenderer::Impl {
     for (std::size_t k = 0; k < scale.size(); ++k)
       scale[k] = range_colour((log_of_code(static_cast<double>(k) * 16 + 8) - low) / (high - low));
     const std::uint32_t side = options.supersample;
-    tbb::parallel_for(std::uint32_t{0}, image.image.height, [&](std::uint32_t y) {
+    parallel::for_all(std::uint32_t{0}, image.image.height, [&](std::uint32_t y) {
       for (std::uint32_t x = 0; x < image.image.width; ++x) {
         LinearColour sum(0);
         for (std::uint32_t k = 0; k < side * side; ++k) {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/charts.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "placement/plan_hull.hpp"
 #include "placement/plane_quadtree.hpp"
 #include "placement/shelf_packing.hpp"
@@ -56,7 +54,7 @@ void weld(const std::vector<glm::dvec3>& points, const std::vector<char>& used, 
       const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / weld_m + shift)); };
       entries.push_back({{cell(points[p].x), cell(points[p].y), cell(points[p].z)}, p});
     }
-    tbb::parallel_sort(entries.begin(), entries.end());
+    parallel::sort(entries.begin(), entries.end());
     for (std::size_t i = 1; i < entries.size(); ++i)
       if (entries[i].cell == entries[i - 1].cell) sets.join(entries[i - 1].point, entries[i].point);
   }
@@ -86,7 +84,7 @@ class Graph {
     const std::size_t n = pairs.size();
     pairs.reserve(2 * n);
     for (std::size_t i = 0; i < n; ++i) pairs.emplace_back(pairs[i].second, pairs[i].first);
-    tbb::parallel_sort(pairs.begin(), pairs.end());
+    parallel::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [a, b] : pairs) {
       ++first_[a + 1];
@@ -116,7 +114,7 @@ Graph find_overlaps(const SurfacePieces& pieces, const std::vector<Triangle>& ke
     return std::array<Uv, 3>{plan[kept[t][0]], plan[kept[t][1]], plan[kept[t][2]]};
   };
   tbb::enumerable_thread_specific<std::vector<std::pair<std::uint32_t, std::uint32_t>>> collected;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, leaves.size()),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       auto& pairs = collected.local();
                       for (std::size_t l = range.begin(); l != range.end(); ++l)
@@ -200,7 +198,7 @@ std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m)
       sorted[i] = {welded[i], i};
       std::sort(sorted[i].first.begin(), sorted[i].first.end());
     }
-    tbb::parallel_sort(sorted.begin(), sorted.end());
+    parallel::sort(sorted.begin(), sorted.end());
     for (std::size_t i = 1; i < sorted.size(); ++i) repeated[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
   }
 
@@ -216,7 +214,7 @@ std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m)
     part[i] = sets.find(pieces.triangles[i][0]);
     if (!repeated[i]) members.emplace_back(part[i], i);
   }
-  tbb::parallel_sort(members.begin(), members.end());
+  parallel::sort(members.begin(), members.end());
   std::vector<Triangle> kept = pieces.triangles;
   for (std::uint32_t i = 0; i < count; ++i)
     if (repeated[i]) kept[i] = {0, 0, 0};  // no area, so no candidate

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/ground_field.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +15,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
@@ -198,13 +196,13 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
       });
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
   std::vector<std::uint64_t> all;
   for (const auto& some : collected) all.insert(all.end(), some.begin(), some.end());
   if (plane)
     for (std::size_t column = 0; column < count; ++column)
       all.push_back(std::uint64_t{column} << 32 | ordered(static_cast<float>(plane->z)));
-  tbb::parallel_sort(all.begin(), all.end());
+  parallel::sort(all.begin(), all.end());
 
   // Triangles that meet over a middle, and surfaces that nearly touch, count as one sample.
   const auto apart = static_cast<float>(tolerance_share * height_);
@@ -322,7 +320,7 @@ void GroundField::find_room(const SceneData& scene) {
         look(corners[i], doors[i]);
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + block - 1) / block),
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + block - 1) / block),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
                       std::vector<Open> open;
                       for (std::uint32_t k = range.begin(); k != range.end(); ++k)
@@ -667,7 +665,7 @@ void GroundField::look_beyond_high_steps() {
   const auto by_parts = [](const Edge& a, const Edge& b) {
     return std::tie(a.from, a.to, a.step) < std::tie(b.from, b.to, b.step);
   };
-  tbb::parallel_sort(edges.begin(), edges.end(), by_parts);
+  parallel::sort(edges.begin(), edges.end(), by_parts);
   edges.erase(std::unique(edges.begin(), edges.end(),
                           [](const Edge& a, const Edge& b) { return a.from == b.from && a.to == b.to; }),
               edges.end());

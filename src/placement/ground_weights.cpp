@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/ground_weights.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
@@ -44,7 +43,7 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
   const SceneData& data = scene.data();
   std::vector<Area> areas(data.meshes.size());
   const auto for_each_surveyed = [&](auto&& with) {
-    tbb::parallel_for(std::size_t{0}, data.meshes.size(), [&](std::size_t m) {
+    parallel::for_all(std::size_t{0}, data.meshes.size(), [&](std::size_t m) {
       if (data.meshes[m].role != Role::surveyed) return;
       const MeshRange& range = data.ranges[m];
       for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {

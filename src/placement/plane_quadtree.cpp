@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/plane_quadtree.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -114,7 +114,7 @@ class PlaneQuadtree::Builder {
       return;
     }
     std::array<Subtree, 4> parts;
-    tbb::parallel_for(0, 4, [&](int q) { subdivide(parts[q], 0, cells[q], std::move(lists[q]), depth + 1, idle); });
+    parallel::for_all(0, 4, [&](int q) { subdivide(parts[q], 0, cells[q], std::move(lists[q]), depth + 1, idle); });
     for (std::uint32_t q = 0; q < 4; ++q) append(out, child + q, parts[q]);
   }
 

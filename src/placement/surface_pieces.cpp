@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/surface_pieces.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -65,7 +65,7 @@ SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triang
   const Splitter splitter(spacing_m, kind_of);
   std::vector<Kind> whole(triangles.size());
   tbb::enumerable_thread_specific<std::vector<Part>> collected;
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(triangles.size())),
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(triangles.size())),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
                       std::vector<Part>& parts = collected.local();
                       for (std::uint32_t t = range.begin(); t != range.end(); ++t)

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/walkable.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "placement/area_limits.hpp"
 #include "placement/charts.hpp"
 #include "placement/ground_field.hpp"
@@ -155,7 +152,7 @@ std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfaceP
 std::vector<GroundChart> wide_charts(const SurfacePieces& pieces, std::vector<GroundChart> charts,
                                      const WalkableOptions& options, std::vector<GroundChart>& small) {
   std::vector<char> fit(charts.size());
-  tbb::parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, charts.size(), [&](std::size_t i) {
     const GroundChart& c = charts[i];
     fit[i] = c.plan_area > 0 && c.area >= options.min_area_m2 &&
              (c.area >= surely_wide * options.min_area_m2 ||
@@ -252,7 +249,7 @@ std::vector<Triangle> reached_triangles(const SceneData& scene, const GroundFiel
   };
   for (const MeshRange& range : standing_meshes(scene, station_area)) {
     std::vector<std::vector<glm::dvec3>> found((range.triangle_count + kBlock - 1) / kBlock);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t block) {
+    parallel::for_all(std::size_t{0}, found.size(), [&](std::size_t block) {
       const auto first = range.first_triangle + static_cast<std::uint32_t>(block) * kBlock;
       for (std::uint32_t t = first; t < std::min(range.first_triangle + range.triangle_count, first + kBlock); ++t)
         if (const auto p = scene.corners(t); is_upward(p, least_up) && wanted(t, p))
@@ -294,7 +291,7 @@ double outline_area(const SceneData& scene) {
   };
   if (!scene.shares()) return hull_area(hull_of_triangles(0, scene.triangle_count()));
   std::vector<Hull> hulls(scene.instances.size());
-  tbb::parallel_for(std::size_t{0}, hulls.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, hulls.size(), [&](std::size_t k) {
     const MeshInstance& run = scene.instances[k];
     if (run.place == MeshInstance::kNoPlace) {
       hulls[k] = hull_of_triangles(run.first_triangle, run.triangle_count);

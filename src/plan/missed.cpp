@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "core/parallel.hpp"
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "plan/rooms.hpp"
@@ -162,7 +162,7 @@ std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> c
     std::vector<std::uint32_t> of;
     for (const std::size_t i : here) of.push_back(ranks[i]);
     const std::vector<VoxelPatch> patches = simulator.voxel_patches(of);
-    tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, here.size(), [&](std::size_t k) {
       status[here[k]] = judge.status(of[k], patches[k], points[here[k]] / simulator.goal_density(of[k]));
     });
     progress(static_cast<double>(first + here.size()) / static_cast<double>(missed.size()));

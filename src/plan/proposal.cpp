@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/proposal.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -35,7 +35,7 @@ Proposal propose(Optimiser& optimiser, const DecisionSpace& space, std::size_t r
   std::vector<std::size_t> open(count);
   std::iota(open.begin(), open.end(), std::size_t{0});
   for (std::size_t round = 0;; ++round) {
-    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+    parallel::for_all(std::size_t{0}, open.size(), [&](std::size_t i) {
       batch.networks[open[i]] = space.decode(std::span<const double>(batch.xs).subspan(open[i] * n, n));
     });
     if (round == 0)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/simulator_evaluator.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/part_of.hpp"
 #include "trace/tracer_maker.hpp"
 
@@ -122,7 +121,7 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<double>> values(placed.size());
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
     for (std::size_t m = 0; m < measures_.searched; ++m) values[k].push_back(measures_.all[m].value(network));
   });
@@ -140,7 +139,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<Estimate>> estimates(placed.size());
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
     for (const Objective& objective : estimated) estimates[k].push_back(vantage::estimate(objective, network));
   });

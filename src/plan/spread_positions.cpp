@@ -4,13 +4,13 @@
 // Intercluster Distance, 1985), for every n within a factor of two of the densest cover by n points.
 #include "plan/spread_positions.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -61,7 +61,7 @@ std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const 
   for (std::size_t first = 0; first < tries && allowed.size() < wanted; first += tries_at_once) {
     const std::size_t here = std::min(tries_at_once, tries - first);
     std::vector<PlacedStation> tried(here);
-    tbb::parallel_for(std::size_t{0}, here, [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, here, [&](std::size_t k) {
       const double n = static_cast<double>(first + k + 1);
       tried[k] = place_station(site, ground.at(fraction(0.5 + n / g), fraction(0.5 + n / (g * g))), height_m);
     });
@@ -112,7 +112,7 @@ std::vector<PlacedStation> unseen_positions(const PlacementOracle& site, std::sp
   const auto seen_by = [&](const PositionGrid& grid, const Vec3& from) {
     return grid.any_near(from, [&](const Vec3& head) { return site.sees(head, from); });
   };
-  tbb::parallel_for(std::size_t{0}, others.size(),
+  parallel::for_all(std::size_t{0}, others.size(),
                     [&](std::size_t k) { alone[k] = !seen_by(known, others[k].position); });
   for (std::size_t k = 0; k < others.size(); ++k) {
     if (!alone[k] || seen_by(added, others[k].position)) continue;

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/ray_follower.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "trace/embree/hits.hpp"
 #include "trace/embree/point_judge.hpp"
 #include "trace/embree/range_noise.hpp"
@@ -91,7 +89,7 @@ void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& s
                               Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const {
   const RangeNoise noise(scanner.noise);
   const bool limited = scanner.limits && scanner.limits->enabled();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ghost.size(), 4096), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, ghost.size(), 4096), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       if (raw.primitive[k] == RayBundle::no_hit || !is_mirror(raw.primitive[k])) continue;
       const std::uint64_t ray = first_ray + k;

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/scan_chunk.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "scene/surface_colour.hpp"
 
 namespace vantage {
@@ -41,7 +38,7 @@ struct Sums {
 
 Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost, std::size_t count,
               const SceneData& scene) {
-  return tbb::parallel_reduce(
+  return parallel::reduce(
       tbb::blocked_range<std::size_t>(0, count, grain), Sums{},
       [&](const tbb::blocked_range<std::size_t>& range, Sums sums) {
         MeshLookup mesh_of(scene);
@@ -64,7 +61,7 @@ Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghos
 template <class To, class Make>
 void fill(std::vector<To>& to, std::size_t count, Make make) {
   to.resize(count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) { make(range.begin(), range.end()); });
 }
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/wide_beam.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -15,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/philox.hpp"
 #include "trace/embree/hits.hpp"
 #include "trace/embree/point_judge.hpp"
@@ -278,7 +275,7 @@ std::vector<WideBeam::Return> WideBeam::returns(const Scanner& scanner, const Tr
                                                 const TraceStation& station, const BeamOptions& options,
                                                 std::uint64_t first_ray, std::uint64_t ray_count) const {
   std::vector<std::vector<Return>> parts((ray_count + kPart - 1) / kPart);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+  parallel::for_all(std::size_t{0}, parts.size(), [&](std::size_t p) {
     Follower follower(*this, scanner, traced, station, options);
     for (std::uint64_t ray = first_ray + p * kPart; ray < first_ray + std::min(ray_count, (p + 1) * kPart); ++ray)
       for (const Return& own : follower.returns_of(ray))
@@ -298,7 +295,7 @@ std::optional<WideBeam::Totals> WideBeam::count(const Scanner& scanner, const Tr
   Totals totals;
   for (std::uint64_t first = 0; first < rays; first += kBetweenChecks) {
     if (progress.stopped()) return std::nullopt;
-    const Totals part = tbb::parallel_reduce(
+    const Totals part = parallel::reduce(
         tbb::blocked_range<std::uint64_t>(first, std::min(rays, first + kBetweenChecks), kPart), Totals{},
         [&](const auto& range, Totals sum) {
           Follower follower(*this, scanner, traced, station, options);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/columns.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +9,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
 
@@ -101,7 +99,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
   tbb::enumerable_thread_specific<Found> found;
   constexpr std::size_t kBlock = 256;
   std::vector<std::array<double, 2>> upright((raw.triangles.size() + kBlock - 1) / kBlock);  // in the order of blocks
-  tbb::parallel_for(std::size_t{0}, upright.size(), [&](std::size_t block) {
+  parallel::for_all(std::size_t{0}, upright.size(), [&](std::size_t block) {
     Found& own = found.local();
     for (std::size_t i = block * kBlock; i < std::min(raw.triangles.size(), (block + 1) * kBlock); ++i) {
       if (!within(raw.triangles[i], limit) || (!left_out.empty() && left_out[i])) continue;
@@ -161,8 +159,8 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
     crossings.insert(crossings.end(), some.crossings.begin(), some.crossings.end());
     walls.insert(walls.end(), some.walls.begin(), some.walls.end());
   }
-  tbb::parallel_sort(crossings.begin(), crossings.end());
-  tbb::parallel_sort(walls.begin(), walls.end(), [](const WallAt& a, const WallAt& b) { return a.key() < b.key(); });
+  parallel::sort(crossings.begin(), crossings.end());
+  parallel::sort(walls.begin(), walls.end(), [](const WallAt& a, const WallAt& b) { return a.key() < b.key(); });
   first_wall_.assign(2 * std::size_t{count()} + 1, 0);
   for (const WallAt& wall : walls) ++first_wall_[wall.edge + 1], walls_.push_back(wall.wall);
   for (std::size_t e = 1; e < first_wall_.size(); ++e) first_wall_[e] += first_wall_[e - 1];

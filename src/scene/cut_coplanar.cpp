@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/cut_coplanar.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/coplanar.hpp"
 #include "scene/cut_polygon.hpp"
 #include "scene/near_placed.hpp"
@@ -177,7 +176,7 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions, const Ve
   CutAllowance allowance;
   allowance.parts = std::min(allowance.parts.load(), static_cast<std::int64_t>(raw.spare_bytes / 2 / kPart));
   std::vector<std::vector<ConvexPolygon>> left(covered.size());
-  tbb::parallel_for(std::size_t{0}, covered.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, covered.size(), [&](std::size_t k) {
     const Frame frame(positions, raw.triangles[covered[k].blocking]);
     std::vector<ConvexPolygon> holes;
     for (const CoplanarPair& pair : covered[k].by) {

@@ -2,8 +2,6 @@
 // Averages that keep the share of a mask: Castaño, "Computing alpha mipmaps", 2010.
 #include "scene/cut_masks.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -15,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
@@ -410,7 +409,7 @@ class MaskCutter {
     for (const MeshRange& range : raw_.ranges) {
       const AlphaLevels* const mask = levels(range);
       if (!mask) continue;
-      tbb::parallel_for(std::size_t{0}, (range.triangle_count + kBlock - 1) / kBlock, [&](std::size_t block) {
+      parallel::for_all(std::size_t{0}, (range.triangle_count + kBlock - 1) / kBlock, [&](std::size_t block) {
         const std::size_t first = range.first_triangle + block * kBlock,
                           end = std::min<std::size_t>(first + kBlock, range.first_triangle + range.triangle_count);
         for (std::size_t t = first; t < end && made <= most; ++t) {

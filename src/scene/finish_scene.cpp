@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "scene/cut_coplanar.hpp"
 #include "scene/raw_scene.hpp"
 #include "scene/shared_meshes.hpp"
@@ -42,7 +41,7 @@ std::size_t count_triangles(const RawScene& raw) {
 template <class Keep>
 std::size_t drop_unless(RawScene& raw, Keep&& sound_triangle) {
   std::vector<std::uint8_t> keep(raw.triangles.size());
-  tbb::parallel_for(std::size_t{0}, keep.size(),
+  parallel::for_all(std::size_t{0}, keep.size(),
                     [&](std::size_t t) { keep[t] = sound_triangle(raw.triangles[t]) ? 1 : 0; });
   const auto dropped = static_cast<std::size_t>(std::ranges::count(keep, 0));
   if (dropped > 0) keep_triangles(raw, keep);
@@ -68,14 +67,14 @@ std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions)
     std::uint32_t rank;  // 0 surveyed, 1 blocking
   };
   std::vector<Entry> entries(raw.triangles.size());
-  tbb::parallel_for(std::size_t{0}, raw.ranges.size(), [&](std::size_t m) {
+  parallel::for_all(std::size_t{0}, raw.ranges.size(), [&](std::size_t m) {
     const std::uint32_t rank = raw.meshes[m].role == Role::surveyed ? 0 : 1;
     const std::uint32_t first = raw.ranges[m].first_triangle;
-    tbb::parallel_for(first, first + raw.ranges[m].triangle_count, [&](std::uint32_t t) {
+    parallel::for_all(first, first + raw.ranges[m].triangle_count, [&](std::uint32_t t) {
       entries[t] = {hash(sorted_corners(positions, raw.triangles[t])), t, rank};
     });
   });
-  tbb::parallel_sort(entries, [](const Entry& a, const Entry& b) {
+  parallel::sort(entries, [](const Entry& a, const Entry& b) {
     return a.hash != b.hash ? a.hash < b.hash : a.rank != b.rank ? a.rank < b.rank : a.triangle < b.triangle;
   });
   std::vector<std::uint8_t> keep(raw.triangles.size(), 1);
@@ -116,7 +115,7 @@ std::vector<std::uint32_t> renumber(std::vector<Triangle>& triangles, std::size_
       place[v] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(v);
     }
-  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
+  parallel::for_all(std::size_t{0}, triangles.size(), [&](std::size_t t) {
     for (std::uint32_t& v : triangles[t]) v = place[v];
   });
   return kept;
@@ -204,7 +203,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   auto data = std::make_shared<SceneData>();
   data->origin = local_origin(bounds);
   data->positions.resize(raw.positions.size());
-  tbb::parallel_for(std::size_t{0}, raw.positions.size(), [&](std::size_t v) {
+  parallel::for_all(std::size_t{0}, raw.positions.size(), [&](std::size_t v) {
     if (!sound(raw.positions[v])) return;  // unused by now
     data->positions[v] = without_minus_zero(to_float3(raw.positions[v] - to_glm(data->origin)));
   });

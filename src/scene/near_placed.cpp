@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/near_placed.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
 
@@ -98,7 +97,7 @@ NearPlaced near_placed(const RawScene& raw, const std::vector<Float3>& positions
     for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
       const MeshRange& own = raw.ranges[m];
       if (const std::uint8_t own_role = role_of(raw.meshes[m]); own_role != 0)
-        tbb::parallel_for(own.first_triangle, own.first_triangle + own.triangle_count, [&](std::uint32_t t) {
+        parallel::for_all(own.first_triangle, own.first_triangle + own.triangle_count, [&](std::uint32_t t) {
           const Triangle& v = raw.triangles[t];
           cells.mark(box_of({positions[v[0]], positions[v[1]], positions[v[2]]}), own_role);
         });
@@ -110,14 +109,14 @@ NearPlaced near_placed(const RawScene& raw, const std::vector<Float3>& positions
     return FloatCorners{at(v[0]), at(v[1]), at(v[2])};
   };
   const auto for_triangles = [&](const PlacedRun& run, const auto& body) {
-    tbb::parallel_for(std::uint32_t{0}, run.count(), [&](std::uint32_t t) { body(t, box_of(corners(run, t))); });
+    parallel::for_all(std::uint32_t{0}, run.count(), [&](std::uint32_t t) { body(t, box_of(corners(run, t))); });
   };
   std::vector<std::uint8_t> may_be_near(runs.size());  // as a whole
   {
     RoleCells cells(all, reach_m);
     mark_own(cells);
-    tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t k) { cells.mark(boxes[k], role(k)); });
-    tbb::parallel_for(std::size_t{0}, runs.size(),
+    parallel::for_all(std::size_t{0}, runs.size(), [&](std::size_t k) { cells.mark(boxes[k], role(k)); });
+    parallel::for_all(std::size_t{0}, runs.size(),
                       [&](std::size_t k) { may_be_near[k] = cells.meets(boxes[k], other(role(k))); });
   }
   RoleCells cells(all, reach_m);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/open_doors.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
 #include "scene/shared_meshes.hpp"
@@ -60,7 +58,7 @@ struct Reading {
 
 std::vector<Box> boxes_of(std::span<const PlacedRun> runs) {
   std::vector<Box> boxes(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, runs.size(), [&](std::size_t k) {
     for (const Triangle& t : runs[k].shared->triangles)
       for (const std::uint32_t v : t)
         if (const glm::dvec3 p = runs[k].at(v); sound(p)) boxes[k].extend(to_vec3(p));
@@ -117,7 +115,7 @@ Connected connect(std::span<const Triangle> triangles, std::span<const Position>
     const auto [x, y, z] = key(v);
     return !sound({x, y, z});
   });
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) { return key(v) < key(w); });
+  parallel::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) { return key(v) < key(w); });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (key(order[i]) == key(order[i - 1])) join(order[i], order[i - 1]);
   Connected out{std::vector<std::uint32_t>(triangles.size()), {0}};
@@ -169,7 +167,7 @@ std::vector<std::vector<MeshParts>> parts_of(const Reading& model, const std::ve
       connected = std::make_shared<const Connected>(
           connect<Float3>(run.shared->triangles, std::span<const Float3>(run.shared->positions)));
   std::vector<std::vector<MeshParts>> parts(raw.meshes.size());
-  tbb::parallel_for(std::size_t{0}, raw.meshes.size(), [&](std::size_t m) {
+  parallel::for_all(std::size_t{0}, raw.meshes.size(), [&](std::size_t m) {
     if (!wanted[m]) return;
     const MeshRange& range = raw.ranges[m];
     if (range.triangle_count > 0)

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/recognise_units.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/columns.hpp"
 #include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
@@ -281,7 +280,7 @@ std::string meaning(const Hypothesis& h) {
 // A closed leaf hides its opening. Triangles of leaves in any of the units that are possible.
 std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional<Unit>& unit, UpAxis up) {
   std::array<std::vector<std::size_t>, kUnits.size()> leaves;
-  tbb::parallel_for(std::size_t{0}, kUnits.size(), [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, kUnits.size(), [&](std::size_t i) {
     if (unit.value_or(kUnits[i]) == kUnits[i]) leaves[i] = leaves_if(raw, kUnits[i], up);
   });
   std::vector<std::uint8_t> out;
@@ -333,7 +332,7 @@ std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optiona
       const bool part = length == Unit::centimetre || length == Unit::millimetre;
       h.grid = (length == Unit::inch && grid.inches) || (part && grid.parts_of_a_metre) ? 1 : 0;
     }
-    tbb::parallel_for(first, all.size(), [&](std::size_t i) {
+    parallel::for_all(first, all.size(), [&](std::size_t i) {
       const double metres = metres_in(all[i].unit);
       all[i].size = to_vec3(columns.size() * metres);
       if (extent_of(all[i]) < kNoSite_m || extent_of(all[i]) > kNoSiteEither_m) return;  // nobody walks there

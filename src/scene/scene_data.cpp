@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene_data.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "scene/load_budget.hpp"
 #include "vantage/error.hpp"
@@ -153,7 +151,7 @@ std::shared_ptr<SceneData> flat_copy(const SceneData& scene) {
     for_attributes([&](auto& values, const auto& from) {
       if (!from.empty()) values.insert(values.end(), from.begin() + low, from.begin() + high + 1);
     });
-    tbb::parallel_for(first, flat->positions.size(), [&](std::size_t v) {
+    parallel::for_all(first, flat->positions.size(), [&](std::size_t v) {
       flat->positions[v] = scene.placed(place, flat->positions[v]);
       if (!flat->normals.empty()) flat->normals[v] = placed_normal(place, flat->normals[v]);
     });

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/shared_meshes.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/local_from_mesh.hpp"
 #include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
@@ -42,7 +39,7 @@ void append(std::vector<T>& values, bool any, std::size_t before, std::size_t co
 void append_vertices(RawScene& raw, const SharedMesh& mesh, const MeshPlace& place) {
   const std::size_t before = raw.positions.size(), count = mesh.positions.size();
   raw.positions.resize(before + count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
     for (std::size_t v = range.begin(); v < range.end(); ++v)
       raw.positions[before + v] = survey(place, mesh.positions[v]);
   });
@@ -110,7 +107,7 @@ MeshPlace reinterpreted(const MeshPlace& place, Unit unit, UpAxis up) {
 }
 
 Box placed_bounds(const MeshPlace& place, const std::vector<Float3>& positions, const Vec3& origin) {
-  return tbb::parallel_reduce(
+  return parallel::reduce(
       tbb::blocked_range<std::size_t>(0, positions.size(), 4096), Box{},
       [&](const auto& part, Box box) {
         for (std::size_t v = part.begin(); v < part.end(); ++v)
@@ -257,7 +254,7 @@ void SharedCleaner::extend(Box& bounds) const {
   for (const auto& range : raw_.placed)
     for (const PlacedShared& placed : range) {
       const std::vector<Float3>& positions = raw_.shared[placed.mesh].positions;
-      bounds = tbb::parallel_reduce(
+      bounds = parallel::reduce(
           tbb::blocked_range<std::size_t>(0, positions.size(), 4096), bounds,
           [&](const auto& part, Box box) {
             for (std::size_t v = part.begin(); v < part.end(); ++v) box.extend(placed.place(positions[v]));
@@ -272,7 +269,7 @@ void SharedCleaner::drop_without_area(const Vec3& origin) {
   for (std::size_t m = 0; m < raw_.shared.size(); ++m) {
     const SharedMesh& mesh = raw_.shared[m];
     std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 1024), [&](const auto& part) {
+    parallel::for_all(tbb::blocked_range<std::size_t>(0, kept.size(), 1024), [&](const auto& part) {
       for (const MeshPlace* place : of[m])
         for (std::size_t t = part.begin(); t < part.end(); ++t) {
           const auto corner = [&](std::size_t k) {

@@ -2,12 +2,12 @@
 // A scan is fitted to the model by point-to-plane iterations (Chen, Medioni: Object modelling by registration of
 // multiple range images, 1992), on some thousand of its points, with Tukey's weights. A weak prior on the pose decides
 // what the points leave open, such as the place along an even corridor.
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "taken/model_surface.hpp"
 #include "vantage/taken_scans.hpp"
@@ -89,7 +89,7 @@ class ScanFitter {
 
  private:
   void look(const Correction& correction, double reach) {
-    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, points_.size(), [&](std::size_t k) {
       const Eigen::Vector3d p = head_ + correction.shift + correction.turn * points_[k].offset;
       points_[k].near = model_.nearest({p.x(), p.y(), p.z()}, reach);
     });

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "core/beyond.hpp"
 #include "core/graph.hpp"
+#include "core/parallel.hpp"
 #include "scene/changed_scene.hpp"
 #include "taken/model_surface.hpp"
 #include "taken/real_counts.hpp"
@@ -179,7 +179,7 @@ void explain_missing(Site& found, const Table& table, std::span<const std::uint3
   const double margin = found.simulator().voxel_size_m();
   const std::vector<VoxelPatch> patches = found.simulator().voxel_patches(voxels);
   std::vector<std::size_t> hidden_by(voxels.size(), changes.things.size());
-  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t e) {
+  parallel::for_all(std::size_t{0}, voxels.size(), [&](std::size_t e) {
     if (!model || !(table.matrix.goal(e) > 0) || amounts[e] >= kFilled * table.matrix.goal(e)) return;
     for (const TakenScan& scan : scans) {
       const glm::dvec3 head = to_glm(scan.head), to = to_glm(patches[e].point) - head;

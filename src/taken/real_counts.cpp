@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "taken/real_counts.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
 #include "core/add_saturating.hpp"
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -34,7 +33,7 @@ std::vector<std::uint32_t> RealCounts::of(const TakenScan& scan) const {
   const glm::dvec3 head = to_glm(scan.head);
   const std::optional<Angle> limit = simulator_.max_incidence();
   std::vector<std::uint32_t> places(scan.thinned.size(), kNowhere);
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, places.size(), [&](std::size_t k) {
     const auto& o = scan.thinned[k].offset;
     const glm::dvec3 offset(o[0], o[1], o[2]), p = head + offset;
     const auto near = model_.nearest(p, tolerance_m_);

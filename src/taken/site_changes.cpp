@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -11,6 +10,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/changed_scene.hpp"
 #include "scene/scene_data.hpp"
 #include "taken/depth_picture.hpp"
@@ -136,7 +136,7 @@ class ChangeFinder {
       return head + glm::dvec3(o[0], o[1], o[2]);
     };
     std::vector<PointSays> says(scan.thinned.size());
-    tbb::parallel_for(std::size_t{0}, says.size(),
+    parallel::for_all(std::size_t{0}, says.size(),
                       [&](std::size_t k) { says[k] = judge(model_, head, place(k), cell_m_); });
     for (std::size_t k = 0; k < says.size(); ++k) {
       const std::uint64_t points = scan.thinned[k].points;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edge of what scans saw, where a person can be: the frontier of exploration (Yamauchi: A frontier-based approach
 // for autonomous exploration, 1997).
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "scene/changed_scene.hpp"
 #include "taken/depth_picture.hpp"
 #include "taken/model_surface.hpp"
@@ -39,7 +39,7 @@ class UnknownFinder {
   UnknownSpace found() const {
     const std::vector<SolidCell> all = above_ground();
     std::vector<std::vector<SolidCell>> beside(all.size());
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, all.size(), [&](std::size_t k) {
       const glm::dvec3 here = middle_of(all[k]);
       if (!(most_beyond(here) > kSeenBeyond_m)) return;
       for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {

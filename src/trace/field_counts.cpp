@@ -3,9 +3,6 @@
 // (Warren: Hacker's Delight, 2nd edition, 2012, section 7-3), so one AND and one population count serve 64 voxels.
 #include "trace/field_counts.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 
 namespace vantage {
@@ -158,7 +156,7 @@ NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, 
     add_many_pairs(std::span(words).first(mask_words(stations)), end - first, stations, sums.seen.data(),
                    sums.shared.data());
   };
-  const Sums sums = tbb::parallel_reduce(
+  const Sums sums = parallel::reduce(
       tbb::blocked_range<std::size_t>(0, parts, grain), zero,
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
         for (std::size_t p = range.begin(); p != range.end(); ++p)

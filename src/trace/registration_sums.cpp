@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/registration_sums.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/exact_arithmetic.hpp"
@@ -201,7 +198,7 @@ class Summer {
   Accumulator<Wide> sum(std::size_t first, std::size_t step) const {
     const std::size_t voxels = patches_.patches.size(), some = voxels > first ? (voxels - first + step - 1) / step : 0,
                       blocks = (some + patches_a_block - 1) / patches_a_block;
-    return tbb::parallel_reduce(
+    return parallel::reduce(
         tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(heads_.size(), pairs_.size()),
         [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
           for (std::size_t b = range.begin(); b != range.end(); ++b) {
@@ -341,7 +338,7 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
   const double floor = model.rho_m * model.rho_m * model.patch_m * model.patch_m;
   made.largest = largest_section * face / floor;
   made.patches.resize(surfaces.size());
-  tbb::parallel_for(std::size_t{0}, surfaces.size(), [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, surfaces.size(), [&](std::size_t i) {
     const VoxelSurface& surface = surfaces[i];
     RegistrationPatch patch{};
     patch.point = {surface.point.x, surface.point.y, surface.point.z};
@@ -387,7 +384,7 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
   const Summer summer(patches, heads, pairs, seen_by);
   if (groups == 0) return {to_sums(summer.sum(0, 1), pairs, patches, stations, station_count)};
   std::vector<Accumulator<Wide>> parts(groups, Accumulator<Wide>(0, 0));
-  tbb::parallel_for(std::uint32_t{0}, groups, [&](std::uint32_t g) { parts[g] = summer.sum(g, groups); });
+  parallel::for_all(std::uint32_t{0}, groups, [&](std::uint32_t g) { parts[g] = summer.sum(g, groups); });
   Accumulator<Wide> whole(station_count, pairs.size());
   for (const Accumulator<Wide>& part : parts) whole.add(part);
   std::vector<RegistrationSums> sums{to_sums(whole, pairs, patches, stations, station_count)};

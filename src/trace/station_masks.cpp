@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "core/parallel.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage {
@@ -19,7 +19,7 @@ void StationMasks::set_words(std::size_t w, std::span<const std::uint64_t> masks
     only_word_.assign(masks.begin(), masks.end());
     return;
   }
-  tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, blocks(), [&](std::size_t k) {
     const std::size_t first = k * block_voxels;
     const auto own = masks.subspan(first, std::min(block_voxels, masks.size() - first));
     std::vector<std::uint64_t>& block = blocks_[w * blocks() + k];

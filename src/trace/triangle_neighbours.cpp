@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/triangle_neighbours.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <numeric>
 #include <tuple>
 
+#include "core/parallel.hpp"
 #include "shared/trace_types.h"
 
 namespace vantage {
@@ -24,9 +22,8 @@ std::vector<std::uint32_t> first_at_its_place(std::span<const Float3> positions)
   };
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0u);
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(place(a), a) < std::tuple(place(b), b);
-  });
+  parallel::sort(order.begin(), order.end(),
+                 [&](std::uint32_t a, std::uint32_t b) { return std::tuple(place(a), a) < std::tuple(place(b), b); });
   std::vector<std::uint32_t> first(positions.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool same = k > 0 && place(order[k]) == place(order[k - 1]);
@@ -45,13 +42,13 @@ struct Edge {
 std::vector<std::uint32_t> triangle_neighbours(std::span<const Float3> positions, std::span<const Triangle> triangles) {
   const std::vector<std::uint32_t> first = first_at_its_place(positions);
   std::vector<Edge> edges(3 * triangles.size());
-  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
+  parallel::for_all(std::size_t{0}, triangles.size(), [&](std::size_t t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = first[triangles[t][k]], b = first[triangles[t][(k + 1) % 3]];
       edges[3 * t + k] = {std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(3 * t + k)};
     }
   });
-  tbb::parallel_sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
+  parallel::sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
     return std::tie(one.a, one.b, one.at) < std::tie(other.a, other.b, other.at);
   });
   std::vector<std::uint32_t> neighbours(edges.size(), no_primitive);

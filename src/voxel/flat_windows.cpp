@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/flat_windows.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +9,7 @@
 #include <unordered_map>
 
 #include "core/glm.hpp"
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "voxel/clipped_polygon.hpp"
 #include "voxel/triangle_cells.hpp"
@@ -142,7 +140,7 @@ class LargeFinder {
   }
   template <class Found>
   void for_each(const Found& found) const {
-    tbb::parallel_for(std::size_t{0}, larges_.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, larges_.size(), [&](std::size_t k) {
       const std::uint32_t t = larges_[k];
       TriangleCells(cells_.transform.corners(scene_.corners(t)), cells_.a_side, margin_).for_each([&](const Cell& c) {
         if (const auto cell = number_.find(Cells::key(c)); cell != number_.end()) found(cell->second, t);
@@ -223,7 +221,7 @@ class SortedTriangles {
       own = {};
     }
     // In ascending order within a block, so that the result does not depend on the threads.
-    tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    parallel::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
       const std::uint64_t of_a = a.cell >> 3 * block_bits, of_b = b.cell >> 3 * block_bits;
       return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
     });
@@ -232,7 +230,7 @@ class SortedTriangles {
         blocks_.push_back(block), first_.push_back(k);
     first_.push_back(placed.size());
     small_.resize(placed.size());
-    tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
       const Corners p = corners_of(scene, placed[k].triangle);
       const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
       const double area = 0.5 * length(twice);
@@ -345,7 +343,7 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
   for (std::size_t begin = 0; begin < voxel_indices.size(); begin += voxels_at_once) {
     if (stop.stop_requested()) return {};
     keys.resize(std::min(voxels_at_once, voxel_indices.size() - begin));
-    tbb::parallel_for(std::size_t{0}, keys.size(),
+    parallel::for_all(std::size_t{0}, keys.size(),
                       [&](std::size_t i) { keys[i] = grid.key(voxel_indices[begin + i]); });
     const Runs cells(keys, wide.shift);
     const VoxelTriangles lists =
@@ -357,7 +355,7 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
     // Windows of one cell, with the small triangles around its block.
     const auto measure = [&](std::size_t cell, const SmallsAround& around) {
       const std::vector<Large> larges = larges_of(cell);
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(cells.first[cell], cells.first[cell + 1], windows_a_task),
+      parallel::for_all(tbb::blocked_range<std::size_t>(cells.first[cell], cells.first[cell + 1], windows_a_task),
                         [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i != range.end(); ++i) {
                             const VoxelSurface& surface = surfaces[begin + i];
@@ -371,7 +369,7 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
                         });
     };
     const Runs blocks(cells.cells, narrow.shift + block_bits - wide.shift);
-    tbb::parallel_for(std::size_t{0}, blocks.cells.size(), [&](std::size_t run) {
+    parallel::for_all(std::size_t{0}, blocks.cells.size(), [&](std::size_t run) {
       if (stop.stop_requested()) return;
       const Cell block = cell_of_key(blocks.cells[run]);
       SmallsAround around(block, reach);
@@ -379,7 +377,7 @@ std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
         for_each_near(block, (reach + block_side - 1) / block_side, (narrow.a_side + block_side - 1) / block_side,
                       [&](const Cell& near) { around.add(near, triangles.small_in(Cells::key(near))); });
       if (!around.empty()) around.sort();
-      tbb::parallel_for(blocks.first[run], blocks.first[run + 1], [&](std::size_t cell) { measure(cell, around); });
+      parallel::for_all(blocks.first[run], blocks.first[run + 1], [&](std::size_t cell) { measure(cell, around); });
     });
   }
   if (stop.stop_requested()) shares.clear();

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/grid_fit.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -55,7 +52,7 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
   };
   tbb::enumerable_thread_specific<std::array<Slabs, 3>> collected;
   for (const MeshRange& mesh : surveyed)
-    tbb::parallel_for(
+    parallel::for_all(
         tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096),
         [&](const tbb::blocked_range<std::uint32_t>& range) {
           std::array<Slabs, 3>& own = collected.local();
@@ -78,7 +75,7 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
           }
         });
   AxisSlabs all;
-  tbb::parallel_for(0, 3, [&](int axis) {
+  parallel::for_all(0, 3, [&](int axis) {
     for (const auto& some : collected)
       all[axis].insert(all[axis].end(), some[axis].slabs.begin(), some[axis].slabs.end());
     merge(all[axis]);
@@ -87,7 +84,7 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
 }
 
 Box bounds_of(const SceneData& scene, std::uint32_t first, std::uint32_t count) {
-  return tbb::parallel_reduce(
+  return parallel::reduce(
       tbb::blocked_range<std::uint32_t>(first, first + count, 4096), Box{},
       [&](const tbb::blocked_range<std::uint32_t>& range, Box box) {
         for (std::uint32_t t = range.begin(); t != range.end(); ++t)
@@ -139,9 +136,8 @@ double best_shift(std::span<const Slab> slabs, double voxel, double clearance, d
       if (to < most) events.push_back({to, -change});
     }
   }
-  tbb::parallel_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-    return std::tie(a.at, a.change) < std::tie(b.at, b.change);
-  });
+  parallel::sort(events.begin(), events.end(),
+                 [](const Event& a, const Event& b) { return std::tie(a.at, a.change) < std::tie(b.at, b.change); });
 
   const double narrowest = clearance / 16;  // a gap wide enough for the rounding of the grid's min
   std::tuple<std::int64_t, double, double> best{std::numeric_limits<std::int64_t>::max(), 0, 0};

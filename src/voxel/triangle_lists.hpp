@@ -2,15 +2,13 @@
 // Makes lists of triangles, one per voxel or cell of voxels, by walking over the triangles.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_triangles.hpp"
@@ -23,7 +21,7 @@ void for_each_surveyed(const SceneData& scene, const Visit& visit) {
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
     if (scene.meshes[m].role != Role::surveyed) continue;
     const std::uint32_t begin = scene.ranges[m].first_triangle, end = begin + scene.ranges[m].triangle_count;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(begin, end),
+    parallel::for_all(tbb::blocked_range<std::uint32_t>(begin, end),
                       [&](const tbb::blocked_range<std::uint32_t>& range) {
                         for (std::uint32_t t = range.begin(); t != range.end(); ++t) visit(t);
                       });
@@ -58,7 +56,7 @@ VoxelTriangles triangle_lists(const Finder& finder, std::size_t lists) {
   finder.for_each([&](std::uint32_t number, std::uint32_t triangle) {
     result.triangle[std::atomic_ref<std::uint32_t>(next[number]).fetch_add(1, std::memory_order_relaxed)] = triangle;
   });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lists), [&](const tbb::blocked_range<std::size_t>& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, lists), [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
       std::sort(result.triangle.begin() + result.offset[i], result.triangle.begin() + result.offset[i + 1]);
   });

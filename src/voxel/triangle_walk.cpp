@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/glm.hpp"
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -31,7 +32,7 @@ TriangleWalk::TriangleWalk(const SceneData& scene, std::span<const MeshRange> me
     for (std::uint32_t t = 0; t < meshes[m].triangle_count; t += triangles_a_chunk)
       chunks.push_back({m, meshes[m].first_triangle + t,
                         meshes[m].first_triangle + std::min(meshes[m].triangle_count, t + triangles_a_chunk)});
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, chunks.size(), [&](std::size_t k) {
     Chunk& chunk = chunks[k];
     Piece open{chunk.mesh, chunk.first, chunk.first, 0};
     const auto close = [&] {

@@ -2,13 +2,12 @@
 // Visits all cells of a grid that triangles touch, in parallel, in steps with progress and cancellation between them.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "vantage/progress.hpp"
 #include "voxel/triangle_cells.hpp"
 #include "voxel/voxel_bricks.hpp"
@@ -34,7 +33,7 @@ class TriangleWalk {
       if (progress.stopped()) return false;
       std::size_t end = first;
       for (double area = 0; end < pieces_.size() && area < step_; ++end) area += pieces_[end].area;
-      tbb::parallel_for(first, end, [&](std::size_t p) {
+      parallel::for_all(first, end, [&](std::size_t p) {
         const Piece& piece = pieces_[p];
         auto visit = make_visit(piece.mesh);
         for (std::uint32_t t = piece.first; t < piece.end; ++t)

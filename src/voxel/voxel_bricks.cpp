@@ -2,13 +2,13 @@
 #include "voxel/voxel_bricks.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "vantage/error.hpp"
 #include "voxel/triangle_walk.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -61,7 +61,7 @@ std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& tri
     all.insert(all.end(), own.keys.begin(), own.keys.end());
     own.keys = {};
   }
-  tbb::parallel_sort(all.begin(), all.end());
+  parallel::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }

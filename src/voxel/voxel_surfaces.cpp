@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/voxel_surfaces.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/glm.hpp"
+#include "core/parallel.hpp"
 #include "voxel/clipped_polygon.hpp"
 #include "voxel/flat_windows.hpp"
 #include "voxel/voxel_bricks.hpp"
@@ -153,7 +151,7 @@ std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid
   const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
   const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
   std::vector<VoxelSurface> surfaces(voxel_indices.size());
-  tbb::parallel_for(
+  parallel::for_all(
       tbb::blocked_range<std::size_t>(0, voxel_indices.size()), [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i != range.end() && !stop.stop_requested(); ++i) {
           const auto [x, y, z] = morton_decode(grid.key(voxel_indices[i]));

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/voxel_triangles.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "voxel/triangle_cells.hpp"
 #include "voxel/triangle_lists.hpp"
 #include "voxel/voxel_bricks.hpp"
@@ -119,7 +117,7 @@ class Finder {
       number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, no_voxel);
       for (std::size_t i = 0; i < voxel_indices.size(); ++i)
         number_[voxel_indices[i] - first_index_] = static_cast<std::uint32_t>(i);
-      within_ = tbb::parallel_reduce(
+      within_ = parallel::reduce(
           tbb::blocked_range<std::size_t>(0, voxel_indices.size()), CellBox(),
           [&](const tbb::blocked_range<std::size_t>& range, CellBox box) {
             for (std::size_t i = range.begin(); i != range.end(); ++i)
@@ -130,7 +128,7 @@ class Finder {
       return;
     }
     cells_.resize(voxel_indices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxel_indices.size()),
+    parallel::for_all(tbb::blocked_range<std::size_t>(0, voxel_indices.size()),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i)
                           cells_[i] = morton_decode(grid.key(voxel_indices[i]));
@@ -231,7 +229,7 @@ VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const 
   const GridTransform fine = transform_of(*grid_);
   const double margin = margin_m / grid_->voxel_size();
   std::vector<std::vector<std::uint32_t>> found(voxel_indices.size());
-  tbb::parallel_for(std::size_t{0}, voxel_indices.size(), [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, voxel_indices.size(), [&](std::size_t i) {
     const auto cell = morton_decode(grid_->key(voxel_indices[i]));
     const std::uint32_t brick =
         find_brick(grid_->slots(), cell[0] >> brick_shift, cell[1] >> brick_shift, cell[2] >> brick_shift);

@@ -1,5 +1,5 @@
-# Every source opens with its licence; nothing is left to do, and no test steps aside; GLM has one set of settings. Lines of
-# shaders, which no formatter folds, have at most 120 characters.
+# Every source opens with its licence; nothing is left to do, and no test steps aside; GLM has one set of settings, and
+# parallel loops are those of core/parallel.hpp. Lines of shaders, which no formatter folds, have at most 120 characters.
 cmake_minimum_required(VERSION 3.25)
 set(wrong "")
 set(seen 0)
@@ -23,6 +23,10 @@ foreach(folder include src shaders tests examples python)
     file(STRINGS ${ROOT}/${source} glm REGEX "^[ \t]*#[ \t]*include[ \t]+<glm/")
     if(glm AND NOT source STREQUAL "src/core/glm.hpp")
       string(APPEND wrong "\n  ${source}: ${glm}: include core/glm.hpp instead")
+    endif()
+    file(STRINGS ${ROOT}/${source} loop REGEX "tbb::parallel_(for|reduce|sort|invoke)[(]")
+    if(loop AND source MATCHES "^src/" AND NOT source STREQUAL "src/core/parallel.hpp")
+      string(APPEND wrong "\n  ${source}: ${loop}: loops are those of core/parallel.hpp")
     endif()
     if(source MATCHES "[.](comp|glsl)$")
       file(READ ${ROOT}/${source} text)

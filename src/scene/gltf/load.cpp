@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads a scene from a glTF file: places every mesh in the survey frame, assigns roles, and passes the result on to be
 // cleaned.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "import/import.hpp"
 #include "scene/cut_masks.hpp"
@@ -99,7 +98,7 @@ glm::dmat3 normal_map(const glm::dmat3& m) {
 
 template <class Body>
 void in_blocks(std::size_t count, Body&& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock),
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, count, kBlock),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       std::vector<double> values(4 * kBlock);
                       for (std::size_t first = range.begin(); first < range.end(); first += kBlock)

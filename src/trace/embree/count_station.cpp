@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/count_station.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 #include "trace/embree/picture.hpp"
 #include "trace/embree/tile_selection.hpp"
@@ -186,7 +185,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
 template <class Part>
 StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, const StationRays& rays,
                      PointBuckets& points, const Part& part) {
-  return tbb::parallel_reduce(
+  return parallel::reduce(
       tbb::blocked_range<std::size_t>(first, end, grain), StationTotals{},
       [&](const auto& range, StationTotals sum) {
         VoxelLookup voxels = rays.voxels();

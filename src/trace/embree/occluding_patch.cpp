@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/occluding_patch.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +29,11 @@ struct Member {
 bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box& box, double start,
                             const AnyRayNear& any_ray_near) const {
   if (scene_.shares()) return false;
-  std::call_once(once_, [&] { neighbours_ = triangle_neighbours(scene_.positions, scene_.opaque_triangles()); });
+  std::call_once(once_, [&] {
+    // A thread that waits for this must not take up other work, which might wait here, too.
+    tbb::this_task_arena::isolate(
+        [&] { neighbours_ = triangle_neighbours(scene_.positions, scene_.opaque_triangles()); });
+  });
   const auto member = [&](std::uint32_t t) {
     const auto corner = [&](std::size_t k) { return widen(scene_.positions[scene_.triangles[t][k]]) - head; };
     const std::array<Vec3, 3> corners{corner(0), corner(1), corner(2)};

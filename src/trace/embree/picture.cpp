@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/picture.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 #include "trace/embree/drawn_triangle.hpp"
 #include "trace/embree/vectors.hpp"
@@ -167,7 +165,7 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
 
   tbb::enumerable_thread_specific<std::vector<Item>> found;
   std::atomic<bool> drawable = true;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.scene().opaque_triangles().size(), 1024),
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, rays.scene().opaque_triangles().size(), 1024),
                     [&](const auto& range) {
                       std::vector<Item>& items = found.local();
                       for (std::size_t k = range.begin(); k < range.end() && drawable; ++k)
@@ -177,7 +175,7 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
   if (!drawable_) return;
   std::vector<Item> all;
   for (const std::vector<Item>& items : found) all.insert(all.end(), items.begin(), items.end());
-  tbb::parallel_sort(all.begin(), all.end());
+  parallel::sort(all.begin(), all.end());
 
   begin_.assign(std::size_t{strips()} + 1, 0);
   const auto each_strip = [](const Item& item, const auto& f) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/planes.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -14,7 +13,7 @@ Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)
   const SceneData& s = *scene_;
   planes_.resize(s.triangles.size());
   balls_.resize(s.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, s.triangle_count(), 4096), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, s.triangle_count(), 4096), [&](const auto& range) {
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
       const auto corners = s.corners(i);
       planes_[i] = plane_of(corners);

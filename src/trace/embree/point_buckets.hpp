@@ -2,13 +2,13 @@
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "core/add_saturating.hpp"
+#include "core/parallel.hpp"
 #include "trace/pass_field.hpp"
 
 namespace vantage {
@@ -45,7 +45,7 @@ class PointBuckets {
   // Adds all points to the field under the bit of their station, and empties the buckets. Counts saturate.
   void flush(PassField& field, std::uint64_t bit) {
     const bool masks = !field.stations.empty();
-    tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t b) {
+    parallel::for_all(std::uint32_t{0}, count, [&](std::uint32_t b) {
       for (Local& local : local_) {
         for (const std::uint32_t entry : local.buckets_[b]) {
           const std::uint32_t voxel_index = b << shift_ | (entry & ((std::uint32_t{1} << shift_) - 1));

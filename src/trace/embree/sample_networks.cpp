@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/sample_networks.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "trace/embree/voxel_counter.hpp"
 #include "trace/rays_of_box.hpp"
 #include "trace/registration_sums.hpp"
@@ -75,7 +74,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
     std::vector<std::uint64_t> traced(here);
     for (std::size_t begin = 0; begin < here * blocks && !cancelled; begin += chunk) {
       const std::size_t end = std::min(here * blocks, begin + chunk);
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
+      parallel::for_all(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
         for (std::size_t task = range.begin(); task < range.end(); ++task) {
           const std::size_t network = task / blocks, start = task % blocks * block;
           const std::size_t many = std::min(block, n - start);
@@ -99,7 +98,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
       if (job.points && !cancelled) job.points(first + k, own_counts);
     }
     if (job.registration && !cancelled)
-      tbb::parallel_for(std::size_t{0}, here, [&](std::size_t k) {
+      parallel::for_all(std::size_t{0}, here, [&](std::size_t k) {
         take_registration(results[first + k],
                           sum_patches(*job.registration, networks[first + k], station_counts[first + k],
                                       std::span(masks).subspan(k * n, n), job.groups));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/sampled_voxels.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "trace/embree/seen_triangle.hpp"
 
 namespace vantage {
@@ -93,7 +92,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
   // A hit's point lies on its plane except for rounding.
   const double half = side / 2 + pad, wide = half + reach + 2 * pad;
 
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+  parallel::for_all(std::size_t{0}, n, [&](std::size_t i) {
     const std::array<std::uint32_t, 3> cell = morton_decode(grid.key(voxel_indices[i]));
     const Vec3 middle =
         Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} + Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5} * side;

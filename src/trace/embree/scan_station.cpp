@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/scan_station.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 
 namespace vantage {
@@ -170,7 +169,7 @@ void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std
   const Picture::Tiles tiles{first_row / RayTile::side, (end_row - 1) / RayTile::side + 1};
   const Wanted wanted{chunk, outputs, first_ray};
   tbb::enumerable_thread_specific<Picture::Strip> strips;
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, view_->ends.wide), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, view_->ends.wide), [&](const auto& range) {
     VoxelLookup voxels = rays.voxels();
     RayBundle bundle;
     Picture::Strip& strip = strips.local();

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/station_points.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 
 #include "core/add_saturating.hpp"
+#include "core/parallel.hpp"
 
 namespace vantage {
 
@@ -14,7 +13,7 @@ namespace vantage {
 template <class F>
 void StationPoints::each_chunk(const F& f) const {
   constexpr std::size_t words = chunk / word;
-  tbb::parallel_for(std::size_t{0}, (seen_.size() + words - 1) / words,
+  parallel::for_all(std::size_t{0}, (seen_.size() + words - 1) / words,
                     [&](std::size_t c) { f(c, c * words, std::min(seen_.size(), (c + 1) * words)); });
 }
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/tile_selection.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "trace/rays_of_box.hpp"
 
 namespace vantage {
@@ -55,7 +53,7 @@ TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station)
   const double pad = rounding_pad(magnitude);
   const double stretch = 1 + 0x1p-20;  // far more than the rounding of a distance
 
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.bricks().size(), 1024), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, grid.bricks().size(), 1024), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       const VoxelBrick& brick = grid.bricks()[k];
       const Vec3 corner = min + Vec3{brick.x * side, brick.y * side, brick.z * side} - head;

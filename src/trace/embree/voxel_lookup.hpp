@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage {
@@ -19,7 +18,7 @@ class BrickPrefixes {
   static constexpr std::uint32_t words = 8;
 
   explicit BrickPrefixes(const VoxelGrid& grid) : before_(grid.bricks().size()) {
-    tbb::parallel_for(std::size_t{0}, before_.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, before_.size(), [&](std::size_t k) {
       int sum = 0;
       for (std::uint32_t w = 0; w < words; ++w) {
         before_[k][w] = static_cast<std::uint16_t>(sum);

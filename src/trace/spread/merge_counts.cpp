@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/spread/merge_counts.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -25,7 +24,7 @@ void add_field(PassField& field, PassField&& part) {
     return;
   }
   constexpr std::size_t grain = std::size_t{1} << 16;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, field.count.size(), grain), [&](const auto& range) {
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, field.count.size(), grain), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       const std::uint32_t sum = field.count[k] + part.count[k];
       field.count[k] = sum < part.count[k] ? std::numeric_limits<std::uint32_t>::max() : sum;

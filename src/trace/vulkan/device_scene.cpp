@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/device_scene.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "core/normal_table.hpp"
+#include "core/parallel.hpp"
 #include "scene/local_from_mesh.hpp"
 #include "trace/glass_faces.hpp"
 #include "trace/triangle_neighbours.hpp"
@@ -140,7 +139,7 @@ void DeviceScene::upload_places() {
     runs.push_back({instance.first_triangle, instance.first_stored - instance.first_triangle, instance.place});
   runs.push_back({no_primitive, 0, no_place});
   std::vector<MeshTransform> places(scene.places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) { places[k] = mesh_transform(scene, k); });
+  parallel::for_all(std::size_t{0}, places.size(), [&](std::size_t k) { places[k] = mesh_transform(scene, k); });
   runs_ = make_device_buffer<TriangleRun>(device_, commands_, runs, "runs of triangles");
   run_at_ = make_device_buffer<std::uint32_t>(device_, commands_, scene.instance_at, "runs of blocks");
   places_ = make_device_buffer<MeshTransform>(device_, commands_, places, "places of meshes");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
@@ -44,7 +44,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
                                std::span<const std::uint32_t> totals, const Reduction& reduction,
                                std::uint32_t stride) const {
   const std::uint32_t point_weight = scene_.grid->demands().least_point_weight();
-  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
+  parallel::for_all(std::size_t{0}, counts.size(), [&](std::size_t n) {
     NetworkCounts& sum = counts[n];
     const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
     sum.voxels = reduction.voxels;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "trace/sample_runs.hpp"
 #include "trace/vulkan/pair_schedule.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
@@ -31,7 +31,7 @@ static std::vector<SampleVoxel> in_order_of_chunks(std::span<const SampleVoxel> 
 DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) {
   const VoxelGrid& grid = *scene_.grid;
   std::vector<SampleVoxel> voxels(sample.size());
-  tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, sample.size(), [&](std::size_t k) {
     const auto cell = morton_decode(grid.key(sample[k]));
     voxels[k] = {cell[0], cell[1], cell[2], static_cast<std::uint32_t>(k)};
   });
@@ -214,7 +214,7 @@ class VulkanTracer::SampledCount {
     std::vector<std::uint32_t> words(of_network * batch.size());
     t_.commands_.download(t_.sums_.masks, words.data(), words.size() * word);
     std::vector<std::uint64_t> masks(std::size_t{voxels_} * batch.size());
-    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t n) {
+    parallel::for_all(std::size_t{0}, batch.size(), [&](std::size_t n) {
       const std::uint32_t* low = words.data() + n * of_network;
       const std::uint32_t* high = mask_words_ > 1 ? low + voxels_ : nullptr;
       for (std::size_t v = 0; v < voxels_; ++v)
@@ -238,7 +238,7 @@ class VulkanTracer::SampledCount {
     }
     const std::vector<std::uint64_t> masks = masks_of(batch);
     registration_.resize(batch.end);
-    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t k) {
+    parallel::for_all(std::size_t{0}, batch.size(), [&](std::size_t k) {
       registration_[batch.first + k] =
           sum_patches(job, networks[k], station_counts[k], std::span(masks).subspan(k * voxels_, voxels_), job_.groups);
     });

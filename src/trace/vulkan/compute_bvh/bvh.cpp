@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/compute_bvh/bvh.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,6 +12,7 @@
 #include <utility>
 
 #include "core/glm.hpp"
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -120,10 +118,7 @@ class Builder {
       right_word = build(middle, end, slot + static_cast<std::uint32_t>(middle - begin), depth + 1);
     };
     if (count > parallel_grain) {
-      tbb::task_group group;
-      group.run(build_left);
-      build_right();
-      group.wait();
+      parallel::both(build_left, build_right);
     } else {
       build_left();
       build_right();
@@ -249,7 +244,7 @@ std::vector<BvhNode> compact(const std::vector<BvhNode>& sparse, std::uint32_t r
 Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::span<const Triangle> triangles,
               std::span<const std::uint32_t> ids) {
   assert(triangles.size() == ids.size() && items.size() < bvh_leaf_first_mask);
-  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, items.size(), [&](std::size_t k) {
     if (k < triangles.size())
       for (const std::uint32_t vertex : triangles[k]) items[k].box.extend(positions[vertex]);
     items[k].triangle = static_cast<std::uint32_t>(k);
@@ -268,7 +263,7 @@ Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::
     bvh.nodes = compact(builder.nodes(), root);
   }
   bvh.triangles.resize(items.size());
-  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, items.size(), [&](std::size_t k) {
     const std::uint32_t t = items[k].triangle;
     if (t >= triangles.size()) return;  // no leaf refers to it
     const Float3 a = positions[triangles[t][0]], b = positions[triangles[t][1]], c = positions[triangles[t][2]];
@@ -333,7 +328,7 @@ void bound_placements(std::span<Item> items, std::span<const Float3> positions, 
                       const vulkan::PlacedMeshes& placed, std::span<const std::vector<WideBox>> boxes) {
   if (items.empty()) return;
   std::vector<WideBox> own(placed.placements.size());
-  tbb::parallel_for(std::size_t{0}, own.size(),
+  parallel::for_all(std::size_t{0}, own.size(),
                     [&](std::size_t k) { own[k] = box_of(placed.placements[k], boxes[placed.placements[k].mesh]); });
   double size = 0;
   for (const WideBox& box : own) size = std::max(size, length(abs(box.centre) + box.half));
@@ -373,7 +368,7 @@ Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle
                      std::span<const std::uint32_t> ids, const vulkan::PlacedMeshes& placed) {
   std::vector<Bvh> meshes(placed.meshes.size());
   std::vector<std::vector<WideBox>> boxes(meshes.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+  parallel::for_all(std::size_t{0}, meshes.size(), [&](std::size_t m) {
     std::vector<std::uint32_t> own(placed.meshes[m].size());
     std::iota(own.begin(), own.end(), 0u);
     meshes[m] = build_bvh(positions, placed.meshes[m], own);
@@ -383,7 +378,7 @@ Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle
   std::vector<Item> items(triangles.size() + placed.placements.size());
   bound_placements(std::span(items).subspan(triangles.size()), positions, triangles, placed, boxes);
   std::vector<BvhPlacement> placements(placed.placements.size());
-  tbb::parallel_for(std::size_t{0}, placements.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, placements.size(), [&](std::size_t k) {
     const vulkan::MeshPlacement& place = placed.placements[k];
     const glm::dmat3 inverse = glm::inverse(place.linear());
     const glm::dvec3 origin = place.origin();

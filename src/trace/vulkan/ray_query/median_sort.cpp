@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/ray_query/median_sort.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
+
+#include "core/parallel.hpp"
 
 namespace vantage {
 namespace {
@@ -52,10 +51,7 @@ void sort_items(std::span<Placed> items) {
   }
   if (best != 2) halve(best);
   if (items.size() > 4096) {
-    tbb::task_group group;
-    group.run([&] { sort_items(items.first(half)); });
-    sort_items(items.subspan(half));
-    group.wait();
+    parallel::both([&] { sort_items(items.first(half)); }, [&] { sort_items(items.subspan(half)); });
   } else {
     sort_items(items.first(half));
     sort_items(items.subspan(half));
@@ -66,7 +62,7 @@ void sort_items(std::span<Placed> items) {
 
 std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::span<const Triangle> triangles) {
   std::vector<Placed> items(triangles.size());
-  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t t) {
+  parallel::for_all(std::size_t{0}, items.size(), [&](std::size_t t) {
     Placed& item = items[t];
     item.min.fill(std::numeric_limits<float>::infinity());
     item.max.fill(-std::numeric_limits<float>::infinity());

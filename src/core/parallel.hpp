@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loops of oneTBB that do their whole work or throw. Once an error ends a loop, oneTBB ends the loops inside it, too:
+// they return as usual, with any part of their work undone, and what follows them would read what was never written.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_group.h>
+
+#include <utility>
+
+namespace vantage::parallel {
+
+// Thrown by a loop that was cut short, in a task of the loop that the error ends; oneTBB drops it and keeps the error.
+// No std::exception, since nothing may take it for an error of its own.
+struct CutShort {};
+
+// tbb::parallel_for.
+template <class... Arguments>
+void for_all(Arguments&&... arguments) {
+  tbb::task_group_context context;
+  tbb::parallel_for(std::forward<Arguments>(arguments)..., context);
+  if (context.is_group_execution_cancelled()) throw CutShort{};
+}
+
+// tbb::parallel_reduce.
+template <class... Arguments>
+auto reduce(Arguments&&... arguments) {
+  tbb::task_group_context context;
+  auto result = tbb::parallel_reduce(std::forward<Arguments>(arguments)..., context);
+  if (context.is_group_execution_cancelled()) throw CutShort{};
+  return result;
+}
+
+// tbb::parallel_sort.
+template <class... Arguments>
+void sort(Arguments&&... arguments) {
+  tbb::parallel_sort(std::forward<Arguments>(arguments)...);
+  if (tbb::is_current_task_group_canceling()) throw CutShort{};
+}
+
+// tbb::parallel_invoke.
+template <class One, class Other>
+void both(const One& one, const Other& other) {
+  tbb::task_group_context context;
+  tbb::parallel_invoke(one, other, context);
+  if (context.is_group_execution_cancelled()) throw CutShort{};
+}
+
+inline void wait(tbb::task_group& group) {
+  if (group.wait() == tbb::canceled) throw CutShort{};
+}
+
+}  // namespace vantage::parallel
