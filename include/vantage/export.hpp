@@ -155,7 +155,8 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   std::span<const StationError> errors = {},
                                                   std::span<const Target> targets = {});
 
-/// Writes a whole result folder and makes it if needed. Files:
+/// Writes a whole result folder and makes it if needed; the files of an earlier plan there are removed or replaced.
+/// Files:
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
 /// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put

@@ -35,6 +35,15 @@ auto reduce(Arguments&&... arguments) {
   return result;
 }
 
+// tbb::parallel_deterministic_reduce.
+template <class... Arguments>
+auto reduce_in_order(Arguments&&... arguments) {
+  tbb::task_group_context context;
+  auto result = tbb::parallel_deterministic_reduce(std::forward<Arguments>(arguments)..., context);
+  if (context.is_group_execution_cancelled()) throw CutShort{};
+  return result;
+}
+
 // tbb::parallel_sort.
 template <class... Arguments>
 void sort(Arguments&&... arguments) {

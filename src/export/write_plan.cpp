@@ -32,6 +32,18 @@ std::string title_of(const PlanEntry& entry) {
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 
+// Removes those of an earlier plan's files that this plan may not write again.
+void remove_earlier(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
+                           "history.png", "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg"})
+    files.push_back(folder / name);
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().starts_with("plan-level-")) files.push_back(entry.path());
+  for (const auto& file : files) std::filesystem::remove(file, ignored);
+}
+
 }  // namespace
 
 std::vector<std::string> write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
@@ -45,6 +57,7 @@ std::vector<std::string> write_plan(const std::filesystem::path& folder, const P
   const Simulator& simulator = site.simulator();
   const PlanEntry& entry = result.front[answer(result)];
 
+  remove_earlier(folder);
   write_front_csv(folder / "front.csv", result);
   write_text(folder / "front.json", front_json(result, simulator));
   write_history_csv(folder / "history.csv", result);
@@ -58,8 +71,6 @@ std::vector<std::string> write_plan(const std::filesystem::path& folder, const P
   std::vector<std::string> left_out;
   std::mutex adding;
   const auto leave_out = [&](const std::string& name) {
-    std::error_code ignored;
-    std::filesystem::remove(folder / name, ignored);  // that of an earlier run is not this plan's
     const std::lock_guard lock(adding);
     left_out.push_back(name);
   };

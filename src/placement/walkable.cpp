@@ -273,7 +273,7 @@ std::vector<glm::dvec3> stored_points(const SceneData& scene) {
 double outline_area(const SceneData& scene) {
   using Hull = std::vector<Uv>;
   const auto hull_of = [](std::uint32_t count, const auto& add) {
-    return tbb::parallel_deterministic_reduce(
+    return parallel::reduce_in_order(
         tbb::blocked_range<std::uint32_t>(0, count, 1 << 14), Hull{},
         [&](const tbb::blocked_range<std::uint32_t>& range, Hull own) {
           for (std::uint32_t k = range.begin(); k != range.end(); ++k) add(own, k);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/memory_estimate.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/info.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +11,7 @@
 
 #include "core/free_memory.hpp"
 #include "core/glm.hpp"
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "scene/positions.hpp"
 #include "trace/tracer.hpp"
@@ -41,7 +40,7 @@ template <class Sum, class Body>
 Sum sum_surveyed(const SceneData& scene, const Body& body) {
   Sum sum;
   for (const MeshRange& mesh : surveyed_ranges(scene))
-    sum += tbb::parallel_deterministic_reduce(
+    sum += parallel::reduce_in_order(
         tbb::blocked_range<std::uint32_t>(mesh.first_triangle, mesh.first_triangle + mesh.triangle_count, 4096), Sum{},
         [&](const tbb::blocked_range<std::uint32_t>& range, Sum own) {
           for (std::uint32_t t = range.begin(); t != range.end(); ++t) body(own, t);

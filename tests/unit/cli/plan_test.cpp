@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <thread>
@@ -243,9 +244,15 @@ TEST_F(Plan, AsksTheSurveyorsQuestionWhereNoneIsNamed) {
   EXPECT_EQ(front["front"][0]["station_count"], 1) << "nothing is asked of it";
 
   EXPECT_EQ(run_program(plan("plan", {"--stations", "2"})).exit_code, 2) << "the folder holds another run";
-  const Outcome few = run_program(plan("plan", {"--stations", "2", "--force"}));
+  for (const char* name : {"missed.csv", "plan-level-2.png", "targets.csv", "report.pdf", "notes.txt"})
+    std::ofstream(path("plan/") + name) << "of the run before";
+  const Outcome few = run_program(plan("plan", {"--stations", "2", "--force", "--no-report"}));
   EXPECT_EQ(few.exit_code, 3) << few.err;
   EXPECT_NE(few.out.find("to do"), std::string::npos) << few.out;
+  for (const char* name : {"plan-level-2.png", "targets.csv", "report.pdf"})
+    EXPECT_FALSE(std::filesystem::exists(path("plan/") + name)) << name << " is of another plan";
+  EXPECT_EQ(read("plan/missed.csv").find("of the run before"), std::string::npos);
+  EXPECT_EQ(read("plan/notes.txt"), "of the run before") << "that is the surveyor's own";
 }
 
 TEST_F(Plan, IsDoneWithinTheTimeGiven) {
