@@ -57,9 +57,10 @@ class CandidateTable {
   // Takes overlaps for the least that their sample admits from now on, by so many standard errors: among thousands of
   // pairs, those that are chosen as links are those that the sample flatters.
   void take_least_overlaps(double errors);
-  // Takes in what every ray showed of the overlaps between chosen stations, which stay so. REQUIRES: a matrix of as
-  // many.
+  // Takes in what is known of the overlaps between chosen stations, by every ray or a large sample, and stays so.
+  // REQUIRES: a matrix of as many.
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
+  bool is_known(std::size_t i, std::size_t j) const { return known_.contains(std::minmax(i, j)); }
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
   // Extended by each addition.
@@ -72,7 +73,7 @@ class CandidateTable {
   StationSpacing spacing_;
   double unsampled_, errors_ = 0;
   StationGraph sampled_;                                 // as the sample shows it; empty while errors_ is 0
-  std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that every ray showed, the lower one first
+  std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that were taken in, the lower one first
   std::vector<double> least_m_;                          // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "plan/decision_space.hpp"
@@ -16,6 +17,8 @@ namespace {
 constexpr double kBeyond = 1.25;
 // Standard errors of a sampled overlap by which each repair takes links for weaker than they seem, and at most.
 constexpr double kRepairErrors = 1, kMostErrors = 2;
+// Most rounds of links checked on another sample.
+constexpr std::size_t kChecks = 8;
 // Further candidates around each end of a link that is too weak.
 constexpr std::size_t kBetween = 24;
 
@@ -61,21 +64,61 @@ std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, co
   return ordered;
 }
 
-// Looks at further candidates around both ends of the best link of each part of a verified network, as far as these are
-// apart, and chooses again. That serves where no known candidate links a part to the rest.
-void look_between(FewestChoice& choice, const PlacementOracle& oracle, const PlanEntry& entry,
-                  const std::stop_token& stop) {
-  const std::optional<StationLinks> links = entry.links();
-  if (!links) return;
+// Looks at further candidates around both ends of the best link of each part of a network, as far as these are apart,
+// and chooses again. That serves where no known candidate links a part to the rest.
+void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span<const PlacedStation> stations,
+                  const StationLinks& links, const std::stop_token& stop) {
   std::vector<PlacedStation> between;
-  for (const StationLinks::Gap& gap : links->gaps) {
-    const std::array ends{entry.stations[gap.inside], entry.stations[gap.outside]};
+  for (const StationLinks::Gap& gap : links.gaps) {
+    const std::array ends{stations[gap.inside], stations[gap.outside]};
     const Vec3 way = ends[1].ground - ends[0].ground;
     const auto found = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
     between.insert(between.end(), found.begin(), found.end());
   }
   choice.table.add(between, {.report = {}, .stop = stop});
   raise_margins(choice, {}, stop);
+}
+
+// Chosen stations with a link of which only the sample tells that it holds.
+std::vector<std::size_t> with_unknown_links(const FewestChoice& choice) {
+  const std::vector<std::size_t>& chosen = choice.network.chosen;
+  std::set<std::size_t> found;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    for (std::size_t j = i + 1; j < chosen.size(); ++j)
+      if (static_cast<double>(choice.table.graph().overlap(chosen[i], chosen[j])) >= choice.asked.link &&
+          !choice.table.is_known(chosen[i], chosen[j]))
+        found.insert({chosen[i], chosen[j]});
+  return {found.begin(), found.end()};
+}
+
+// The ends of the best link of each part of the chosen network, and the candidates between them that the sample shows
+// to be linked best to both.
+std::vector<std::size_t> around_gaps(const FewestChoice& choice, const StationLinks& links) {
+  const StationGraph& graph = choice.table.graph();
+  std::set<std::size_t> found;
+  for (const StationLinks::Gap& gap : links.gaps) {
+    const std::size_t inside = choice.network.chosen[gap.inside], outside = choice.network.chosen[gap.outside];
+    std::vector<std::pair<float, std::size_t>> between;
+    for (const StationGraph::Overlap& one : graph.overlaps(inside)) {
+      const float weaker = std::min(one.share, graph.overlap(one.candidate, outside));
+      if (static_cast<double>(weaker) >= choice.asked.link) between.emplace_back(-weaker, one.candidate);
+    }
+    std::ranges::sort(between);
+    if (between.size() > kBetween) between.resize(kBetween);
+    found.insert({inside, outside});
+    for (const auto& [weaker, candidate] : between) found.insert(candidate);
+  }
+  return {found.begin(), found.end()};
+}
+
+// As the table knows them, of the chosen stations in their order.
+StationLinks links_of(const FewestChoice& choice) {
+  const std::vector<std::size_t>& chosen = choice.network.chosen;
+  ScanOverlapMatrix overlap(chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    for (std::size_t j = i + 1; j < chosen.size(); ++j)
+      overlap.set(i, j, static_cast<double>(choice.table.graph().overlap(chosen[i], chosen[j])));
+  return station_links(overlap, choice.asked.link, choice.stations_of(choice.network));
 }
 
 }  // namespace
@@ -184,6 +227,31 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
 }
 
+void check_links(FewestChoice& choice, const PlacementOracle& oracle, const LeastOverlaps& least_overlaps,
+                 const std::stop_token& stop) {
+  // False if stopped.
+  const auto check = [&](const std::vector<std::size_t>& some) {
+    std::vector<PlacedStation> stations;
+    for (const std::size_t k : some) stations.push_back(choice.table.stations()[k]);
+    const std::optional<ScanOverlapMatrix> least = least_overlaps(stations);
+    if (least) choice.table.take_in(some, *least);
+    return least.has_value();
+  };
+  for (std::size_t k = 0; k < kChecks; ++k) {
+    const std::vector<std::size_t> unknown = with_unknown_links(choice);
+    if (unknown.empty() || !check(unknown)) return;
+    choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
+    if (choice.network.violation == 0) return;
+    // What may mend a gap is checked before it is chosen.
+    if (const auto around = around_gaps(choice, links_of(choice)); !around.empty() && !check(around)) return;
+    const std::vector<std::size_t> before = choice.network.chosen;
+    raise_margins(choice, {}, stop);
+    if (choice.network.violation > 0)
+      look_between(choice, oracle, choice.stations_of(choice.network), links_of(choice), stop);
+    if (choice.network.chosen == before) return;
+  }
+}
+
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
             const std::stop_token& stop) {
   const PlanEntry *best = verified.best(), &last = verified.entries().back();
@@ -202,7 +270,8 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   if (was_known && missing.link == 0) return false;
   const std::vector<std::size_t> before = choice.network.chosen;
   if (!was_known) raise_margins(choice, missing, stop);
-  if (choice.network.violation > 0 && missing.link > 0) look_between(choice, oracle, last, stop);
+  if (const auto links = last.links(); links && choice.network.violation > 0 && missing.link > 0)
+    look_between(choice, oracle, last.stations, *links, stop);
   if (choice.network.violation == 0) return true;
   return choice.network.chosen != before && (known == 0 || choice.network.violation < known);
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -72,6 +73,14 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
 // cannot help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
             const std::stop_token& stop);
+
+// Scan overlaps of stations, at least, as a sample shows them that did not choose them; none if stopped.
+using LeastOverlaps = std::function<std::optional<ScanOverlapMatrix>(std::span<const PlacedStation>)>;
+
+// Checks the links of the chosen network, long before every ray does: those that are chosen among millions of pairs are
+// those that their sample flatters. Links that do not hold are mended, as in a repair.
+void check_links(FewestChoice& choice, const PlacementOracle& oracle, const LeastOverlaps& least_overlaps,
+                 const std::stop_token& stop);
 
 // Uses the sample's error, known once the chosen network is verified. If it is below the margin, a station fewer may
 // do, or as many may be linked better. Chooses and verifies such a network, and keeps it, with the new `overstated`, if

@@ -34,6 +34,8 @@ constexpr std::size_t kTogether = 128;
 // they seem, by so many standard errors, before every ray shows it. On smaller sites that would cost stations for links
 // that hold.
 constexpr double kGroundOfHundreds_m2 = 8000, kLinkErrors = 2;
+// Voxels by which its links are checked, in samples by which they were chosen.
+constexpr std::uint64_t kCheckedVoxels = 5;
 
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
@@ -107,6 +109,10 @@ VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
           .minutes = [&on_site](std::span<const PlacedStation> placed) { return on_site.visit(placed).minutes; }};
 }
 
+bool has_hundreds_of_links(const FewestChoice& choice, PlanContext& context) {
+  return choice.asked.link > 0 && ground_area_m2(context.area().mesh()) > kGroundOfHundreds_m2;
+}
+
 // What is chosen among thousands by a sample is what the sample flatters. Other voxels tell by how much, long before
 // every ray does: chooses anew, with margins, until they show enough.
 void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
@@ -120,6 +126,32 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   }
 }
 
+// The same of links.
+void check_links(FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
+  if (!has_hundreds_of_links(choice, context)) return;
+  Simulator& surroundings = context.surroundings();
+  const std::uint64_t known_by = context.link_voxels(), all = surroundings.voxel_count();
+  if (known_by == 0 || known_by >= all) return;
+  const SampleOptions others{.voxels = std::min(kCheckedVoxels * known_by, all - known_by),
+                             .from = known_by,
+                             .count_to = CountTo::one,
+                             .groups = false};
+  const double errors = kLinkErrors * std::sqrt(1 - static_cast<double>(others.voxels) / static_cast<double>(all));
+  const LeastOverlaps least_overlaps =
+      [&](std::span<const PlacedStation> stations) -> std::optional<ScanOverlapMatrix> {
+    const Network network = to_network(stations);
+    const auto counts = surroundings.evaluate_sampled({&network, 1}, others, {.report = {}, .stop = watch.stop});
+    if (counts.front().cancelled) return std::nullopt;
+    ScanOverlapMatrix overlap = scan_overlap_matrix(counts.front());
+    for (std::size_t i = 0; i < stations.size(); ++i)
+      for (std::size_t j = i + 1; j < stations.size(); ++j)
+        if (const std::uint64_t fewer = std::min(counts.front().seen[i], counts.front().seen[j]); fewer > 0)
+          overlap.set(i, j, least_share(overlap(i, j), static_cast<double>(fewer), errors));
+    return overlap;
+  };
+  check_links(choice, context.oracle(), least_overlaps, watch.stop);
+}
+
 // Looks, chooses and refines. Without stations to place where the time was over first.
 FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
                            const PlanConfig& config, const PlanWatch& watch, FewestReport& report) {
@@ -129,7 +161,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
-  if (choice.asked.link > 0 && ground_area_m2(context.area().mesh()) > kGroundOfHundreds_m2) {
+  if (has_hundreds_of_links(choice, context)) {
     choice.link_errors = kLinkErrors;
     choice.table.take_least_overlaps(choice.link_errors);
   }
@@ -158,6 +190,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
       report("choose", seconds);
   }
   calibrate(choice, context, simulator, watch);
+  check_links(choice, context, watch);
   return choice;
 }
 
@@ -175,6 +208,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
        ++k) {
     if (!repair(choice, verified, context.oracle(), watch.stop)) break;
+    check_links(choice, context, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
   }

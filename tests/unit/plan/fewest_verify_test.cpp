@@ -125,6 +125,53 @@ TEST_F(FewestVerify, LooksBetweenStationsThatNoCandidateLinks) {
   EXPECT_GT(std::ranges::count_if(verified.best()->stations, std::not_fn(is_candidate)), 0);
 }
 
+// Another sample shows the weakest links of the chosen stations to be too weak, and all others as the first one does.
+TEST_F(FewestVerify, ChecksLinksByAnotherSampleUntilTheyHold) {
+  const auto weakest = static_cast<float>(choice.network.link);
+  const std::vector<PlacedStation> chosen = choice.placed_of(choice.network);
+  const StationGraph flattered = choice.table.graph();
+  const auto index_of = [&](const PlacedStation& one) {
+    const auto& all = choice.table.stations();
+    return static_cast<std::size_t>(
+        std::ranges::min_element(all, {}, [&](const auto& s) { return test::apart_m(s.position, one.position); }) -
+        all.begin());
+  };
+  const auto is_chosen = [&](const PlacedStation& one) {
+    return std::ranges::any_of(
+        chosen, [&](const PlacedStation& other) { return test::apart_m(one.position, other.position) < 1e-6; });
+  };
+  std::vector<std::size_t> measured;
+  const LeastOverlaps least = [&](std::span<const PlacedStation> stations) {
+    measured.push_back(stations.size());
+    ScanOverlapMatrix overlap(stations.size());
+    for (std::size_t i = 0; i < stations.size(); ++i)
+      for (std::size_t j = i + 1; j < stations.size(); ++j) {
+        const float sampled = flattered.overlap(index_of(stations[i]), index_of(stations[j]));
+        const bool weak = sampled <= weakest && is_chosen(stations[i]) && is_chosen(stations[j]);
+        overlap.set(i, j, weak ? 0.05 : static_cast<double>(sampled));
+      }
+    return std::optional(overlap);
+  };
+  check_links(choice, oracle, least, {});
+  EXPECT_GE(measured.size(), 2u) << "the first choice does not hold";
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_EQ(choice.placed(), chosen.size()) << "no station more";
+  const auto& now = choice.network.chosen;
+  for (const std::size_t i : now)
+    for (const std::size_t j : now)
+      if (i < j && static_cast<double>(choice.table.graph().overlap(i, j)) >= choice.asked.link)
+        EXPECT_TRUE(choice.table.is_known(i, j)) << "a link that nobody checked: " << i << ' ' << j;
+  const std::size_t calls = measured.size();
+  check_links(choice, oracle, least, {});
+  EXPECT_EQ(measured.size(), calls) << "nothing is left to measure";
+}
+
+TEST_F(FewestVerify, KeepsTheChoiceWhereTheCheckIsStopped) {
+  const auto chosen = choice.network.chosen;
+  check_links(choice, oracle, [](std::span<const PlacedStation>) { return std::nullopt; }, {});
+  EXPECT_EQ(choice.network.chosen, chosen);
+}
+
 TEST_F(FewestVerify, LeavesAloneWhatEveryRayShowsAsItWasKnown) {
   choice.asked.coverage = 1;
   choice.asked.most = 3;
