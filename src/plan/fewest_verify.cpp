@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/graph.hpp"
 #include "plan/decision_space.hpp"
 #include "plan/drop_networks.hpp"
 
@@ -79,20 +80,24 @@ void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span
   raise_margins(choice, {}, stop);
 }
 
-// Chosen stations with a link of which only the sample tells that it holds.
+// Chosen stations with a link of which only the sample tells that it holds, and which known links do not replace.
 std::vector<std::size_t> with_unknown_links(const FewestChoice& choice) {
   const std::vector<std::size_t>& chosen = choice.network.chosen;
+  const auto linked = [&](std::size_t i, std::size_t j) {
+    return static_cast<double>(choice.table.graph().overlap(chosen[i], chosen[j])) >= choice.asked.link;
+  };
+  const auto known = [&](std::size_t i, std::size_t j) { return choice.table.is_known(chosen[i], chosen[j]); };
+  const Components parts =
+      components(chosen.size(), [&](std::size_t i, std::size_t j) { return linked(i, j) && known(i, j); });
   std::set<std::size_t> found;
   for (std::size_t i = 0; i < chosen.size(); ++i)
     for (std::size_t j = i + 1; j < chosen.size(); ++j)
-      if (static_cast<double>(choice.table.graph().overlap(chosen[i], chosen[j])) >= choice.asked.link &&
-          !choice.table.is_known(chosen[i], chosen[j]))
-        found.insert({chosen[i], chosen[j]});
+      if (parts.of[i] != parts.of[j] && linked(i, j) && !known(i, j)) found.insert({chosen[i], chosen[j]});
   return {found.begin(), found.end()};
 }
 
-// The ends of the best link of each part of the chosen network, and the candidates between them that the sample shows
-// to be linked best to both.
+// The ends of the best link of each part of the chosen network, and the candidates that the sample shows to be linked
+// best to both. Links that it admits to be too weak are among them: a larger one may show them to hold.
 std::vector<std::size_t> around_gaps(const FewestChoice& choice, const StationLinks& links) {
   const StationGraph& graph = choice.table.graph();
   std::set<std::size_t> found;
@@ -101,7 +106,7 @@ std::vector<std::size_t> around_gaps(const FewestChoice& choice, const StationLi
     std::vector<std::pair<float, std::size_t>> between;
     for (const StationGraph::Overlap& one : graph.overlaps(inside)) {
       const float weaker = std::min(one.share, graph.overlap(one.candidate, outside));
-      if (static_cast<double>(weaker) >= choice.asked.link) between.emplace_back(-weaker, one.candidate);
+      if (weaker > 0) between.emplace_back(-weaker, one.candidate);
     }
     std::ranges::sort(between);
     if (between.size() > kBetween) between.resize(kBetween);

@@ -34,8 +34,10 @@ constexpr std::size_t kTogether = 128;
 // they seem, by so many standard errors, before every ray shows it. On smaller sites that would cost stations for links
 // that hold.
 constexpr double kGroundOfHundreds_m2 = 8000, kLinkErrors = 2;
-// Voxels by which its links are checked, in samples by which they were chosen.
-constexpr std::uint64_t kCheckedVoxels = 5;
+// Voxels by which its links are checked, in samples by which they were chosen, and standard errors by which they must
+// hold there.
+constexpr std::uint64_t kCheckedVoxels = 3;
+constexpr double kCheckErrors = 1;
 
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
@@ -136,7 +138,7 @@ void check_links(FewestChoice& choice, PlanContext& context, const PlanWatch& wa
                              .from = known_by,
                              .count_to = CountTo::one,
                              .groups = false};
-  const double errors = kLinkErrors * std::sqrt(1 - static_cast<double>(others.voxels) / static_cast<double>(all));
+  const double errors = kCheckErrors * std::sqrt(1 - static_cast<double>(others.voxels) / static_cast<double>(all));
   const LeastOverlaps least_overlaps =
       [&](std::span<const PlacedStation> stations) -> std::optional<ScanOverlapMatrix> {
     const Network network = to_network(stations);
