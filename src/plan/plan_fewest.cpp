@@ -129,7 +129,7 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
 }
 
 // The same of links.
-void check_links(FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
+void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!has_hundreds_of_links(choice, context)) return;
   Simulator& surroundings = context.surroundings();
   const std::uint64_t known_by = context.link_voxels(), all = surroundings.voxel_count();
@@ -151,6 +151,9 @@ void check_links(FewestChoice& choice, PlanContext& context, const PlanWatch& wa
           overlap.set(i, j, least_share(overlap(i, j), static_cast<double>(fewer), errors));
     return overlap;
   };
+  check_links(choice, context.oracle(), least_overlaps, watch.stop);
+  // The stations that mend links may capture less than they seem to.
+  calibrate(choice, context, simulator, watch);
   check_links(choice, context.oracle(), least_overlaps, watch.stop);
 }
 
@@ -192,14 +195,14 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
       report("choose", seconds);
   }
   calibrate(choice, context, simulator, watch);
-  check_links(choice, context, watch);
+  check_links(choice, context, simulator, watch);
   return choice;
 }
 
 // Verifies the choice and repairs it if it is not feasible by every ray; otherwise tries fewer stations. Returns the
 // overstatement of its coverage by the sample of a search.
-double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanContext& context, const PlanWatch& watch,
-                         const FewestReport& report) {
+double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanContext& context, Simulator& simulator,
+                         const PlanWatch& watch, const FewestReport& report) {
   const auto least_violation = [&] {
     const PlanEntry* best = verified.best();
     return best ? best->violation : std::numeric_limits<double>::infinity();
@@ -210,7 +213,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
        ++k) {
     if (!repair(choice, verified, context.oracle(), watch.stop)) break;
-    check_links(choice, context, watch);
+    check_links(choice, context, simulator, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
   }
@@ -303,7 +306,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result = context.result(found);
     result.front = any_position(context, *candidates, verified);
   } else {
-    const double overstated = verify_and_repair(choice, verified, context, watch, report);
+    const double overstated = verify_and_repair(choice, verified, context, simulator, watch, report);
     found = search_from(choice, context, overstated, candidates->stations().size(), config, watch, report);
     verified.add(found, choice.placed());
     result = context.result(found);
