@@ -247,11 +247,8 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
   const auto field = cartography(site.simulator(), chosen, program, map_by.stop());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  for (const char* name :
-       {"missed.csv", "missed.ply", "missed.png", "rooms.csv", "report.html", "report.pdf", "bound.json"}) {
-    std::error_code ignored;
-    std::filesystem::remove(folder / name, ignored);  // that of an earlier run is not this plan's
-  }
+  remove_earlier(folder,
+                 {"missed.csv", "missed.ply", "missed.png", "rooms.csv", "report.html", "report.pdf", "bound.json"});
   const auto begun = std::chrono::steady_clock::now();
   const std::vector<std::string> not_drawn = write_plan(folder, result, site, field ? &*field : nullptr, all_by.stop());
   if (!not_drawn.empty())

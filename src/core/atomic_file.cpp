@@ -132,6 +132,11 @@ void AtomicFile::remove_leftovers(const std::filesystem::path& file) {
 
 void AtomicFile::remove_leftovers_in(const std::filesystem::path& folder) { remove_temporaries(folder, "."); }
 
+void remove_earlier(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
+  std::error_code ignored;
+  for (const char* name : names) std::filesystem::remove(folder / name, ignored);
+}
+
 void write_atomically(const std::filesystem::path& file, std::string_view content) {
   AtomicFile out(file);
   out.write(content);

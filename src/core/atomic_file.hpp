@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -40,6 +41,10 @@ class AtomicFile {
   int descriptor_ = -1;
   bool settled_ = false;
 };
+
+// Removes files of a folder that an earlier run left and this one may not write again. One that cannot be removed
+// stays.
+void remove_earlier(const std::filesystem::path& folder, std::initializer_list<const char*> names);
 
 // Throws Error io.
 void write_atomically(const std::filesystem::path& file, std::string_view content);

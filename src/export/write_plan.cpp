@@ -5,6 +5,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "core/atomic_file.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/pictures.hpp"
@@ -32,16 +33,15 @@ std::string title_of(const PlanEntry& entry) {
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 
-// Removes those of an earlier plan's files that this plan may not write again.
-void remove_earlier(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const char* name : {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
-                           "history.png", "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg"})
-    files.push_back(folder / name);
+void remove_earlier_plan(const std::filesystem::path& folder) {
+  remove_earlier(folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
+                          "history.png", "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg"});
+  std::vector<std::string> levels;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().filename().string().starts_with("plan-level-")) files.push_back(entry.path());
-  for (const auto& file : files) std::filesystem::remove(file, ignored);
+    if (const std::string name = entry.path().filename().string(); name.starts_with("plan-level-"))
+      levels.push_back(name);
+  for (const std::string& name : levels) remove_earlier(folder, {name.c_str()});
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::vector<std::string> write_plan(const std::filesystem::path& folder, const P
   const Simulator& simulator = site.simulator();
   const PlanEntry& entry = result.front[answer(result)];
 
-  remove_earlier(folder);
+  remove_earlier_plan(folder);
   write_front_csv(folder / "front.csv", result);
   write_text(folder / "front.json", front_json(result, simulator));
   write_history_csv(folder / "history.csv", result);

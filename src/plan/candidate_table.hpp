@@ -57,9 +57,10 @@ class CandidateTable {
   // Takes overlaps for the least that their sample admits from now on, by so many standard errors: among thousands of
   // pairs, those that are chosen as links are those that the sample flatters.
   void take_least_overlaps(double errors);
-  // Takes in what is known of the overlaps between chosen stations, by every ray or a large sample, and stays so.
-  // REQUIRES: a matrix of as many.
+  // Takes in overlaps between chosen stations, as every ray or a larger sample shows them. They stay so. REQUIRES: a
+  // matrix of as many.
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
+  // Whether a pair's overlap was taken in.
   bool is_known(std::size_t i, std::size_t j) const { return known_.contains(std::minmax(i, j)); }
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;

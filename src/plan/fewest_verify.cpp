@@ -247,7 +247,7 @@ void check_links(FewestChoice& choice, const PlacementOracle& oracle, const Leas
     if (unknown.empty() || !check(unknown)) return;
     choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
     if (choice.network.violation == 0) return;
-    // What may mend a gap is checked before it is chosen.
+    // Candidates that may mend a gap are checked before one of them is chosen.
     if (const auto around = around_gaps(choice, links_of(choice)); !around.empty() && !check(around)) return;
     const std::vector<std::size_t> before = choice.network.chosen;
     raise_margins(choice, {}, stop);

@@ -128,7 +128,7 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   }
 }
 
-// The same of links.
+// Other voxels tell which links do not hold, too. Mends these, on sites that have hundreds.
 void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!has_hundreds_of_links(choice, context)) return;
   Simulator& surroundings = context.surroundings();
