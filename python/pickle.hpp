@@ -16,7 +16,9 @@
 
 namespace vantage::python {
 
-inline auto members(RegistrationSums& s) { return std::tie(s.centre, s.radius_m, s.heads, s.pairs, s.surface); }
+inline auto members(RegistrationSums& s) {
+  return std::tie(s.voxels, s.centre, s.radius_m, s.heads, s.pairs, s.surface, s.groups);
+}
 inline auto members(NetworkCounts& c) {
   return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_weight, c.rays, c.stations, c.points,
                   c.points_on_surveyed, c.dropped, c.mixed, c.seen, c.shared, c.registration, c.groups,

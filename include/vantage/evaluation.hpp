@@ -67,6 +67,7 @@ struct Evaluation {
   double goal_density = 1;   ///< Points wanted in a voxel.
   /// Counts. `groups` and `registration` are left out: the figures below are made of them.
   NetworkCounts counts = {};
+  Work work = {};         ///< Of the call that made it, with the other networks of that call.
   VoxelField field = {};  ///< Points of every voxel, if they were asked for.
   /// Figures by the names of their measures, e.g. "coverage", in the measures' units. NaN: not known.
   std::map<std::string, Estimate> values = {};
@@ -127,6 +128,9 @@ struct EvaluationOptions {
   std::vector<Objective> measures = {};                            ///< Measures besides coverage and overlap.
   std::vector<Requirement> requirements = {};                      ///< Their objectives are measured too.
   std::optional<RegistrationOptions> registration = std::nullopt;  ///< Predict the error of the registered scans.
+  /// Voxels that the error is predicted from if every ray is traced: `every_voxel`, or a sample. 0: a sample that grows
+  /// until the error is known to 2 % or to 0.02 mm, as one standard error.
+  std::uint64_t registration_voxels = 0;
   std::vector<Target> targets = {};  ///< Targets and control points that tie scans together, for `registration`.
   TargetOptions target = {};
   /// Measures `capture` too. The evaluated stations raise these counts where one alone sees more. Null: not.

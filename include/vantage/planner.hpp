@@ -194,6 +194,7 @@ struct PlanResult {
   std::uint64_t resumed_evaluations = 0;  ///< Number of evaluations taken from a checkpoint.
   StopReason stop_reason = StopReason::running;
   double seconds = 0, trace_seconds = 0;
+  Work work = {};  ///< Of this plan, without building the site's simulators.
 };
 
 /// Snapshot of a running plan.

@@ -17,6 +17,7 @@
 #include "vantage/scene.hpp"
 #include "vantage/station_setup.hpp"
 #include "vantage/trace.hpp"
+#include "vantage/work.hpp"
 
 namespace vantage {
 
@@ -162,6 +163,9 @@ struct ScanPoints {
   ScanSummary summary;
 };
 
+/// As the size of a sample: all surveyed voxels.
+inline constexpr std::uint64_t every_voxel = std::numeric_limits<std::uint64_t>::max();
+
 /// How `Simulator::evaluate` works.
 struct EvaluateOptions {
   bool overlap = true;  ///< Keeps station masks and counts pairs.
@@ -169,12 +173,13 @@ struct EvaluateOptions {
   VoxelField* field = nullptr;  ///< Receives the voxel field, if given.
   /// Fills `NetworkCounts::registration`, if given. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
+  /// Voxels that registration is summed over, in groups: a sample costs the planes of its own voxels alone. It grows
+  /// fourfold until `registration_known` returns true for the counts of a network, by its number, or has every voxel.
+  std::uint64_t registration_voxels = every_voxel;
+  std::function<bool(std::size_t network, const NetworkCounts&)> registration_known = {};
   /// Gives the beam a width, at the cost of its sub-rays, none of which are left out. Empty: rays without one.
   std::optional<BeamOptions> beam = std::nullopt;
 };
-
-/// As the size of a sample: all surveyed voxels.
-inline constexpr std::uint64_t every_voxel = std::numeric_limits<std::uint64_t>::max();
 
 /// Sample and outputs of a sampled evaluation.
 /// Points of a voxel that are counted. Fewer rays do for fewer.
@@ -276,6 +281,9 @@ class Simulator {
   /// Evaluates networks on a sample of the voxels; one submission for all.
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options = {},
                                               const Progress& progress = {});
+
+  /// All work since it was built, but for scans. Not during a call.
+  Work work() const;
 
  private:
   friend Simulator surroundings_of(const Simulator& simulator);

@@ -126,6 +126,7 @@ class Site {
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Made if needed.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
+  Work work() const;          ///< Of the simulators that were made so far.
 
   /// Places a station by its head (survey frame), at `uv` if that is given, and checks it as a search does.
   PlacedHead place_head(const Vec3& head, std::optional<Uv> uv = {});

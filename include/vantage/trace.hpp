@@ -70,15 +70,19 @@ struct RegistrationModel {
 /// Exact, except for one rounding of each sum to double.
 struct RegistrationSums {
   static constexpr std::size_t of_pair = 21, of_station = 10;
-  Vec3 centre;              ///< Local frame; places and rotations are relative to it.
-  double radius_m = 1;      ///< Unit of places; rotations are in units of 1 / it.
-  std::vector<Vec3> heads;  ///< Per station, metres from the centre; empty unless sums were asked for.
+  std::uint64_t voxels = 0;  ///< Voxels that were summed: those counted, or a sample of them.
+  Vec3 centre;               ///< Local frame; places and rotations are relative to it.
+  double radius_m = 1;       ///< Unit of places; rotations are in units of 1 / it.
+  std::vector<Vec3> heads;   ///< Per station, metres from the centre; empty unless sums were asked for.
   /// Per pair, in the order of `NetworkCounts::shared`: the upper triangle, row by row, of Σ w_i w_j / Σ_k w_k · J Jᵀ
   /// in 1/m², with J = [place × normal, normal].
   std::vector<double> pairs;
   /// Per station: moments 1, x, y, z, xx, xy, xz, yy, yz, zz of the places of the surface it sees, in voxel faces.
   /// Surface seen by k stations counts 1/k for each.
   std::vector<double> surface;
+  /// The same sums for each of G interleaved groups of a sample, for standard errors; empty if all voxels were summed.
+  /// Of more than 64 stations they hold only the pairs whose sums are not 0.
+  std::vector<RegistrationSums> groups;
 };
 
 /// Points of one station in surveyed voxels that do not count because they miss a limit

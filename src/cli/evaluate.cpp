@@ -26,7 +26,7 @@ struct EvaluateCommandOptions {
   TargetOptions target;
   std::optional<std::string> targets, proposed_targets;
   bool exact = false, skip = false, no_overlap = false, with_registration = false, attainable = false;
-  std::optional<SampleSize> sample;
+  std::optional<SampleSize> sample, registration_sample;
   std::optional<double> error, link, link_overlap;
   std::optional<BeamOptions> beam;
   std::optional<std::string> cartography, rooms, matrix, picture;
@@ -59,6 +59,14 @@ struct EvaluateCommandOptions {
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
     add_settings(command, registration_settings(), registration);
+    add_value(
+        command, "--registration-voxels", "N|P%",
+        "Predict it from so many surveyed voxels, or that share of them; 100% is every voxel. Otherwise from a "
+        "sample that grows until the error is known to 2 %, or to 0.02 mm",
+        [this](const std::string& text, const std::string& what) { registration_sample = parse_sample(text, what); })
+        ->group("Registration")
+        ->excludes(sample_option)
+        ->excludes(error_option);
     add_texts(command, "--registration-map", "FILE",
               "Write the predicted error on the surface, in false colours: .ply, or .png or .svg from above; may be "
               "repeated",
@@ -163,6 +171,8 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     refuse("--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
   if (!options.registration_files.empty() && (options.sampled() || !options.with_registration))
     refuse("--registration-map: shows the error of --registration on every voxel, and so needs both it and --exact");
+  if (options.registration_sample && !options.with_registration)
+    refuse("--registration-voxels: says how --registration is predicted, which was not asked for");
   if (options.with_registration && options.no_overlap)
     refuse("--registration: looks at what scans share, which --no-overlap leaves out");
 }
@@ -180,6 +190,10 @@ EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simu
     chosen.sample_voxels =
         voxels_for_standard_error(simulator, {&network, 1}, *options.error, chosen.overlap, progress);
   if (options.with_registration) chosen.registration = options.registration;
+  if (options.registration_sample) {
+    const std::uint64_t voxels = simulator.voxel_count(), some = options.registration_sample->of(voxels);
+    chosen.registration_voxels = some < voxels ? some : every_voxel;
+  }
   return chosen;
 }
 
@@ -278,7 +292,7 @@ std::string evaluation_text(const Evaluation& found, const std::vector<std::stri
   if (found.registration) {
     const Estimate& error_mm = found.values.at("registration");
     text += fmt::format("registration {:.2f}{} mm, worst station {}: {:.2f} mm\n", error_mm.value,
-                        traced ? "" : fmt::format(" ± {:.2f}", error_mm.standard_error),
+                        error_mm.standard_error > 0 ? fmt::format(" ± {:.2f}", error_mm.standard_error) : "",
                         names[found.registration->worst_station], 1e3 * found.registration->worst_m);
   }
   if (std::ranges::any_of(found.counts.dropped, [](const DroppedPoints& lost) { return lost.points > 0; }))

@@ -170,6 +170,7 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
 // Every voxel's count under the network that is shown; empty where it was stopped.
 std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program,
                                       std::stop_token abort) {
+  if (!entry.field.count.empty()) return entry.field;
   ProgressLine line(program.console, "mapping what is captured");
   VoxelField field;
   const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},

@@ -4,6 +4,7 @@
 
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
+#include "objective/registered_sample.hpp"
 #include "placement/nearest_place.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
@@ -54,17 +55,30 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("a sample has no points of every voxel; choose either the field or a sample");
 }
 
+// The prediction whose error is to be known.
+RegistrationOptions registration_of(const RequiredInputs& needs, const EvaluationOptions& options) {
+  RegistrationOptions plain;
+  if (needs.registration) plain.model = *needs.registration;
+  if (needs.surroundings_registration) plain.surfaces = RegistrationSurfaces::all;
+  return options.registration.value_or(plain);
+}
+
+// As many voxels as the caller wants.
+EvaluateOptions registered_by(EvaluateOptions counting, std::uint64_t voxels) {
+  if (voxels > 0) counting.registration_voxels = voxels, counting.registration_known = nullptr;
+  return counting;
+}
+
 std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const RequiredInputs& needs,
                                  const EvaluationOptions& options, VoxelField* field, const Progress& progress) {
   if (options.sample_voxels)
     return simulator.evaluate_sampled(
         networks, {.voxels = *options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
         progress);
-  const EvaluateOptions every_ray{.overlap = options.overlap,
-                                  .skip = options.skip,
-                                  .field = field,
-                                  .registration = needs.registration,
-                                  .beam = options.beam};
+  EvaluateOptions every_ray =
+      registered_by(count_surveyed(needs, registration_of(needs, options), simulator), options.registration_voxels);
+  every_ray.overlap = options.overlap, every_ray.skip = options.skip;
+  every_ray.field = field, every_ray.beam = options.beam;
   if (networks.size() == 1) return {simulator.evaluate(networks.front(), every_ray, progress)};
   return simulator.evaluate_each(networks, every_ray, progress);
 }
@@ -90,13 +104,18 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
   };
   const double counted = counts_around || options.attainable ? 0.6 : 1, looked = options.attainable ? 0.8 : 1;
 
+  const auto work = [&] { return site.simulator.work() + (site.surroundings ? site.surroundings->work() : Work{}); };
+  const Work before = work();
   VoxelField field;
   const std::vector<NetworkCounts> counts =
       count(site.simulator, networks, needs, options, options.field ? &field : nullptr, share(0, counted));
   std::vector<NetworkCounts> around;
   if (counts_around && !progress.stopped())
     around = site.surroundings->evaluate_each(
-        networks, {.registration = needs.surroundings_registration ? needs.registration : std::nullopt},
+        networks,
+        registered_by(
+            count_surroundings(needs, registration_of(needs, options), counts, site.simulator, *site.surroundings),
+            options.registration_voxels),
         share(counted, looked));
 
   AttainableCounts attainable;
@@ -158,6 +177,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     one.violation = violation_of(one, options.requirements);
   }
   if (options.field && !made.front().counts.cancelled) made.front().field = std::move(field);
+  for (Evaluation& one : made) one.work = work() - before;
   return made;
 }
 

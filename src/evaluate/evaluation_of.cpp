@@ -31,14 +31,17 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
     made.registration = registration_error(counts, measured.voxels, *registration, measured.surroundings,
                                            measured.surroundings_voxels, targets);
   // The measure of the same name is this error where it has no targets, and no error of a sample.
-  const bool whole =
-      made.exact && (!measured.surroundings || measured.surroundings->voxels >= measured.surroundings_voxels);
+  const auto summed = [](const NetworkCounts& sums, std::uint64_t voxels) {
+    return sums.registration.voxels >= voxels;
+  };
+  const bool whole = registration && summed(counts, measured.voxels) &&
+                     (registration->surfaces != RegistrationSurfaces::all ||
+                      summed(*measured.surroundings, measured.surroundings_voxels));
   ObjectiveSettings settings;
   settings.registration = registration.value_or(RegistrationOptions{});
   const Objective same = make_objective("registration", settings);
   for (const Objective& measure : measures) {
-    const bool known =
-        registration && targets.empty() && whole && measure.name == same.name && measure.parameters == same.parameters;
+    const bool known = whole && targets.empty() && measure.name == same.name && measure.parameters == same.parameters;
     made.values[measure.name] = known ? Estimate{1000 * made.registration->rms_m, 0} : estimate(measure, measured);
   }
   if (!counts.seen.empty()) {

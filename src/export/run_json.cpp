@@ -154,7 +154,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     values[measure.name] = {{"searched", known(searched.value)},
                             {"standard_error", searched.standard_error},
                             {"exact", entry.exact ? known(entry.value(measure.name)) : ordered_json()}};
-    if (entry.exact && measure.needs.attainable)  // of a sample even then
+    if (entry.exact && (measure.needs.attainable || measure.needs.registration))  // of a sample even then
       values[measure.name]["exact_standard_error"] = entry.values.at(measure.name).standard_error;
   }
   for (const char* always : {"coverage", "overlap"}) {
@@ -199,6 +199,12 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
 }
 
 }  // namespace
+
+ordered_json to_json(const Work& work) {
+  ordered_json json;
+  Work::for_each([&](const char* name, auto member) { json[name] = work.*member; });
+  return json;
+}
 
 ordered_json mixed_json(const MixedPoints& mixed) {
   return {{"points", mixed.points}, {"counted", mixed.counted}, {"wrong_voxel", mixed.wrong_voxel}};
@@ -259,6 +265,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
                        {"voxels", evaluation.voxels},
                        {"goal_density", evaluation.goal_density},
                        {"rays", evaluation.counts.rays},
+                       {"work", to_json(evaluation.work)},
                        {"sample", nullptr}};
   if (const auto overlap = evaluation.values.find("overlap"); overlap != evaluation.values.end()) {
     json["overlap"] = overlap->second.value, json["overlap_se"] = overlap->second.standard_error;
@@ -313,6 +320,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   if (!result.trade_off.empty()) json["trade_off"] = trade_off_json(result.trade_off);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
+  json["work"] = to_json(result.work);
   json["engine"] = to_string(simulator.engine().engine);
   json["device"] = simulator.engine().device;
   json["seed"] = result.config.seed.value_or(1);

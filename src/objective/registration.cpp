@@ -55,8 +55,8 @@ RegistrationInputs registration_inputs(const NetworkCounts& counts, std::uint64_
                 "registration: by all surfaces, but the surroundings were not evaluated, or not asked for their sums");
   const NetworkCounts& held_by = all ? *surroundings : counts;
   const std::uint64_t of = all ? surroundings_voxels : voxels;
-  return {held_by.registration, held_by.voxels > 0 ? static_cast<double>(of) / static_cast<double>(held_by.voxels) : 1,
-          counts.registration};
+  const RegistrationSums& sums = held_by.registration;
+  return {sums, sums.voxels > 0 ? static_cast<double>(of) / static_cast<double>(sums.voxels) : 1, counts.registration};
 }
 
 RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,

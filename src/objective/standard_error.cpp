@@ -19,13 +19,15 @@ namespace {
 constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
 constexpr double least_unbiased = 0.5;  // of a sample's registration error, that remains after subtracting its bias
 
-double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
-  if (counts.voxels >= population) return 0;
-  return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
-}
-
-// Whether a function looks at the sums of registration. Of hundreds of stations these are by far the most.
+// Whether a function looks at the sums of registration. Of hundreds of stations these are by far the most, and they may
+// be of a sample where every voxel was counted.
 enum class Sums : std::uint8_t { none, registration };
+
+double unsampled_share(const NetworkCounts& counts, std::uint64_t population, Sums sums = Sums::none) {
+  const std::uint64_t voxels = sums == Sums::registration ? counts.registration.voxels : counts.voxels;
+  if (voxels >= population) return 0;
+  return 1.0 - static_cast<double>(voxels) / static_cast<double>(population);
+}
 
 // The sample's own counts, without its groups.
 NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
@@ -34,47 +36,63 @@ NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
   rest.voxels = all.voxels, rest.weight = all.weight;
   rest.saturated = all.saturated, rest.partial_points = all.partial_points, rest.point_weight = all.point_weight;
   rest.seen = all.seen, rest.shared = all.shared;
-  if (sums == Sums::registration) rest.registration = all.registration;
+  if (sums == Sums::none) return rest;
+  const RegistrationSums& registration = all.registration;
+  rest.registration = {.voxels = registration.voxels,
+                       .centre = registration.centre,
+                       .radius_m = registration.radius_m,
+                       .heads = registration.heads,
+                       .pairs = registration.pairs,
+                       .surface = registration.surface,
+                       .groups = {}};
   return rest;
+}
+
+void subtract(auto& sums, const auto& some) {
+  for (std::size_t k = 0; k < some.size(); ++k) sums[k] -= some[k];
 }
 
 void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   rest.voxels -= group.voxels, rest.weight -= group.weight;
   rest.saturated -= group.saturated, rest.partial_points -= group.partial_points;
-  const auto subtract = [](auto& sums, const auto& some) {
-    for (std::size_t k = 0; k < some.size(); ++k) sums[k] -= some[k];
-  };
   subtract(rest.seen, group.seen);
   subtract(rest.shared, group.shared);
-  if (rest.registration.heads.empty()) return;
-  // Differences of sums that are exact except for their last place. A group of a large network leaves out pairs that
-  // nothing was summed for.
-  if (group.registration.pairs.size() < rest.registration.pairs.size()) {
+}
+
+// Leaves differences of sums that are exact except for their last place. A group of a large network lacks pairs that
+// nothing was summed for.
+void take_off(RegistrationSums& rest, const RegistrationSums& group) {
+  rest.voxels -= group.voxels;
+  if (group.pairs.size() < rest.pairs.size()) {
     std::size_t at = 0;
-    for_summed_pairs(rest.registration, [&](std::size_t first) {
-      for (std::size_t k = first; k < first + RegistrationSums::of_pair; ++k)
-        rest.registration.pairs[k] -= group.registration.pairs[at++];
+    for_summed_pairs(rest, [&](std::size_t first) {
+      for (std::size_t k = first; k < first + RegistrationSums::of_pair; ++k) rest.pairs[k] -= group.pairs[at++];
     });
   } else {
-    subtract(rest.registration.pairs, group.registration.pairs);
+    subtract(rest.pairs, group.pairs);
   }
-  subtract(rest.registration.surface, group.registration.surface);
+  subtract(rest.surface, group.surface);
 }
 
 // `of` each delete-one-group replicate; empty if there are fewer than two groups.
 template <class Value>
 std::vector<Value> replicates(const NetworkCounts& counts, Sums sums,
                               const std::function<Value(const NetworkCounts&)>& of) {
-  std::vector<const NetworkCounts*> groups;
-  for (const NetworkCounts& group : counts.groups)
-    if (group.voxels > 0) groups.push_back(&group);
+  const bool registered = sums == Sums::registration;
+  const std::vector<RegistrationSums>& parts = counts.registration.groups;
+  std::vector<std::size_t> groups;
+  for (std::size_t g = 0; g < (registered ? parts.size() : counts.groups.size()); ++g)
+    if ((registered ? parts[g].voxels : counts.groups[g].voxels) > 0) groups.push_back(g);
   if (groups.size() < 2) return {};
   std::vector<Value> found(groups.size());
   const NetworkCounts all = without_groups(counts, sums);
-  parallel::for_all(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel::for_all(std::size_t{0}, groups.size(), [&](std::size_t k) {
+    const std::size_t g = groups[k];
     NetworkCounts rest = all;
-    take_off(rest, *groups[g]);
-    found[g] = of(rest);
+    if (registered) take_off(rest.registration, parts[g]);
+    // Where every voxel was counted, the sums alone are of a sample.
+    if (g < counts.groups.size()) take_off(rest, counts.groups[g]);
+    found[k] = of(rest);
   });
   return found;
 }
@@ -176,7 +194,9 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   const auto add = [&](double error) { variance += error * error; };
   // On voxels of its own, whatever else was counted.
   if (objective.needs.attainable && objective.standard_error) add(objective.standard_error(measured));
-  if (const double unsampled = unsampled_share(counts, measured.voxels); objective.needs.counts && unsampled > 0) {
+  const Sums sums = objective.needs.registration ? Sums::registration : Sums::none;
+  if (const double unsampled = unsampled_share(counts, measured.voxels, sums);
+      objective.needs.counts && unsampled > 0) {
     if (objective.standard_error) {
       add(objective.standard_error(measured));
     } else {
@@ -192,7 +212,6 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .surroundings_voxels = measured.surroundings_voxels,
                                 .minutes_on_site = measured.minutes_on_site});
       };
-      const Sums sums = objective.needs.registration ? Sums::registration : Sums::none;
       const Estimate own = objective.needs.pairs && !objective.needs.registration
                                ? of_pairs(estimate.value, counts, unsampled, scale, of)
                                : jackknifed(estimate.value, replicates<double>(counts, sums, of), unsampled, scale);
@@ -203,7 +222,8 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   }
   // The surroundings are another sample, of other voxels: its error adds.
   if (objective.needs.surroundings && measured.surroundings) {
-    const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels);
+    const Sums around = objective.needs.surroundings_registration ? Sums::registration : Sums::none;
+    const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels, around);
     const auto of = [&](const NetworkCounts& rest) {
       MeasuredNetwork without{.counts = counts, .stations = measured.stations};
       without.existing = measured.existing, without.goal_density = measured.goal_density,
@@ -213,8 +233,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       without.minutes_on_site = measured.minutes_on_site;
       return objective.value(without);
     };
-    const Sums sums = objective.needs.surroundings_registration ? Sums::registration : Sums::none;
-    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, sums, of), unsampled, scale));
+    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, around, of), unsampled, scale));
   }
   estimate.standard_error = std::sqrt(variance);
   return estimate;
@@ -242,12 +261,12 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
     estimate.value -= within_error(jackknife_bias(seen, values, unsampled), own);
     estimate.standard_error = std::hypot(estimate.standard_error, own);
   };
-  if (const double unsampled = unsampled_share(counts, voxels); unsampled > 0)
+  if (const double unsampled = unsampled_share(counts, voxels, Sums::registration); unsampled > 0)
     add(replicates<double>(counts, Sums::registration,
                            [&](const NetworkCounts& rest) { return error(rest, surroundings); }),
         unsampled);
   if (options.surfaces == RegistrationSurfaces::all)
-    if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0)
+    if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels, Sums::registration); unsampled > 0)
       add(replicates<double>(*surroundings, Sums::registration,
                              [&](const NetworkCounts& rest) { return error(counts, &rest); }),
           unsampled);

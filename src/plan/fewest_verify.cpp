@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/graph.hpp"
@@ -166,6 +167,12 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
     entry.violation = violation_of(entry, problem_.requirements);
     entries_.push_back(std::move(entry));
   }
+  // Every voxel's points take some 12 bytes a voxel; only what may be the answer keeps them.
+  const auto answer = std::ranges::min_element(entries_, {}, [](const PlanEntry& entry) {
+    return std::tuple(!entry.exact, entry.violation, entry.stations.size());
+  });
+  for (PlanEntry& entry : entries_)
+    if (&entry != &*answer) entry.field = {};
 }
 
 const PlanEntry* VerifiedNetworks::best() const {

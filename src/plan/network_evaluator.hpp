@@ -37,7 +37,8 @@ class NetworkEvaluator {
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
                                                                      const VoxelWindow& sample, Which measures,
                                                                      const Progress& progress) = 0;
-  // All measures with every ray; empty for networks not reached before a stop.
+  // All measures with every ray; empty for networks not reached before a stop. A single network may keep the points of
+  // every voxel.
   virtual std::vector<std::optional<Evaluation>> confirm(std::span<const PlacedNetwork> networks,
                                                          const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;

@@ -207,6 +207,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   const PlanWatch watch = limited(given, search_by, all_by);
   Simulator& simulator = site.simulator();
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
+  const Work before = site.work();
   SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
@@ -246,6 +247,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   if (!watch.abort.stop_requested()) work_out_rounds(result, context);
   put_answer_in_trade_off(result);
   add_targets(result, site, context.measures(), {.report = {}, .stop = watch.abort});
+  result.work = result.work + (site.work() - before);
   return result;
 }
 

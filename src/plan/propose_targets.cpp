@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "evaluate/sight_targets.hpp"
+#include "objective/registered_sample.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
@@ -242,16 +243,18 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   const bool all = registration.surfaces == RegistrationSurfaces::all;
   Simulator& simulator = site.simulator();
   const Network network = to_network(stations);
-  const NetworkCounts counts =
-      options.exact ? simulator.evaluate(network, {.registration = registration.model}, progress)
-                    : simulator
-                          .evaluate_sampled({&network, 1},
-                                            {.voxels = kSampleVoxels, .registration = registration.model}, progress)
-                          .front();
+  const RequiredInputs needs{
+      .pairs = true, .surroundings = all, .registration = registration.model, .surroundings_registration = all};
+  const std::vector<NetworkCounts> counted =
+      options.exact ? simulator.evaluate_each({&network, 1}, count_surveyed(needs, registration, simulator), progress)
+                    : simulator.evaluate_sampled(
+                          {&network, 1}, {.voxels = kSampleVoxels, .registration = registration.model}, progress);
+  const NetworkCounts& counts = counted.front();
   NetworkCounts around;
   if (all && !counts.cancelled)
-    around = site.surroundings().evaluate(network, {.registration = registration.model},
-                                          {.report = {}, .stop = progress.stop});
+    around = site.surroundings().evaluate(
+        network, count_surroundings(needs, registration, counted, simulator, site.surroundings()),
+        {.report = {}, .stop = progress.stop});
   if (counts.cancelled || around.cancelled) return std::nullopt;
   const std::uint64_t around_voxels = all ? site.surroundings().voxel_count() : 0;
   const NetworkCounts* const surroundings = all ? &around : nullptr;

@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "core/part_of.hpp"
+#include "objective/registered_sample.hpp"
 #include "trace/tracer_maker.hpp"
 
 namespace vantage {
@@ -16,6 +17,9 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
   for (const PlacedNetwork& stations : placed) networks.push_back(to_network(stations));
   return networks;
 }
+
+// Largest number of voxels whose points a confirmed network keeps, some 400 MB.
+constexpr std::uint64_t kKeptVoxels = std::uint64_t{1} << 25;
 
 // The model of registration on all surfaces, if that is used.
 std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) {
@@ -157,11 +161,15 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
   };
   const std::size_t parts = needs.surroundings ? 2 : 1;
   Counted counted;
-  counted.surveyed =
-      count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
+  VoxelField field;
+  EvaluateOptions surveyed = count_surveyed(needs, options_.registration, simulator_);
+  if (networks.size() == 1 && simulator_.voxel_count() <= kKeptVoxels) surveyed.field = &field;
+  counted.surveyed = count(simulator_, surveyed, part_of(progress, 0, parts));
   if (needs.surroundings)
-    counted.surroundings = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
-                                 part_of(progress, 1, parts));
+    counted.surroundings =
+        count(*options_.surroundings,
+              count_surroundings(needs, options_.registration, counted.surveyed, simulator_, *options_.surroundings),
+              part_of(progress, 1, parts));
   if (needs.attainable)
     counted.captured =
         captured_shares(simulator_, *options_.confirmed, networks, {.report = {}, .stop = progress.stop});
@@ -174,6 +182,7 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
     all[k] = evaluation_of(measured(counted, k, placed[k], networks[k], needs), measures_.all,
                            needs.registration ? std::optional(options_.registration) : std::nullopt);
     if (needs.attainable) all[k]->attainable = options_.confirmed->coverage();
+    if (surveyed.field) all[k]->field = std::move(field);
   }
   return all;
 }

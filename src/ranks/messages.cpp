@@ -34,6 +34,14 @@ void pass_opened(Archive& archive, T& opened) {
 }
 
 template <class Archive, class T>
+void pass_sums(Archive& archive, T& sums) {
+  archive.array(sums.heads);
+  if (sums.heads.empty()) return;
+  archive.raw(sums.voxels), archive.raw(sums.centre), archive.raw(sums.radius_m);
+  archive.array(sums.pairs), archive.array(sums.surface);
+}
+
+template <class Archive, class T>
 void pass_counts(Archive& archive, T& counts) {
   archive.whole(counts.voxels), archive.whole(counts.weight), archive.whole(counts.saturated);
   archive.whole(counts.partial_points), archive.whole(counts.point_weight), archive.whole(counts.rays),
@@ -41,12 +49,7 @@ void pass_counts(Archive& archive, T& counts) {
   archive.wholes(counts.points), archive.wholes(counts.points_on_surveyed);
   archive.array(counts.dropped);
   archive.wholes(counts.seen), archive.wholes(counts.shared);
-  auto& registration = counts.registration;
-  archive.array(registration.heads);
-  if (!registration.heads.empty()) {
-    archive.raw(registration.centre), archive.raw(registration.radius_m);
-    archive.array(registration.pairs), archive.array(registration.surface);
-  }
+  pass_sums(archive, counts.registration);
   archive.raw(counts.successive_difference_sum), archive.raw(counts.trace_seconds);
   archive.raw(counts.cancelled);
 }
@@ -170,6 +173,8 @@ void pass(Reader& reader, TraceStation& station) {
 void pass(Writer& writer, const NetworkCounts& counts) {
   pass_counts(writer, counts);
   write_counts(writer, counts.groups);
+  writer.whole(counts.registration.groups.size());
+  for (const RegistrationSums& group : counts.registration.groups) pass_sums(writer, group);
 }
 
 void pass(Reader& reader, NetworkCounts& counts) {
@@ -178,8 +183,11 @@ void pass(Reader& reader, NetworkCounts& counts) {
   for (NetworkCounts& group : counts.groups) {
     pass_counts(reader, group);
     // A reader that followed groups of groups would recurse as deeply as a message asks.
-    if (reader.whole() != 0) throw Error(Errc::device_failure, "a message from another rank has groups within groups");
+    if (reader.whole() != 0 || reader.whole() != 0)
+      throw Error(Errc::device_failure, "a message from another rank has groups within groups");
   }
+  counts.registration.groups.resize(reader.size(1));
+  for (RegistrationSums& group : counts.registration.groups) pass_sums(reader, group);
 }
 
 void pass(Writer& writer, const RegistrationJob& job) {

@@ -16,6 +16,7 @@
 
 #include "core/add_saturating.hpp"
 #include "core/lru_cache.hpp"
+#include "core/parallel.hpp"
 #include "core/part_of.hpp"
 #include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
@@ -44,6 +45,7 @@ std::uint32_t stop_at(CountTo count_to, double goal) {
 }
 
 constexpr std::uint32_t sample_groups = 20;
+constexpr std::uint64_t kSampleGrowth = 4;  // of the voxels that registration is summed over
 // Voxels up to which the planes of all are kept, some 700 MB; larger fields are registered by parts.
 constexpr std::uint64_t kKeptPlanes = std::uint64_t{1} << 23, kPlanesAtOnce = std::uint64_t{1} << 22;
 constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
@@ -110,6 +112,7 @@ NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint
     counts.shared.assign(stations * (stations - 1) / 2, 0);
   }
   if (registration) {
+    counts.registration.voxels = voxels;
     counts.registration.heads.assign(stations, Vec3{});
     counts.registration.pairs.assign(stations * (stations - 1) / 2 * RegistrationSums::of_pair, 0);
     counts.registration.surface.assign(stations * RegistrationSums::of_station, 0);
@@ -172,6 +175,7 @@ struct Simulator::Impl {
                             .max_rays_per_dispatch = config.max_rays_per_dispatch,
                             .validation = config.validation,
                             .sample_triangles = std::make_shared<SampleTriangles>(shared_scene, grid)};
+    surfaces.emplace(shared_scene, grid, shared.sample_triangles);
     tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
                                     : make_tracer(config.devices, shared, config.warn);
     if (config.shared) tracer = config.shared->make(std::move(tracer), shared, scene.fingerprint());
@@ -258,14 +262,15 @@ struct Simulator::Impl {
 
   // Empty if stopped: planes of millions of voxels take seconds.
   Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
-                     const std::stop_token& stop) const {
+                     const std::stop_token& stop) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    return make_patches(data(), *grid, voxel_indices, make_pattern(registered.front()), model, stop);
+    done.planes += voxel_indices.size();
+    return make_patches(*surfaces, *grid, voxel_indices, make_pattern(registered.front()), model, stop);
   }
   // Their range noise counts, whether it is simulated or not.
   const std::vector<PatchScanner>& scanners_of_patches() {
@@ -294,10 +299,9 @@ struct Simulator::Impl {
     if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
     return RegistrationJob{own.patches, scanners_of_patches(), groups};
   }
-  // The sums of every voxel. None if stopped.
-  std::optional<RegistrationSums> register_field(std::span<const TraceStation> stations, const NetworkCounts& counts,
-                                                 const StationMasks& masks, const RegistrationModel& model,
-                                                 const std::stop_token& stop) {
+  // Fills the sums of every voxel. False if stopped.
+  bool register_field(std::span<const TraceStation> stations, NetworkCounts& counts, const StationMasks& masks,
+                      const RegistrationModel& model, const std::stop_token& stop) {
     const bool kept = grid->size() <= kKeptPlanes;
     const auto planes = [&](std::size_t first, std::size_t many) -> std::shared_ptr<const Patches> {
       std::vector<std::uint32_t> voxel_indices(many);
@@ -309,7 +313,28 @@ struct Simulator::Impl {
       auto made = std::make_shared<const Patches>(patches_of(voxel_indices, model, stop));
       return made->patches.size() < many ? nullptr : made;
     };
-    return sum_patches(planes, kept ? grid->size() : kPlanesAtOnce, scanners_of_patches(), stations, counts, masks);
+    auto sums =
+        sum_patches(planes, kept ? grid->size() : kPlanesAtOnce, scanners_of_patches(), stations, counts, masks);
+    if (!sums) return false;
+    counts.registration = std::move(*sums);
+    return true;
+  }
+  // Fills the sums of a sample that grows until they are known well enough, or of every voxel. False if stopped.
+  bool register_enough(std::span<const TraceStation> stations, NetworkCounts& counts, const StationMasks& masks,
+                       const EvaluateOptions& options, std::size_t network, const std::stop_token& stop) {
+    for (std::uint64_t voxels = options.registration_voxels; voxels < grid->size(); voxels *= kSampleGrowth) {
+      const std::vector<std::uint32_t>& sample = sample_of(voxels, 0).voxel_indices;
+      const auto job = registration_of(sample, 0, *options.registration, true, stop);
+      if (!job) return false;
+      std::vector<std::uint64_t> words(sample.size() * masks.words());
+      for (std::size_t w = 0; w < masks.words(); ++w)
+        parallel::for_all(std::size_t{0}, sample.size(),
+                          [&](std::size_t k) { words[w * sample.size() + k] = masks.word(w, sample[k]); });
+      take_registration(counts, sum_patches(*job, stations, counts.stations, words, sample_groups));
+      if (!options.registration_known || options.registration_known(network, counts)) return true;
+      if (voxels > grid->size() / kSampleGrowth) break;
+    }
+    return register_field(stations, counts, masks, *options.registration, stop);
   }
 
   // Runs `work` alone. The isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call
@@ -333,7 +358,9 @@ struct Simulator::Impl {
   // As Tracer::count() for a beam that has a width, of any number of stations. Fills `field`.
   NetworkCounts count_beams(std::span<const TraceStation> stations, std::uint32_t station_count,
                             const BeamOptions& beam, bool masks, VoxelField& field, const Progress& progress);
-  NetworkCounts evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress);
+  // `place`: the network's number among those of the caller.
+  NetworkCounts evaluate(const Network& network, const EvaluateOptions& options, std::size_t place,
+                         const Progress& progress);
   std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
                                            const Progress& progress);
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
@@ -354,12 +381,14 @@ struct Simulator::Impl {
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
+  std::optional<SurfaceFinder> surfaces;
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
   std::optional<WideBeam> wide_beam;   // made for the first beam with one
   std::unique_ptr<Tracer> tracer;
+  Work done;  // but for what the tracer tells
   std::mutex running;
   std::atomic<std::thread::id> caller;  // holds `running`
 };
@@ -393,6 +422,11 @@ Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;
 
+Work Simulator::work() const {
+  Work work = impl_->done;
+  work.uploaded_bytes = impl_->tracer->uploaded_bytes();
+  return work;
+}
 const EngineInfo& Simulator::engine() const noexcept { return impl_->tracer->info(); }
 const Scanner& Simulator::scanner() const noexcept { return impl_->scanners.front(); }
 std::span<const Scanner> Simulator::scanners() const noexcept { return impl_->scanners; }
@@ -449,15 +483,29 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
   return impl_->alone([&] { return impl_->scan(station, options, sink, progress); });
 }
 NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
-  return impl_->alone([&] { return impl_->evaluate(network, options, progress); });
+  return impl_->alone([&] {
+    NetworkCounts counts = impl_->evaluate(network, options, 0, progress);
+    impl_->done.networks += 1, impl_->done.rays += counts.rays;
+    return counts;
+  });
 }
 std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
                                                     const Progress& progress) {
-  return impl_->alone([&] { return impl_->evaluate_each(networks, options, progress); });
+  return impl_->alone([&] {
+    std::vector<NetworkCounts> all = impl_->evaluate_each(networks, options, progress);
+    for (const NetworkCounts& counts : all) impl_->done.networks += 1, impl_->done.rays += counts.rays;
+    return all;
+  });
 }
 std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                                        const Progress& progress) {
-  return impl_->alone([&] { return impl_->evaluate_sampled(networks, options, progress); });
+  return impl_->alone([&] {
+    std::vector<NetworkCounts> all = impl_->evaluate_sampled(networks, options, progress);
+    impl_->done.sampled_networks += all.size();
+    for (const NetworkCounts& counts : all)
+      impl_->done.sampled_voxels += counts.voxels, impl_->done.sampled_rays += counts.rays;
+    return all;
+  });
 }
 
 ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& options,
@@ -561,9 +609,10 @@ NetworkCounts Simulator::Impl::count_beams(std::span<const TraceStation> station
   return counts;
 }
 
-NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOptions& options,
+NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOptions& options, std::size_t place,
                                         const Progress& progress) {
   check_registration(options.registration, options.overlap);
+  if (options.registration_voxels == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
   const std::vector<TraceStation> active = active_stations(network);
   if (active.empty()) {
     const std::uint32_t point_weight = grid->demands().least_point_weight();
@@ -586,18 +635,15 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
                              ? count_beams(active, size, *options.beam, options.overlap, *field, progress)
                              : count_in_passes(*tracer, active, size, {.masks = options.overlap, .skip = options.skip},
                                                field, *grid, goal, progress);
-  if (options.registration && !counts.cancelled) {
-    auto sums = register_field(active, counts, field->stations, *options.registration, progress.stop);
-    if (sums)
-      counts.registration = std::move(*sums);
-    else
-      counts.cancelled = true;
-  }
+  if (options.registration && !counts.cancelled)
+    counts.cancelled = !register_enough(active, counts, field->stations, options, place, progress.stop);
   return counts;
 }
 
 std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Network> networks,
                                                           const EvaluateOptions& options, const Progress& progress) {
+  if (options.field && networks.size() != 1)
+    throw Error(Errc::invalid_argument, "the points of every voxel are kept of one network at a time");
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
   // Networks without active stations skip the engine; sums over the field, and passes, are made here.
@@ -607,9 +653,9 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Networ
   const auto many = static_cast<double>(networks.size());
   for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
-    if (active.empty() || options.registration || options.beam || networks[k].size() > mask_bits) {
+    if (active.empty() || options.registration || options.beam || options.field || networks[k].size() > mask_bits) {
       all[k] = evaluate(
-          networks[k], options,
+          networks[k], options, k,
           {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});
       continue;
     }
@@ -661,10 +707,12 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
       const std::uint32_t point_weight = grid->demands().least_point_weight();
       all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_weight, networks[k].size(), options.overlap,
                             options.registration.has_value());
-      for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g)
+      for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g) {
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
                                              weight_of(sample, g, sample_groups), point_weight, networks[k].size(),
                                              options.overlap, options.registration.has_value()));
+        if (options.registration) all[k].registration.groups.push_back(std::move(all[k].groups.back().registration));
+      }
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;
     }

@@ -375,6 +375,12 @@ Simulator& Site::simulator() {
   build();
   return *impl_->simulator;
 }
+Work Site::work() const {
+  Work sum;
+  for (const std::optional<Simulator>* made : {&impl_->simulator, &impl_->surroundings})
+    if (*made) sum = sum + (*made)->work();
+  return sum;
+}
 Simulator& Site::surroundings() {
   if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
   return *impl_->surroundings;

@@ -24,6 +24,7 @@ class RebuildingTracer final : public Tracer {
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
+  std::uint64_t uploaded_bytes() const override { return tracer_ ? tracer_->uploaded_bytes() : 0; }
   std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
     return ready().preferred_scan_rays(scanner);
   }

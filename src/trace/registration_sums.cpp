@@ -328,6 +328,13 @@ RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulato
 
 }  // namespace
 
+std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, const Patches& patches) {
+  const std::size_t voxels = patches.patches.size(), groups = sums.size() - 1;
+  sums.front().voxels = voxels;
+  for (std::size_t g = 0; g < groups; ++g) sums[g + 1].voxels = (voxels + groups - 1 - g) / groups;
+  return sums;
+}
+
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model) {
   Patches made;
@@ -364,12 +371,12 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
   return made;
 }
 
-Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
+Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
                      const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop) {
   const double side = std::ldexp(grid.voxel_size(), grid.depth());
   const auto middle = [&](int axis) { return grid.min()[static_cast<std::size_t>(axis)] + side / 2; };
   const double window_m = std::min(flat_part * model.patch_m, widest_fit_m);
-  return make_patches(voxel_surfaces(scene, grid, voxel_indices, window_m, stop),
+  return make_patches(surfaces.find(voxel_indices, window_m, stop),
                       {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()}, pattern, model);
 }
 
@@ -382,7 +389,7 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
       large ? PairNumbers(station_count, shared_of(seen_by, station_count)) : PairNumbers(station_count);
   const Heads heads(scanners, stations, station_count);
   const Summer summer(patches, heads, pairs, seen_by);
-  if (groups == 0) return {to_sums(summer.sum(0, 1), pairs, patches, stations, station_count)};
+  if (groups == 0) return with_voxels({to_sums(summer.sum(0, 1), pairs, patches, stations, station_count)}, patches);
   std::vector<Accumulator<Wide>> parts(groups, Accumulator<Wide>(0, 0));
   parallel::for_all(std::uint32_t{0}, groups, [&](std::uint32_t g) { parts[g] = summer.sum(g, groups); });
   Accumulator<Wide> whole(station_count, pairs.size());
@@ -393,7 +400,7 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
                          : to_sums(part, pairs, patches, stations, station_count));
     part = Accumulator<Wide>(0, 0);
   }
-  return sums;
+  return with_voxels(std::move(sums), patches);
 }
 
 std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std::size_t part_voxels,
@@ -410,7 +417,9 @@ std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std
     const SeenBy seen_by{.words = {}, .voxels = patches->patches.size(), .kept = &masks, .first = first};
     whole.add(Summer(*patches, heads, pairs, seen_by).sum(0, 1));
   }
-  return to_sums(whole, pairs, *patches, stations, counts.stations);
+  RegistrationSums sums = to_sums(whole, pairs, *patches, stations, counts.stations);
+  sums.voxels = masks.voxels();
+  return sums;
 }
 
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with) {
@@ -427,13 +436,15 @@ std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<
 
 void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums) {
   counts.registration = std::move(sums[0]);
-  for (std::size_t g = 1; g < sums.size(); ++g) counts.groups[g - 1].registration = std::move(sums[g]);
+  counts.registration.groups.assign(std::make_move_iterator(sums.begin() + 1), std::make_move_iterator(sums.end()));
 }
 
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
                                    std::uint32_t station_count, std::span<const std::int64_t> sums) {
   const std::size_t count = station_count, pairs = count * (count - 1) / 2 * of_pair;
-  return to_sums(sums.first(pairs), sums.subspan(pairs, count * of_station), patches, stations, count);
+  return with_voxels({to_sums(sums.first(pairs), sums.subspan(pairs, count * of_station), patches, stations, count)},
+                     patches)
+      .front();
 }
 
 }  // namespace vantage

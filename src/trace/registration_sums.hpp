@@ -42,8 +42,8 @@ struct PatchFrame {
 // REQUIRES: model.rho_m > 0, model.patch_m > 0; surfaces within the cube.
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model);
-// For voxels of a grid; indices as for `voxel_surfaces`. A stop ends it early, with no patches.
-Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
+// For voxels of the grid of `surfaces`; indices as for `SurfaceFinder::find`. A stop ends it early, with no patches.
+Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
                      const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop = {});
 
 // Scanner properties that the sums need.
@@ -81,8 +81,11 @@ std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std
                                             const StationMasks& masks);
 // Calls with(place in `pairs`) for each pair with a sum that is not 0.
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with);
-// Moves such sums into the counts of a network and, if present, of its groups.
+// Moves such sums into the counts of a network: those of the groups, if any, come after those of all.
 void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums);
+
+// Sets the numbers of voxels of sums over all patches, then over each of the interleaved groups.
+std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, const Patches& patches);
 
 // Number of voxels whose whole numbers fit in 64 bits together, signed: 2^15 of weight times 2^30 of two components of
 // J.

@@ -190,6 +190,8 @@ class Tracer {
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                                    const Progress& progress) = 0;
+  // Bytes copied to the device's own memory since it was set up.
+  virtual std::uint64_t uploaded_bytes() const { return 0; }
   // Goal density: a voxel with count >= goal is saturated. Set once after construction.
   virtual void set_goal_density(double goal) { goal_density_ = goal; }
 

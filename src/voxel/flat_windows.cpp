@@ -329,13 +329,36 @@ void add_small(Window& window, const SmallsAround& around, const Cells& cells, c
 
 }  // namespace
 
-std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
-                               std::span<const std::uint32_t> voxel_indices, std::span<const VoxelSurface> surfaces,
-                               double window_m, const std::stop_token& stop) {
+struct FlatWindows::Impl {
+  Impl(const SceneData& s, const VoxelGrid& g, double side_m)
+      : scene(s),
+        grid(g),
+        window_m(side_m),
+        wide(cells_of(grid, 0.7 * window_m)),
+        narrow(cells_of(grid, window_m / 4)),
+        triangles(scene, narrow, window_m * small_share) {}
+
+  const SceneData& scene;
+  const VoxelGrid& grid;
+  double window_m;
   // Narrower cells would repeat almost the same lists of large triangles; wider ones would list many that none of their
   // windows holds. A block holds whole cells of both kinds.
-  const Cells wide = cells_of(grid, 0.7 * window_m), narrow = cells_of(grid, window_m / 4);
-  const SortedTriangles triangles(scene, narrow, window_m * small_share);
+  Cells wide, narrow;
+  SortedTriangles triangles;
+};
+
+FlatWindows::FlatWindows(const SceneData& scene, const VoxelGrid& grid, double window_m)
+    : impl_(std::make_unique<const Impl>(scene, grid, window_m)) {}
+FlatWindows::~FlatWindows() = default;
+double FlatWindows::window_m() const { return impl_->window_m; }
+
+std::vector<float> FlatWindows::shares(std::span<const std::uint32_t> voxel_indices,
+                                       std::span<const VoxelSurface> surfaces, const std::stop_token& stop) const {
+  const SceneData& scene = impl_->scene;
+  const VoxelGrid& grid = impl_->grid;
+  const Cells &wide = impl_->wide, &narrow = impl_->narrow;
+  const SortedTriangles& triangles = impl_->triangles;
+  const double window_m = impl_->window_m;
   const auto reach = std::min(static_cast<std::int64_t>(std::ceil(window_m / 2 * narrow.transform.inverse_size)),
                               narrow.a_side - 1);  // in narrow cells
   std::vector<float> shares(voxel_indices.size(), 1);

@@ -9,9 +9,7 @@
 #include "core/glm.hpp"
 #include "core/parallel.hpp"
 #include "voxel/clipped_polygon.hpp"
-#include "voxel/flat_windows.hpp"
 #include "voxel/voxel_bricks.hpp"
-#include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 namespace {
@@ -145,30 +143,46 @@ VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transf
 
 }  // namespace
 
-std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
-                                         std::span<const std::uint32_t> voxel_indices, double window_m,
-                                         const std::stop_token& stop) {
-  const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
-  const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+SurfaceFinder::SurfaceFinder(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid,
+                             std::shared_ptr<SampleTriangles> triangles)
+    : scene_(std::move(scene)), grid_(std::move(grid)), triangles_(std::move(triangles)) {}
+
+SurfaceFinder::SurfaceFinder(const SceneData& scene, const VoxelGrid& grid)
+    : scene_(std::shared_ptr<void>(), &scene),
+      grid_(std::shared_ptr<void>(), &grid),
+      triangles_(std::make_shared<SampleTriangles>(scene_, grid_)) {}
+
+std::vector<VoxelSurface> SurfaceFinder::find(std::span<const std::uint32_t> voxel_indices, double window_m,
+                                              const std::stop_token& stop) {
+  const VoxelTriangles touching = triangles_->touching(voxel_indices, 0);
+  const GridTransform transform{{grid_->min()[0], grid_->min()[1], grid_->min()[2]}, grid_->inverse_size()};
   std::vector<VoxelSurface> surfaces(voxel_indices.size());
   parallel::for_all(
       tbb::blocked_range<std::size_t>(0, voxel_indices.size()), [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i != range.end() && !stop.stop_requested(); ++i) {
-          const auto [x, y, z] = morton_decode(grid.key(voxel_indices[i]));
+          const auto [x, y, z] = morton_decode(grid_->key(voxel_indices[i]));
           const Point low(x, y, z);
           const auto triangles =
               std::span(touching.triangle).subspan(touching.offset[i], touching.offset[i + 1] - touching.offset[i]);
-          surfaces[i] = surface_of(parts_of(scene, transform, low, triangles), transform, low);
-          if (surfaces[i].extent == 0 && !triangles.empty()) surfaces[i].mesh = scene.mesh_of(triangles.front());
+          surfaces[i] = surface_of(parts_of(*scene_, transform, low, triangles), transform, low);
+          if (surfaces[i].extent == 0 && !triangles.empty()) surfaces[i].mesh = scene_->mesh_of(triangles.front());
         }
       });
   if (stop.stop_requested()) return {};
-  if (window_m > grid.voxel_size()) {
-    const std::vector<float> shares = flat_shares(scene, grid, voxel_indices, surfaces, window_m, stop);
+  if (window_m > grid_->voxel_size()) {
+    if (!windows_ || windows_->window_m() != window_m)
+      windows_ = std::make_unique<const FlatWindows>(*scene_, *grid_, window_m);
+    const std::vector<float> shares = windows_->shares(voxel_indices, surfaces, stop);
     if (stop.stop_requested()) return {};
     for (std::size_t i = 0; i < voxel_indices.size(); ++i) surfaces[i].share = std::min(surfaces[i].share, shares[i]);
   }
   return surfaces;
+}
+
+std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
+                                         std::span<const std::uint32_t> voxel_indices, double window_m,
+                                         const std::stop_token& stop) {
+  return SurfaceFinder(scene, grid).find(voxel_indices, window_m, stop);
 }
 
 }  // namespace vantage

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "voxel/flat_windows.hpp"
 #include "voxel/voxel_grid.hpp"
+#include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 
@@ -26,12 +29,30 @@ struct VoxelSurface {
   float diffuse = 0;       // mean diffuse coefficient of that surface
 };
 
-// Clips every surveyed triangle to the voxel's cube, in double. Of two parallel sheets in one voxel, as of a thin wall,
-// the larger counts. A plane has at most the area of its section with the cube, so a sheet modelled twice counts once.
-// A window of `window_m` metres around each plane's point, if wider than a voxel, reduces its share to the flat part at
-// that scale. A stop ends it early, with no surfaces. Parallel; a voxel's surface depends neither on the other voxels
-// nor on the number of threads. REQUIRES: voxel_indices ascending, without duplicates, below grid.size(). Throws Error
-// out_of_memory as `triangles_touching` does.
+// Finds the surfaces of a series of samples of voxels. What does not depend on the sample is made once.
+class SurfaceFinder {
+ public:
+  SurfaceFinder(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid,
+                std::shared_ptr<SampleTriangles> triangles);
+  SurfaceFinder(const SceneData& scene, const VoxelGrid& grid);  // borrows both
+
+  // Clips every surveyed triangle to the voxel's cube, in double. Of two parallel sheets in one voxel, as of a thin
+  // wall, the larger counts. A plane has at most the area of its section with the cube, so a sheet modelled twice
+  // counts once. A window of `window_m` metres around each plane's point, if wider than a voxel, reduces its share to
+  // the flat part at that scale. A stop ends it early, with no surfaces. Parallel; a voxel's surface depends neither on
+  // the other voxels nor on the number of threads. REQUIRES: voxel_indices ascending, without duplicates, below the
+  // grid's size. Throws Error out_of_memory as `triangles_touching` does.
+  std::vector<VoxelSurface> find(std::span<const std::uint32_t> voxel_indices, double window_m = 0,
+                                 const std::stop_token& stop = {});
+
+ private:
+  std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const VoxelGrid> grid_;
+  std::shared_ptr<SampleTriangles> triangles_;
+  std::unique_ptr<const FlatWindows> windows_;  // of the last window
+};
+
+// The same for one sample.
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
                                          std::span<const std::uint32_t> voxel_indices, double window_m = 0,
                                          const std::stop_token& stop = {});

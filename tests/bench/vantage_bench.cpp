@@ -15,6 +15,7 @@
 #include "gap.hpp"
 #include "growth.hpp"
 #include "intervals.hpp"
+#include "plan_stages.hpp"
 #include "population.hpp"
 #include "ranks.hpp"
 #include "rates.hpp"
@@ -53,6 +54,8 @@ int main(int argc, char** argv) {
   choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
   vantage::bench::DayOptions day;
   day.add(*app.add_subcommand("day", "A simulated day: the plan that is made anew after each scan, and the kept one"));
+  vantage::bench::PlanStagesOptions plan;
+  plan.add(*app.add_subcommand("plan", "Default plans of sites: what each stage takes, or how two builds compare"));
   vantage::bench::SweepOptions sweep;
   sweep.add(*app.add_subcommand("sweep", "Plans of many sites by the default question, against the truth"));
 #ifdef VANTAGE_HAS_EDITOR
@@ -74,6 +77,7 @@ int main(int argc, char** argv) {
 #endif
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
+    if (app.got_subcommand("plan")) vantage::bench::run_plan_stages(plan);
     if (app.got_subcommand("day")) vantage::bench::run_day(day);
     if (app.got_subcommand("sweep") && !vantage::bench::run_sweep(sweep)) return 1;
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);

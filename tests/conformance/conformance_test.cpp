@@ -588,8 +588,8 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
         site.stations, random_stations(site, 40, 7), {site.stations[0]}, random_stations(site, 17, 8)};
     networks[0].erase(networks[0].begin() + 1);  // an inactive station keeps its place
     const std::vector<std::uint32_t> sizes{static_cast<std::uint32_t>(site.stations.size()), 40, 1, 17};
-    const auto patches =
-        std::make_shared<const Patches>(make_patches(*site.scene, *site.grid, sample, *site.pattern, {}));
+    SurfaceFinder surfaces(*site.scene, *site.grid);
+    const auto patches = std::make_shared<const Patches>(make_patches(surfaces, *site.grid, sample, *site.pattern, {}));
     for (const auto& [noisy, groups] : {std::pair{false, false}, {true, false}, {true, true}}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (groups ? ", groups" : ""));
       const RegistrationJob registration{patches, {{noisy ? site.noise : site.no_noise}}, groups};
@@ -610,7 +610,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
         EXPECT_EQ(counts[n].registration.surface, expected[0].surface) << n;
         EXPECT_EQ(counts[n].registration.heads.size(), sizes[n]);
         for (std::size_t g = 0; groups && g < 20; ++g)
-          EXPECT_EQ(counts[n].groups[g].registration.pairs, expected[g + 1].pairs) << n << ' ' << g;
+          EXPECT_EQ(counts[n].registration.groups[g].pairs, expected[g + 1].pairs) << n << ' ' << g;
         any = any || std::ranges::any_of(expected[0].pairs, [](double sum) { return sum != 0; });
       }
       EXPECT_TRUE(any);

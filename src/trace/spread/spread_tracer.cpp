@@ -75,6 +75,13 @@ void SpreadTracer::set_goal_density(double goal) {
     if (Tracer* const worker = pool_.worker(k)) worker->set_goal_density(goal);
 }
 
+std::uint64_t SpreadTracer::uploaded_bytes() const {
+  std::uint64_t sum = 0;
+  for (std::size_t k = 0; k < pool_.size(); ++k)
+    if (const Tracer* const worker = pool_.worker(k)) sum += worker->uploaded_bytes();
+  return sum;
+}
+
 std::uint64_t SpreadTracer::preferred_scan_rays(std::uint32_t scanner) const {
   std::uint64_t sum = 0;
   for (std::size_t k = 0; k < pool_.size(); ++k)

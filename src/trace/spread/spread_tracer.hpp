@@ -35,6 +35,7 @@ class SpreadTracer final : public Tracer {
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
+  std::uint64_t uploaded_bytes() const override;
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override;

@@ -128,6 +128,7 @@ double Commands::run_and_download(const Record& record, std::span<const Download
 
 void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes) {
   if (bytes == 0) return;
+  uploaded_bytes_ += bytes;
   const VkDeviceSize wanted = std::min(bytes, staging_bytes);
   if (!staging_up_ || staging_up_.size() < wanted)
     staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");

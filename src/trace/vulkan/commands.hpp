@@ -33,6 +33,7 @@ class Commands {
 
   // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
   void upload(const Buffer& to, const void* data, VkDeviceSize bytes);
+  std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
   void download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
 
  private:
@@ -44,6 +45,7 @@ class Commands {
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   Buffer staging_up_, staging_down_;
+  std::uint64_t uploaded_bytes_ = 0;
 };
 
 // Makes a device buffer that holds `values`.

@@ -73,6 +73,7 @@ class VulkanTracer final : public Tracer {
                VkPhysicalDevice physical, const DeviceAbilities& abilities, const TraceScene& scene);
 
   const EngineInfo& info() const override { return info_; }
+  std::uint64_t uploaded_bytes() const override { return commands_.uploaded_bytes(); }
   std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
     const std::uint64_t columns = scanners_[scanner].pattern().columns();
     return std::max<std::uint64_t>(std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns, 1) * columns;

@@ -426,14 +426,7 @@ TEST(RegistrationError, StandardErrorsHold) {
       NetworkCounts counts;
       counts.stations = 6;
       counts.voxels = ranks.size();
-      counts.registration = sums[0];
-      for (std::size_t g = 1; g < sums.size(); ++g) {
-        NetworkCounts group;
-        group.stations = 6;
-        group.voxels = (ranks.size() + 20 - g) / 20;
-        group.registration = sums[g];
-        counts.groups.push_back(group);
-      }
+      take_registration(counts, sums);
       estimates[static_cast<std::size_t>(trial)] = registration_estimate(counts, m.masks.size(), options);
     });
     int held = 0;
@@ -456,11 +449,12 @@ TEST(Registration, OfALinkInOneGroupIsNotFreeOfError) {
   m.room({}, 3, 2, 20, 3);
   NetworkCounts counts = m.counts();
   for (int g = 0; g < 20; ++g) {
-    NetworkCounts group = counts;
+    RegistrationSums group = counts.registration;
+    group.groups.clear();
     group.voxels /= 20;
-    for (double& sum : group.registration.pairs) sum *= g == 0 ? 1 : 0;
-    for (double& sum : group.registration.surface) sum /= 20;
-    counts.groups.push_back(group);
+    for (double& sum : group.pairs) sum *= g == 0 ? 1 : 0;
+    for (double& sum : group.surface) sum /= 20;
+    counts.registration.groups.push_back(group);
   }
   const double seen = registration_error(counts, 20 * counts.voxels).rms_m;
   const Estimate estimate = registration_estimate(counts, 20 * counts.voxels);
@@ -554,9 +548,6 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
   const auto estimate = [&](std::vector<RegistrationSums> of, std::uint32_t stations) {
     NetworkCounts counts;
     counts.stations = stations, counts.voxels = patches.patches.size();
-    counts.groups.resize(groups);
-    for (std::uint32_t g = 0; g < groups; ++g)
-      counts.groups[g].stations = stations, counts.groups[g].voxels = (counts.voxels + groups - 1 - g) / groups;
     take_registration(counts, std::move(of));
     RegistrationOptions options;
     options.surfaces = RegistrationSurfaces::surveyed;

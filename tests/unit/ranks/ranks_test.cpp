@@ -133,10 +133,10 @@ void expect_all_equal(const NetworkCounts& got, const NetworkCounts& expected) {
 }
 
 RegistrationJob registration(const TraceScene& scene, std::span<const std::uint32_t> sample) {
-  return {
-      std::make_shared<const Patches>(make_patches(*scene.scene, *scene.grid, sample, *scene.scanners[0].pattern, {})),
-      {{scene.scanners[0].noise, 1.0f}},
-      true};
+  SurfaceFinder surfaces(*scene.scene, *scene.grid);
+  return {std::make_shared<const Patches>(make_patches(surfaces, *scene.grid, sample, *scene.scanners[0].pattern, {})),
+          {{scene.scanners[0].noise, 1.0f}},
+          true};
 }
 
 TEST(Ranks, CountSamplesAsOneDoes) {

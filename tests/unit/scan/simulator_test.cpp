@@ -583,7 +583,7 @@ TEST(Registration, OfAllVoxelsIsExactAndOfASampleNear) {
   EXPECT_EQ(all.registration.surface, exact.registration.surface);
   EXPECT_EQ(registration_estimate(all, simulator.voxel_count()).standard_error, 0.0);
   ASSERT_EQ(all.groups.size(), 20u);
-  EXPECT_EQ(all.groups[3].registration.pairs.size(), exact.registration.pairs.size());
+  EXPECT_EQ(all.registration.groups[3].pairs.size(), exact.registration.pairs.size());
   const double whole = registration_error(exact, simulator.voxel_count()).rms_m;
   EXPECT_GT(whole, 0);
 

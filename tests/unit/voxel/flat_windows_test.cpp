@@ -53,7 +53,8 @@ double counted(const SceneData& scene, const VoxelGrid& grid, const Registration
   RayPattern pattern;
   pattern.zenith_step = pattern.azimuth_step = 0.001;
   const auto voxel_indices = every_index(grid);
-  const Patches patches = make_patches(scene, grid, voxel_indices, pattern, model);
+  SurfaceFinder finder(scene, grid);
+  const Patches patches = make_patches(finder, grid, voxel_indices, pattern, model);
   const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
   double some = 0, all = 0;
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
@@ -146,7 +147,7 @@ TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
   for (const double side : {0.06, 0.25, 0.9}) {
     const auto voxel_indices = every_index(grid, 37);
     const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
-    const auto shares = flat_shares(scene, grid, voxel_indices, surfaces, side);
+    const auto shares = FlatWindows(scene, grid, side).shares(voxel_indices, surfaces);
     ASSERT_EQ(shares.size(), voxel_indices.size());
     for (std::size_t k = 0; k < voxel_indices.size(); ++k) {
       const auto& [px, py, pz] = surfaces[k].point;
@@ -221,7 +222,7 @@ TEST(FlatWindows, HoldTheSmallTrianglesOfTheirNeighbours) {
   const double side = 0.4;
   const auto voxel_indices = every_index(grid, 29);
   const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
-  const auto shares = flat_shares(scene, grid, voxel_indices, surfaces, side);
+  const auto shares = FlatWindows(scene, grid, side).shares(voxel_indices, surfaces);
   std::size_t of_several = 0;
   for (std::size_t k = 0; k < voxel_indices.size(); ++k) {
     if (surfaces[k].area == 0) continue;
