@@ -27,6 +27,10 @@ constexpr std::size_t kRepairs = 6, kNewChoices = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 6000, kFewerStations = 500;
 
+// Time of the stages after the first round of refinement, in times of those until then: measured on the sites of
+// docs/examples.md. Timing the stages themselves would take longer than some of them.
+constexpr double kRestOfPlan = 3;
+
 // Largest networks of a trade-off that are measured together.
 constexpr std::size_t kTogether = 128;
 
@@ -90,6 +94,7 @@ class FewestReport {
 
   std::uint64_t traced = 0;  // stations
 
+  double seconds() const { return seconds_since(begun_); }
   bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
   void operator()(const char* phase, std::optional<double> whole_seconds_left = {}) const {
     if (watch_.report)
@@ -102,6 +107,7 @@ class FewestReport {
 
  private:
   const PlanWatch& watch_;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
 VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
@@ -159,7 +165,7 @@ void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulato
 
 // Looks, chooses and refines. Without stations to place where the time was over first.
 FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
-                           const PlanConfig& config, const PlanWatch& watch, FewestReport& report) {
+                           const PlanWatch& watch, FewestReport& report) {
   const SurveyProblem& problem = context.problem();
   const TableMaker make_table(context, simulator, candidates.coverage());
   FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
@@ -182,17 +188,11 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   report("choose");
   choose(choice, visit_time(context, choice.asked), watch.stop);
   for (std::size_t round = 0; round < kRounds && !report.stopped(); ++round) {
-    const auto begun = std::chrono::steady_clock::now();
     const std::size_t before = choice.table.stations().size();
     const double radius_m = kAroundRadius * std::ldexp(std::max(candidates.spacing_m(), 0.1), -static_cast<int>(round));
     refine_around(choice, context.oracle(), radius_m, report.progress("choose"));
     report.traced += choice.table.stations().size() - before;
-    if (round > 0 || !watch.report || report.stopped() || choice.placed() == 0) continue;
-    const SurveyProblem narrowed = with_stations(problem, choice.placed());
-    if (const auto seconds =
-            expected_seconds(choice, narrowed, refining_config(narrowed, config, candidates.stations().size()),
-                             context.evaluator(), seconds_since(begun), watch))
-      report("choose", seconds);
+    if (round == 0 && !report.stopped() && choice.placed() > 0) report("choose", kRestOfPlan * report.seconds());
   }
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
@@ -298,7 +298,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
   VerifiedNetworks verified(
       problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels, watch,
       [&context](std::span<const PlacedStation> placed) { return context.on_site().visit(placed).order; });
-  FewestChoice choice = choose_number(context, simulator, *candidates, config, watch, report);
+  FewestChoice choice = choose_number(context, simulator, *candidates, watch, report);
   SearchOutcome found;
   PlanResult result;
   if (choice.table.stations().size() <= choice.asked.existing) {

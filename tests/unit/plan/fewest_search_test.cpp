@@ -49,25 +49,5 @@ TEST(FewestSearch, TriesAsManyNetworksAsThereAreStationsOrNone) {
   EXPECT_FALSE(worth_searching(problem, config));
 }
 
-TEST(FewestSearch, ExpectsAtLeastWhatRoundsTook) {
-  const SurveyProblem problem = test::floor_problem(0.7);
-  const Measures measures = measures_of(problem);
-  test::FloorEvaluator evaluator(measures);
-  FewestChoice choice = test::floor_choice(problem);
-  const auto candidates = test::floor_candidates(8);
-  look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
-  choose(choice, {}, {});
-  const SurveyProblem narrowed = with_stations(problem, choice.placed());
-  const PlanConfig config = refining_config(narrowed, {.iterations = 0}, candidates.size());
-  const auto seconds = expected_seconds(choice, narrowed, config, evaluator, 100, {});
-  ASSERT_TRUE(seconds);
-  EXPECT_GE(*seconds, 220 - 1e-9) << "two rounds of 110 s";
-  std::stop_source stop;
-  stop.request_stop();
-  PlanWatch stopped;
-  stopped.stop = stop.get_token();
-  EXPECT_FALSE(expected_seconds(choice, narrowed, config, evaluator, 100, stopped));
-}
-
 }  // namespace
 }  // namespace vantage
