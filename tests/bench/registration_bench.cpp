@@ -21,6 +21,7 @@
 #include <set>
 #include <string>
 
+#include "objective/registered_sample.hpp"
 #include "simulated_adjustment.hpp"
 #include "sites/site.hpp"
 #include "vantage/candidates.hpp"
@@ -29,6 +30,7 @@
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/site.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage::bench {
 namespace {
@@ -40,6 +42,7 @@ struct Options {
   std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000, samples = 0;
   std::uint64_t sample = std::numeric_limits<std::uint64_t>::max(), seed = 1;
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
+  bool growing = false;
   std::vector<std::string> plans;  // tables of stations: networks that are given
 };
 
@@ -245,6 +248,40 @@ class Samples {
   std::size_t held_ = 0, drawn_ = 0;
 };
 
+// The prediction of evaluations by every ray, whose sample grows, against that of every voxel.
+class Growing {
+ public:
+  void add(Simulator& simulator, const Network& network) {
+    const RegistrationOptions registration;
+    const std::uint64_t all = simulator.voxel_count();
+    const RequiredInputs needs{.pairs = true, .registration = registration.model};
+    const NetworkCounts some = simulator.evaluate(network, count_surveyed(needs, registration, simulator));
+    const Estimate told = registration_estimate(some, all, registration);
+    const double truth =
+        registration_error(simulator.evaluate(network, {.registration = registration.model}), all, registration).rms_m;
+    off_.push_back(std::abs(told.value / truth - 1));
+    told_.push_back(told.standard_error / truth);
+    voxels_.push_back(static_cast<double>(some.registration.voxels) / static_cast<double>(all));
+    predicted_.push_back(told.value), true_.push_back(truth);
+    held_ += std::abs(told.value - truth) <= std::max(1.959964 * told.standard_error, 1e-9 * truth);
+    for (const AccuracyClass one : {AccuracyClass::loa30, AccuracyClass::loa40, AccuracyClass::loa50}) {
+      const auto meets = [&](double rms_m) { return error_at_95_percent(rms_m) <= largest_error_m(one); };
+      same_verdicts_ += meets(told.value) == meets(truth), ++verdicts_;
+    }
+  }
+  void print() const {
+    std::printf(
+        "off by %.3f (median; 90 %% of the networks at most %.3f), told %.3f; 95 %% intervals hold for %zu of %zu; "
+        "Spearman %+.3f; same verdict of LOA30, LOA40, LOA50 in %zu of %zu; %.2f of the voxels (median)\n",
+        quantile(off_, 0.5), quantile(off_, 0.9), quantile(told_, 0.5), held_, off_.size(), spearman(predicted_, true_),
+        same_verdicts_, verdicts_, quantile(voxels_, 0.5));
+  }
+
+ private:
+  std::vector<double> off_, told_, voxels_, predicted_, true_;
+  std::size_t held_ = 0, same_verdicts_ = 0, verdicts_ = 0;
+};
+
 void run(const Options& o) {
   const auto known = test::site_names();
   const bool own = std::ranges::find(known, o.site) == known.end();
@@ -301,6 +338,7 @@ void run(const Options& o) {
   std::set<std::vector<std::size_t>> taken;
   std::size_t drawn = 0;
   Samples samples;
+  Growing growing;
   for (std::size_t k = 0; k < networks; ++k) {
     std::vector<std::size_t> picked;
     if (!pool.given.empty()) picked = pool.given[k];
@@ -312,6 +350,10 @@ void run(const Options& o) {
     }
     Network network;
     for (const std::size_t p : picked) network.push_back({heads[p]});
+    if (o.growing) {
+      growing.add(simulator, network);
+      continue;
+    }
     if (o.samples > 0) {
       samples.add(simulator, network, o.sample, o.samples);
       continue;
@@ -363,7 +405,8 @@ void run(const Options& o) {
                   1e3 * e, 1e3 * predicted.value, 1e3 * predicted.standard_error, figure.values.back());
   }
   if (o.samples > 0) samples.print();
-  if (o.samples > 0 || !pool.given.empty()) return;
+  if (o.growing) growing.print();
+  if (o.growing || o.samples > 0 || !pool.given.empty()) return;
   std::printf("%zu connected networks of %zu stations (%zu drawn in all), %zu trials each\n", o.networks, o.stations,
               drawn + o.networks, o.trials);
   std::printf("true error %.2f to %.2f mm, 10 %% to 90 %%: a factor of %.1f\n", quantile(true_mm, 0),
@@ -389,6 +432,8 @@ int main(int argc, char** argv) {
   app.add_option("--trials", o.trials, "Adjustments of each");
   app.add_option("--sample", o.sample, "Voxels that predictions are made from; all of them if absent");
   app.add_option("--samples", o.samples, "Tell how far so many of these are off every voxel, and adjust nothing");
+  app.add_flag("--growing", o.growing,
+               "Tell how far the sample of evaluations by every ray is off every voxel, and adjust nothing");
   app.add_option("--step", o.step_deg, "Of the scanner, degrees");
   app.add_option("--user-size", o.user_size_m, "Of voxels, metres");
   app.add_option("--connected", o.connected, "Least overlap of the weakest link of the strongest tree");
