@@ -31,3 +31,4 @@
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"
+#include "vantage/write_plan.hpp"
