@@ -279,7 +279,7 @@ PlanResult surveyed(Survey& survey, std::size_t iterations, double max_seconds) 
 TEST(WritePlan, APlanThatTheTimeEndedHasTheFilesOfAFinishedOne) {
   const test::TemporaryFolder folder;
   Survey survey;
-  const PlanResult finished = surveyed(survey, 2, 0), ended = surveyed(survey, 100'000'000, 2);
+  const PlanResult finished = surveyed(survey, 2, 0), ended = surveyed(survey, 100'000'000, 5);
   EXPECT_EQ(ended.stop_reason, StopReason::max_time);
   EXPECT_NE(finished.stop_reason, StopReason::max_time);
   for (const PlanResult* result : {&finished, &ended}) {
