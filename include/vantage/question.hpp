@@ -30,6 +30,7 @@ struct SurveyQuestion {
   std::optional<std::array<std::size_t, 2>> stations = {};  ///< Least and largest number; one number twice.
   std::vector<Vec3> existing = {};                          ///< As `SurveyProblem::existing`.
   std::vector<StationSetup> existing_setups = {};           ///< One each, or none.
+  std::vector<std::string> existing_names = {};             ///< One each, or none.
   /// Steps that each station chooses from: degrees ("0.1"), or settings of the site's preset ("6mm").
   std::vector<std::string> search_steps = {};
   std::optional<std::array<double, 2>> heights_m = {};  ///< Searched per station.

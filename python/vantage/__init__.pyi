@@ -1104,6 +1104,7 @@ class SurveyProblem:
         stations_max: int = 4,
         existing: Iterable[Sequence[float]] = (),
         existing_setups: Iterable[StationSetup] = (),
+        existing_names: Iterable[str] = (),
         scanners: Iterable[int] = (),
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
@@ -1121,6 +1122,7 @@ class SurveyProblem:
     stations_max: int
     existing: Tuple[Vec3, ...]
     existing_setups: Tuple[StationSetup, ...]
+    existing_names: Tuple[str, ...]
     scanners: Tuple[int, ...]
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
@@ -1240,7 +1242,15 @@ class PlanResult:
     @property
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
-    def write(self, folder: Path) -> None: ...
+    def write(
+        self,
+        folder: Path,
+        *,
+        title: Optional[str] = None,
+        reports: bool = True,
+        max_seconds: Optional[float] = None,
+        progress: Optional[Progress] = None,
+    ) -> List[str]: ...
     def write_report(
         self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None
     ) -> None: ...

@@ -63,7 +63,7 @@ struct Keeper {
       rows.push_back(to_json({.placed = station.placed, .has_uv = true}, station.name, scanners));
       rows.back()["locked"] = station.locked;
     }
-    write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
+    write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}, {"version", version()}}.dump(2) + "\n");
   }
 
   // Empty if the scene differs.

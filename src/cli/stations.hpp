@@ -39,7 +39,7 @@ Network to_network(const std::vector<SiteStation>& stations);
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);
 // The same names as in all tables and pictures.
 std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
-// {name, position, ground, uv, status}; null for missing values. For a station with an unusual setup also {heading,
+// `station_json()`; null for missing values. For a station with an unusual setup also {heading,
 // tilt, scanner, step} and what else its scanner has of its own. `scanners`: the site's.
 nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners);
 // The inverse. Throws nlohmann::json::exception for another type.

@@ -116,13 +116,13 @@
     figures(at('figures'), network);
     tellCaptured(network.values);
     const { registration } = network.values;
-    if (registration && !state.exact && registration.error > registration.value / 2)
+    if (registration && !state.exact && registration.standard_error > registration.value / 2)
       at('figures').querySelectorAll('div').forEach((tile) => {
         if (tile.querySelector('dt').textContent === 'Registered')
-          tile.querySelector('small').textContent = `± ${registration.error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
+          tile.querySelector('small').textContent = `± ${registration.standard_error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
       });
     if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
-    if (network.seconds_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
+    if (network.minutes_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
     stationTable(at('stations'), network, pick, [...network.stations.keys()]);  // rows that stay in their places
     linkTable(at('links'), at('links-words'), network);
@@ -142,7 +142,7 @@
   // The first tile says how well its figures are known.
   function tellCaptured({ coverage, capture }) {
     const sampled = (name, { value, error }) => `${name} ${value.toFixed(4)}${state.exact ? '' : ` ± ${error.toFixed(4)}`}`;
-    const share = capture && capture.value !== null ? `${capture.error > 0 ? `± ${percent(capture.error)} ` : ''}of what is attainable; ` : '';
+    const share = capture && capture.value !== null ? `${capture.standard_error > 0 ? `± ${percent(capture.standard_error)} ` : ''}of what is attainable; ` : '';
     at('figures').querySelector('dd small').textContent = `${share}${sampled('coverage', coverage)}, ${state.exact ? 'by every ray' : 'from a sample'}`;
   }
   const unknownTile = (name, why) => element('div', {}, element('dt', {}, name), element('dd', {}, 'Not known', element('small', {}, why)));

@@ -172,7 +172,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     one.names = options.names, one.visit = std::move(visit);
     if (site.area && site.clash)
       one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
-    if (options.attainable) one.attainable = attainable.coverage();
+    if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);
   }

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <numeric>
 
-#include "export/setup_json.hpp"
 #include "export/station_cells.hpp"
+#include "export/station_json.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"
@@ -136,14 +136,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   const auto names = station_names(entry.stations, entry.names);
   const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
-    const PlacedStation& s = entry.stations[i];
-    ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
-                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"existing", s.existing}};
-    if (s.status != StationStatus::hole) {
-      station["position"] = to_json(s.position);
-      station["ground"] = to_json(s.ground);
-    }
-    if (setups) add_setup(station, s.setup, scanners);
+    ordered_json station = station_json<ordered_json>(entry.stations[i], names[i]);
+    if (setups) add_setup(station, entry.stations[i].setup, scanners);
     if (entry.exact && i < entry.counts.points_on_surveyed.size())
       station["points_on_surveyed"] = entry.counts.points_on_surveyed[i];
     stations.push_back(std::move(station));

@@ -158,6 +158,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
   asked.existing = question.existing, asked.existing_setups = question.existing_setups;
+  asked.existing_names = question.existing_names;
   asked.heights_m = question.heights_m;
   asked.link_overlap = least;
   asked.registration = question.registration;
