@@ -236,8 +236,10 @@ CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution fr
   }
   while (problem.graph && best.violation == 0 && best.chosen.size() > 1 && best.link < enough &&
          !stop.stop_requested()) {
+    // The same start with other random numbers: a link that is missed for want of a search costs stations later.
+    const std::vector<std::vector<std::size_t>> starts(kStarts, best.chosen);
     CoverSolution found =
-        evaluate_cover(problem, tabu.run(best.chosen, std::min(best.link + kLinkStep, enough)).network);
+        evaluate_cover(problem, tabu.run(starts, std::min(best.link + kLinkStep, enough), 0).back().network);
     if (found.violation > 0 || found.link <= best.link) break;
     best = std::move(found);
   }
