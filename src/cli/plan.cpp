@@ -21,6 +21,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
+#include "core/json_text.hpp"
 #include "core/seconds_since.hpp"
 #include "plan/limits.hpp"
 
@@ -287,7 +288,7 @@ EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::js
     throw Error(Errc::invalid_argument, "plan: " + folder.string() +
                                             " holds the results of another run; give another folder with -o, --resume "
                                             "to go on with it, or --force to overwrite it");
-  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (!config.resume) write_text(folder / "config.json", json_text(as_given, 2) + "\n");
   if (config.resume) {
     if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
       spdlog::info("resuming from {}", config.checkpoint.string());
@@ -355,7 +356,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     }
   }
   make_folder(folder);  // it may have been removed meanwhile
-  write_text(folder / "config.json", as_given.dump(2) + "\n");
+  write_text(folder / "config.json", json_text(as_given, 2) + "\n");
   write_results(folder, site, options, result, program, map_by, all_by);
   return show();
 }
