@@ -7,6 +7,7 @@
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
 #include "plan/answer_targets.hpp"
+#include "plan/check_problem.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
@@ -201,6 +202,8 @@ PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadl
 
 PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted, const PlanWatch& given) {
   using Clock = std::chrono::steady_clock;
+  check_problem(site, asked);
+  check_search(site, wanted);
   const auto start = Clock::now();
   // Building the site's missing parts is part of the time.
   const Deadline search_by(kSearchTimeShare * wanted.max_seconds, given.stop), all_by(wanted.max_seconds, given.abort);
