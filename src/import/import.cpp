@@ -111,9 +111,12 @@ class KeyReader {
       if (progress_.stopped()) throw Stopped{};
       std::error_code failure;
       const fs::path table = file.parent_path() / name;
-      if (fs::is_regular_file(table, failure) && is_below(table, file.parent_path())) read(table, nullptr);
+      if (!fs::is_regular_file(table, failure) || !is_below(table, file.parent_path())) continue;
+      read(table, nullptr);
+      tables_.push_back(table);
     }
   }
+  const std::vector<fs::path>& tables() const { return tables_; }
   std::string text() const {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_.value()));
@@ -142,13 +145,19 @@ class KeyReader {
 
   const Progress& progress_;
   Hash hash_;
+  std::vector<fs::path> tables_;
   std::uint64_t read_ = 0;
   std::vector<char> block_ = std::vector<char>(std::size_t{1} << 20);
 };
 
-// Changes with the model, the importer, what it is told, and this program.
-std::string cache_key(const fs::path& model, const std::vector<fs::path>& files, const Format& format,
-                      const Importer& importer, const std::vector<std::string>& settings, const Progress& progress) {
+struct Key {
+  std::string text;
+  std::vector<fs::path> tables;  // files that the model names, as far as its importer may read them
+};
+
+// Changes with the model, the importer, what it is told, and this program. Throws as KeyReader.
+Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const Format& format, const Importer& importer,
+              const std::vector<std::string>& settings, const Progress& progress) {
   KeyReader key(progress);
   const std::string_view name = format.name;
   key.add(vantage::version());
@@ -163,7 +172,7 @@ std::string cache_key(const fs::path& model, const std::vector<fs::path>& files,
     if (named) key.add(file.filename().string());
     key.add_model(file, name == "OBJ");
   }
-  return key.text();
+  return {key.text(), key.tables()};
 }
 
 // Empty if the user has none.
@@ -282,28 +291,28 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  // The buffers of a textual glTF are other files, which the key does not cover.
+  // The buffers of a textual glTF are other files below its folder, which the key does not cover.
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();
   fs::path entry;
-  if (!folder.empty()) {
+  std::vector<fs::path> readable = files;
+  if (whole) {
     try {
-      entry = folder / (cache_key(file, files, format, importer, settings, progress) + ".glb");
+      const Key key = cache_key(file, files, format, importer, settings, progress);
+      entry = folder / (key.text + ".glb");
+      readable.insert(readable.end(), key.tables.begin(), key.tables.end());
     } catch (const Stopped&) {
       return {};
     }
+  } else {
+    readable.push_back(files.front().parent_path());
+  }
+  if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);
-  }
   importer.words.insert(importer.words.end(), settings.begin(), settings.end());
-  for (const fs::path& one : files) {
-    importer.words.push_back(one.string());
-    importer.readable.push_back(one.parent_path());
-    std::error_code failure;
-    if (const fs::path target = fs::canonical(one, failure); !failure)
-      importer.readable.push_back(target.parent_path());
-  }
-  Ended ended = run_limited(importer.words, importer.readable, limits, progress);
+  for (const fs::path& one : files) importer.words.push_back(one.string());
+  Ended ended = run_limited(importer.words, importer.readable, readable, limits, progress);
   if (ended.stopped) return {};
   if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))
     throw failure_of(ended, file.string(), format, limits);
