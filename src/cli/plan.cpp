@@ -219,8 +219,8 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
       spdlog::info("{}: about {} left", doing(phase), duration_text(now.seconds_left));
     }
     if (now.iterations > 0)
-      line.update(static_cast<double>(now.iteration) / static_cast<double>(now.iterations), told(now, problem),
-                  now.seconds_left);
+      line.update(now.done.value_or(static_cast<double>(now.iteration) / static_cast<double>(now.iterations)),
+                  told(now, problem), now.seconds_left);
     else
       line.update(std::nullopt, told(now, problem), now.seconds_left);
   };

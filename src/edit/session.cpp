@@ -144,7 +144,7 @@ void EditSession::change(const json& request) {
   message_.clear();
   if (what == "exact")
     return start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
-  if (what == "improve") return start("improving the others", [this](const Progress& progress) { improve(progress); });
+  if (what == "improve") return start("improving unlocked stations", [this](const Progress& progress) { improve(progress); });
   if (what == "save") {
     keep_(stations_);
     return start("saving", [this](const Progress& progress) {
