@@ -166,8 +166,8 @@ Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const F
   std::error_code failure;  // then both are -1
   key.add_number(fs::file_size(importer.program, failure));
   key.add_number(fs::last_write_time(importer.program, failure).time_since_epoch().count());
-  // Storeys and scans of a folder are called as their files.
-  const bool named = fs::is_directory(model, failure);
+  // Storeys and scans of several files are called as these.
+  const bool named = files.size() > 1 || fs::is_directory(model, failure);
   for (const fs::path& file : files) {
     if (named) key.add(file.filename().string());
     key.add_model(file, name == "OBJ");
