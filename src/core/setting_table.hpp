@@ -19,7 +19,10 @@
 namespace vantage {
 
 // Degrees without the rounding of radians, so that 360 is not above 360.
-inline double whole_degrees(Angle angle) { return std::round(angle.in_degrees() * 1e12) / 1e12; }
+inline double whole_degrees(Angle angle) {
+  const double degrees = angle.in_degrees();
+  return std::abs(degrees) < 1e3 ? std::round(degrees * 1e12) / 1e12 : degrees;
+}
 
 // The help of a setting with its default.
 inline std::string otherwise(const std::string& help, double usual) {

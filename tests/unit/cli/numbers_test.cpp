@@ -372,7 +372,7 @@ class PositionsThatAreTaken : public NumbersThatAreTaken {
     for (const std::string& word : words) all += word + " ";
     SCOPED_TRACE(all);
     const Outcome outcome = run_program(words, at_most_a_minute);
-    expect_refused(outcome, 1, "");
+    expect_refused(outcome, 2, "");
     EXPECT_NE(outcome.err.find("within 1000 km of the scene"), std::string::npos) << outcome.err;
   }
   std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) const {
@@ -393,8 +393,8 @@ TEST_F(PositionsThatAreTaken, EndInOneErrorThatSaysWhere) {
       expect_ended(with(quick(command), {"--stations", path("far.csv")}));
       expect_ended(with(quick(command), {"--stations", path("front.json")}));
     }
-    expect_ended(with(quick("plan"), {"--keep", far + ",0,1.5"}));
-    expect_ended(with(quick("plan"), {"--start", far + ",0,1.5"}));
+    expect_ended(with(quick("plan"), {"--keep=" + far + ",0,1.5"}));
+    expect_ended(with(quick("plan"), {"--start=" + far + ",0,1.5"}));
     expect_ended(with(quick("evaluate"), {"--enter=" + far + ",1,1", "--station", "8,0,1.5", "--station", "0,8,1.5"}));
   }
   expect_ended(with(quick("evaluate"), {"--enter=1e160,1,1", "--station", "8,0,1.5", "--station", "0,8,1.5"}));
