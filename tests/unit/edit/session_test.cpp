@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "scene/scene_data.hpp"
 #include "support/boxes_on_ground.hpp"
