@@ -178,9 +178,8 @@ double parse_duration(std::string_view text, const std::string& what) {
   double parsed = 0;
   if (digits.empty() || std::from_chars(digits.begin(), digits.end(), parsed).ptr != digits.end())
     refuse(what, text, "is no time; write a number and s, min or h: 90s, 15min or 2h");
-  constexpr double kLongest_s = 1e9;  // thirty years; clocks count in 64 bits of nanoseconds
   const double seconds = unit * parse_number(number, what, positive);
-  if (seconds > kLongest_s) refuse(what, text, "must be at most " + number_text(kLongest_s) + " seconds");
+  if (seconds > any_seconds.high) refuse(what, text, "must be at most " + number_text(any_seconds.high) + " seconds");
   return seconds;
 }
 

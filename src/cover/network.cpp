@@ -75,8 +75,8 @@ void check(const CoverProblem& problem) {
 
 void check(const BoundConfig& config) {
   check_number(config.tolerance, "cover: the tolerance", {.low = 0, .high = 1, .low_included = false});
-  check_number(config.max_seconds, "cover: the time limit", not_negative);
-  check_number(config.exact_seconds, "cover: the time for branch and bound", not_negative);
+  check_number(config.max_seconds, "cover: the time limit", any_seconds);
+  check_number(config.exact_seconds, "cover: the time for branch and bound", any_seconds);
 }
 
 std::vector<std::size_t> free_candidates(const CoverProblem& problem) {

@@ -41,7 +41,7 @@ void check(const CandidateConfig& config, std::size_t scanners) {
     throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
                                             std::to_string(config.most) + " are asked for; at least 1 is needed");
   check_number(config.change, "candidates: the change", not_negative);
-  check_number(config.max_seconds, "candidates: the time limit", not_negative);
+  check_number(config.max_seconds, "candidates: the time limit", any_seconds);
   if (config.sample_voxels == 0) throw Error(Errc::invalid_argument, "candidates: a sample has at least one voxel");
 }
 

@@ -152,7 +152,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.max_seconds = parse_duration(text, what);
                   })
-          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, not_negative); })
+          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, any_seconds); })
           .optional(
               "target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
               &Config::target_hypervolume,
@@ -189,7 +189,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                     c.checkpoint_seconds = parse_duration(text, what);
                   })
           .checked(
-              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, not_negative); })
+              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, any_seconds); })
           .flag("resume", "Continue from the folder's checkpoint", &Config::resume)
           .take();
   return table;
