@@ -130,8 +130,7 @@ TEST_F(ImporterTest, ReadingForTheKeyIsStopped) {
 }
 
 TEST_F(ImporterTest, ReadsItsModelAndTheTablesItNamesAlone) {
-  if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 1)
-    GTEST_SKIP() << "this kernel has no Landlock";
+  const bool landlock = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) > 0;
   write("key", "secret");
   write("colours.mtl", "newmtl red\n");
   write("others/far.mtl", "newmtl blue\n");
@@ -146,7 +145,7 @@ TEST_F(ImporterTest, ReadsItsModelAndTheTablesItNamesAlone) {
                                   {"site/far.mtl", false},
                                   {"key", false}}) {
     use_script("read line <" + (folder_ / file).string() + " && exec cat ${0%/*}/scene.glb; exit 3");
-    if (may)
+    if (may || !landlock)
       EXPECT_EQ(import(model), glb("triangle")) << file;
     else
       expect_error(Errc::malformed_file, "exit code", [&] { import(model); });
