@@ -264,8 +264,9 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
     return Error(Errc::io, who + " was stopped (signal " + std::to_string(ended.signal) + ")");
   rlimit space{};
   if (said.empty() && getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY)
-    return Error(Errc::out_of_memory, who + " could not run in the address space of " + bytes_text(space.rlim_cur) +
-                                          " that this process is limited to (ulimit -v); raise that limit");
+    return Error(Errc::out_of_memory,
+                 who + " ended early, perhaps since this process is limited to an address space of " +
+                     bytes_text(space.rlim_cur) + " (ulimit -v): raise that limit; or the file is damaged");
   const std::string how = ended.signal > 0       ? "crashed (signal " + std::to_string(ended.signal) + ")"
                           : ended.exit_code != 0 ? "failed (exit code " + std::to_string(ended.exit_code) + ")"
                                                  : "gave no GLB";
