@@ -178,7 +178,7 @@ double parse_duration(std::string_view text, const std::string& what) {
   double parsed = 0;
   if (digits.empty() || std::from_chars(digits.begin(), digits.end(), parsed).ptr != digits.end())
     refuse(what, text, "is no time; write a number and s, min or h: 90s, 15min or 2h");
-  const double seconds = unit * parse_number(number, what, positive);
+  const double seconds = unit * parse_number(number, what, {.low = 1e-6});
   if (seconds > any_seconds.high) refuse(what, text, "must be at most " + number_text(any_seconds.high) + " seconds");
   return seconds;
 }

@@ -143,12 +143,11 @@ void add_scanner(Rows& rows) {
       .degrees("heading", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", &SiteOptions::heading,
                any_number)
       .by_scene()
-      .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle,
-               {.low = 0, .high = 360, .low_included = false})
+      .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle, {.low = 1e-6, .high = 360})
       .by_scene()
       .by_preset()
       .degrees("vertical", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150",
-               &SiteOptions::vertical_angle, {.low = 0, .high = 360, .low_included = false})
+               &SiteOptions::vertical_angle, {.low = 1e-6, .high = 360})
       .by_scene()
       .by_preset()
       .degrees("zenith-start", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
@@ -200,7 +199,7 @@ void add_measure(Rows& rows) {
       .degrees("incidence",
                "Largest angle between ray and normal of points that count, 90: any; 60 if a detail or an accuracy "
                "is set, else 90",
-               &SiteOptions::max_incidence, {.low = 0, .high = 90, .low_included = false})
+               &SiteOptions::max_incidence, {.low = 1e-6, .high = 90})
       .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
               measurable)
       .by_scene()
