@@ -214,6 +214,8 @@ struct PlanProgress {
   /// Given once for the fewest stations, when their number is about known: estimated time of all the rest, from the
   /// parts done so far.
   std::optional<double> whole_seconds_left = std::nullopt;
+  /// Share of the phase that is done, where it is known better than by `iteration`: a network is confirmed ray by ray.
+  std::optional<double> done = std::nullopt;
 };
 
 /// As `Progress`, for a search.

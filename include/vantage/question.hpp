@@ -48,9 +48,6 @@ struct SurveyQuestion {
 
 /// One row for each setting. `existing` and `existing_targets` have none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
-const SettingTable<RegistrationOptions>& registration_settings();
-const SettingTable<OnSiteOptions>& on_site_settings();
-const SettingTable<TargetOptions>& target_settings();
 /// One row for each setting of a search, except `start` and `checkpoint`.
 const SettingTable<PlanConfig>& plan_settings();
 

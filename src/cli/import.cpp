@@ -3,6 +3,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "core/atomic_file.hpp"
@@ -15,13 +19,20 @@
 namespace vantage::cli {
 namespace {
 
+SettingTable<SiteOptions> settings_named(std::initializer_list<std::string_view> names) {
+  SettingTable<SiteOptions> rows;
+  for (const auto& row : site_settings())
+    if (std::ranges::find(names, row.name) != names.end()) rows.push_back(row);
+  return rows;
+}
+
+// Options refer to their rows.
 const SettingTable<SiteOptions>& floor_plan_settings() {
-  static const SettingTable<SiteOptions> table = [] {
-    SettingTable<SiteOptions> rows;
-    for (const auto& row : site_settings())
-      if (row.name == "unit" || row.name == "wall-layer" || row.name == "wall-height") rows.push_back(row);
-    return rows;
-  }();
+  static const auto table = settings_named({"unit", "wall-layer", "wall-height"});
+  return table;
+}
+const SettingTable<SiteOptions>& run_settings() {
+  static const auto table = settings_named({"memory"});
   return table;
 }
 
@@ -40,6 +51,7 @@ struct ImportOptions {
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, floor_plan_settings(), site, "Floor plan");
+    add_settings(command, run_settings(), site);
     add_number(command, "--cell", "M", "Size of the cells of a point cloud, in metres; chosen by its density otherwise",
                cell_m, {.low = 0.005, .high = 10})
         ->group("Point cloud");
@@ -52,6 +64,7 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (!options.output) throw Error(Errc::invalid_argument, "import: no file to write; give one with -o site.glb");
   SceneOptions read = options.site.scene;
   read.doors = {"closed"};
+  read.max_memory_bytes = options.site.memory_bytes;
   const importers::Format& format = *importers::recognise(options.file).format;
   std::vector<std::string> settings = importer_settings(read, format, options.file);
   if (options.cell_m && !takes_setting(format, "cell"))
@@ -62,7 +75,7 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
   }
   ProgressLine line(program.console, "reading " + options.file);
-  const auto glb = importers::as_glb(options.file, format, {}, settings,
+  const auto glb = importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
                                      {.report = [&](double done) { line.update(done); }, .stop = program.stop});
   if (glb.empty()) throw Stopped{};
   const auto write = [&] {
@@ -70,7 +83,8 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   };
   // It is read to report what is wrong with it, mostly from the cache; the cache of a site has no cells by hand.
   if (options.cell_m) write();
-  const Scene scene = options.cell_m ? Scene::load(*options.output) : Scene::load(options.file, read);
+  const Scene scene = options.cell_m ? Scene::load(*options.output, {.max_memory_bytes = read.max_memory_bytes})
+                                     : Scene::load(options.file, read);
   if (!options.cell_m) write();
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
   if (options.json)

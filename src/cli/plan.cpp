@@ -20,6 +20,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
+#include "core/json_text.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage::cli {
@@ -196,8 +197,8 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
       spdlog::info("{}: about {} left", doing(phase), duration_text(now.seconds_left));
     }
     if (now.iterations > 0)
-      line.update(static_cast<double>(now.iteration) / static_cast<double>(now.iterations), told(now, problem),
-                  now.seconds_left);
+      line.update(now.done.value_or(static_cast<double>(now.iteration) / static_cast<double>(now.iterations)),
+                  told(now, problem), now.seconds_left);
     else
       line.update(std::nullopt, told(now, problem), now.seconds_left);
   };
@@ -272,7 +273,7 @@ EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::js
     throw Error(Errc::invalid_argument, "plan: " + folder.string() +
                                             " holds the results of another run; give another folder with -o, --resume "
                                             "to go on with it, or --force to overwrite it");
-  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (!config.resume) write_text(folder / "config.json", json_text(as_given, 2) + "\n");
   if (config.resume) {
     if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
       spdlog::info("resuming from {}", config.checkpoint.string());
@@ -335,7 +336,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     }
   }
   make_folder(folder);  // it may have been removed meanwhile
-  write_text(folder / "config.json", as_given.dump(2) + "\n");
+  write_text(folder / "config.json", json_text(as_given, 2) + "\n");
   write_results(folder, site, options, result, program, all_by);
   return show();
 }

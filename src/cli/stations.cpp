@@ -204,8 +204,8 @@ std::vector<std::string> names_of(const std::vector<SiteStation>& stations) {
   return station_names(placed_of(stations), given);
 }
 
-std::string fault_text(Site& site, const PlacedStation& placed) {
-  std::string text = explain(placed.status) + (active(placed) ? "" : "; it is left out");
+std::string fault_text(Site& site, const PlacedStation& placed, const std::string& consequence) {
+  std::string text = explain(placed.status) + (active(placed) ? "" : "; " + consequence);
   if (placed.status == StationStatus::ok || placed.status == StationStatus::hole || !site.has_area()) return text;
   return text + "; " + move_text(placed.position, {.to = site.nearest_place(placed.position)});
 }

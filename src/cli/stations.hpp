@@ -46,7 +46,7 @@ nlohmann::json to_json(const SiteStation& station, const std::string& name, std:
 StationText station_of_json(const nlohmann::json& json);
 // A warning for each unusable station.
 void warn_of_unusable(Site& site, const std::vector<SiteStation>& stations);
-// `explain` of a new station's status, whether it is left out, and where it may stand instead.
-std::string fault_text(Site& site, const PlacedStation& placed);
+// `explain` of a new station's status, what follows if it is unusable, and where it may stand instead.
+std::string fault_text(Site& site, const PlacedStation& placed, const std::string& consequence = "it is left out");
 
 }  // namespace vantage::cli

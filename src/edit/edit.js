@@ -124,14 +124,14 @@
     if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
     if (network.minutes_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
-    stationTable(at('stations'), network, pick, [...network.stations.keys()]);  // rows that stay in their places
+    stationTable(at('stations'), network, pickInTable, [...network.stations.keys()]);  // rows that stay in their places
     linkTable(at('links'), at('links-words'), network);
     card();
     legend();
     at('undo').disabled = !state.undo || Boolean(state.busy);
     at('redo').disabled = !state.redo || Boolean(state.busy);
     at('exact').disabled = state.exact || !state.ids.length || Boolean(state.busy);
-    at('improve').disabled = !state.ids.length || Boolean(state.busy);
+    at('improve').disabled = state.locked.every(Boolean) || Boolean(state.busy);
     at('add').disabled = Boolean(state.busy);
     at('save').textContent = state.busy ? 'Stop' : 'Save';
     if (state.busy) tell(`${capital(state.busy.what)}${state.busy.done > 0 ? `, ${Math.round(100 * state.busy.done)} %` : ' …'}`);
@@ -165,9 +165,16 @@
 
   function pick(k) {
     if (drag && drag.moved) return;
+    pickedInTable = false;
     selected = k === selected ? null : k;
     view.select(selected);
     card();
+  }
+  // The table is made anew with every answer, which takes the focus from the button that was pressed.
+  let pickedInTable = false;
+  function pickInTable(k) {
+    pick(k);
+    pickedInTable = selected !== null;
   }
   function card() {
     if (at('station').contains(document.activeElement) && document.activeElement.tagName === 'INPUT') return;  // a name is being typed
@@ -365,6 +372,8 @@
     at('at').hidden = true;
   });
   document.addEventListener('keydown', (event) => {
+    const free = document.activeElement === document.body || at('stations').contains(document.activeElement);
+    if (pickedInTable && selected !== null && free && !event.ctrlKey && !event.metaKey && !event.altKey) labelKey(event, selected);
     if (event.key === 'Escape' && mode) {
       setMode(null);
       tell('');

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/json_text.hpp"
 #include "export/station_cells.hpp"
 #include "export/station_json.hpp"
 #include "vantage/export.hpp"
@@ -225,7 +226,7 @@ ordered_json run_parameters(const Simulator& simulator, const PlanResult* result
 }
 
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result) {
-  return run_parameters(simulator, result).dump(2);
+  return json_text(run_parameters(simulator, result), 2);
 }
 
 ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations) {
@@ -282,7 +283,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
   if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
   if (!evaluation.counts.mixed.empty()) json["mixed"] = sum_json(evaluation.counts.mixed);
-  return json.dump();
+  return json_text(json);
 }
 
 std::string front_json(const PlanResult& result, const Simulator& simulator) {
@@ -320,7 +321,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   json["seed"] = result.config.seed.value_or(1);
   json["version"] = version();
   json["parameters"] = run_parameters(simulator, &result);
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace vantage

@@ -29,10 +29,11 @@ struct Ended {
   bool timed_out = false, too_large = false, stopped = false;
 };
 
-// Runs a program with these words, `words[0]` its path, and waits. It can write no file, open no socket and dump no
-// core. If the kernel has Landlock, it reads nothing outside the system's folders and `readable`. Lines "progress
-// SHARE" of its standard error are reported. Throws Error io if it cannot be started.
-Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
-                  const Limits& limits, const Progress& progress = {});
+// Runs a program with these words, `words[0]` its path, in a sandbox (sandbox.hpp), and waits. It has no environment,
+// and dumps no core. If the kernel has Landlock, it reads nothing outside the system's folders, `programs` and
+// `readable`. Lines "progress SHARE" of its standard error are reported. Throws Error io if it cannot be started.
+Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& programs,
+                  const std::vector<std::filesystem::path>& readable, const Limits& limits,
+                  const Progress& progress = {});
 
 }  // namespace vantage::importers

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -62,6 +61,9 @@ constexpr std::array kMistaken{
     Mistaken{"OFF\n"sv, "an OFF model; export OBJ or PLY"},
     Mistaken{"#VRML"sv, "a VRML file; export X3D (as XML) or glTF"},
 };
+
+// Bytes of a file that its format is told by.
+constexpr std::uint64_t kMostRecognised = std::uint64_t{1} << 30;
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -259,7 +261,7 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
   const std::uint64_t json =
       glb ? 20 + std::uint64_t{little_endian_32(std::string_view(head.bytes).substr(12))} : head.size;
   std::ifstream stream(file, std::ios::binary);
-  return mentions(stream, json, kWords);
+  return mentions(stream, std::min(json, kMostRecognised), kWords);
 }
 
 // Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
@@ -268,12 +270,15 @@ bool is_drawing(const std::filesystem::path& file) {
                               "HATCH"sv, "SOLID"sv,      "INSERT"sv, "POLYLINE"sv};
   constexpr int kMeshes = 16 | 64;  // bits of a POLYLINE's group 70: a mesh of polygons, of faces
   std::ifstream stream(file, std::ios::binary);
+  auto left = static_cast<std::streamsize>(kMostRecognised);
   const auto next = [&](std::string& line) {
     std::array<char, 64> text{};  // longer lines are texts
     stream.getline(text.data(), text.size());
+    left -= stream.gcount();
     if (stream.fail() && !stream.eof() && stream.gcount() > 0) {
       stream.clear();
-      stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      stream.ignore(left, '\n');
+      left -= stream.gcount();
     }
     line = without_blanks(text.data());
     while (!line.empty() && is_space(line.back())) line.pop_back();
@@ -283,7 +288,7 @@ bool is_drawing(const std::filesystem::path& file) {
   std::string code, value, entity;
   double lowest = 0, highest = 0;
   bool any = false;
-  while (next(code) && next(value)) {
+  while (left > 0 && next(code) && next(value)) {
     if (code == "0") {
       if (entity == "3DFACE" && any && highest - lowest > 1e-6) return false;
       entity = value, any = false;
@@ -298,6 +303,24 @@ bool is_drawing(const std::filesystem::path& file) {
   return lines;
 }
 
+// Throws Error io for what is called as a model in a folder and is no file.
+void require_file(const std::filesystem::directory_entry& entry) {
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  const fs::file_status status = entry.status(failure);
+  if (fs::is_regular_file(status)) return;
+  std::string is = fs::is_directory(status)                                     ? "a folder"
+                   : fs::is_character_file(status) || fs::is_block_file(status) ? "a device"
+                   : fs::is_fifo(status)                                        ? "a pipe"
+                   : fs::is_socket(status)                                      ? "a socket"
+                                                                                : "nothing that can be read";
+  if (entry.is_symlink(failure)) {
+    const fs::path target = fs::read_symlink(entry.path(), failure);
+    is = "a link to " + target.string() + ", " + (fs::exists(status) ? "which is " + is : "where there is nothing");
+  }
+  throw Error(Errc::io, entry.path().string() + ": this is " + is + "; take it out of the folder, or give a file");
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
@@ -306,8 +329,10 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
   constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan};
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(file, failure))
-    if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); }))
+    if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); })) {
+      require_file(entry);
       files.push_back(entry.path());
+    }
   if (failure) throw Error(Errc::io, file.string() + ": the folder cannot be read: " + failure.message());
   if (files.empty())
     throw Error(Errc::malformed_file,

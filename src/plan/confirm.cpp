@@ -162,13 +162,15 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     // The times of stations differ severalfold, and an engine may trace those of the first network along with others. A
     // part of it tells nothing yet about the whole.
     const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
-    watch.report({.iteration = done,
-                  .iterations = entries.size(),
-                  .evaluations = found.evaluations,
-                  .hypervolume = found.hypervolume,
-                  .evaluations_per_second = rate,
-                  .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
-                  .phase = "confirm"});
+    watch.report(
+        {.iteration = done,
+         .iterations = entries.size(),
+         .evaluations = found.evaluations,
+         .hypervolume = found.hypervolume,
+         .evaluations_per_second = rate,
+         .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
+         .phase = "confirm",
+         .done = (static_cast<double>(done) + part) / static_cast<double>(std::max<std::size_t>(entries.size(), 1))});
   };
   report(0, 0);
   const auto confirm = [&](std::size_t first, std::size_t many) {

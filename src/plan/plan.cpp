@@ -6,6 +6,7 @@
 
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
+#include "plan/check_problem.hpp"
 #include "plan/complete_front.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
@@ -142,6 +143,8 @@ void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch&
 
 PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted, const PlanWatch& given) {
   using Clock = std::chrono::steady_clock;
+  check_problem(site, asked);
+  check_search(site, wanted);
   const auto start = Clock::now();
   PlanTime time(wanted.max_seconds, given);  // building the site's missing parts is part of it
   const PlanWatch watch = time.watch();

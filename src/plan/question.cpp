@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/setting_table.hpp"
+#include "plan/check_problem.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -147,6 +148,7 @@ bool SurveyQuestion::asks_for_fewest() const {
 }
 
 SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
+  check_settings(question_settings(), question);
   const bool survey = question.asks_for_fewest();
   const auto stations = station_range(question);
   if (!question.objectives.empty() && question.problem && !survey)
@@ -185,6 +187,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
       return 0;
     });
   asked.scanners = scanners_with(site, question.search_steps);
+  check_problem(site, asked);
   return asked;
 }
 

@@ -168,7 +168,7 @@ function linkTable(holder, wordsHolder, network) {
     if (l.weakest) tags.push(element('span', { class: 'tag' }, 'weakest that the survey depends on'));
     const cell = element('span', {});
     cell.append(...tags);
-    return [network.stations[l.a].name, network.stations[l.b].name, percent(l.value), cell];
+    return [network.stations[l.a].name, network.stations[l.b].name, l.voxels === undefined ? percent(l.value) : `${percent(l.value)} ± ${percent(l.error)}, of ${grouped(l.voxels)} voxels`, cell];
   };
   if (!network.links.length) {
     holder.replaceChildren(element('p', {}, 'No two stations are linked.'));

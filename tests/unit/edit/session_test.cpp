@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "scene/scene_data.hpp"
 #include "support/boxes_on_ground.hpp"
@@ -106,7 +107,12 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
         all.evaluate_sampled({&network, 1}, {.voxels = std::min(bench.options.link_voxels, all.voxel_count())})
             .front());
     EXPECT_GT(state["network"]["links"].size(), 0u);
-    for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
+    for (const auto& link : state["network"]["links"]) {
+      EXPECT_EQ(link["value"], links(link["a"], link["b"]));
+      const double share = link["value"], of = link["voxels"];
+      EXPECT_GT(of, 0);
+      EXPECT_NEAR(link["error"], std::sqrt(share * (1 - share) / of), 1e-12);
+    }
   }
   bench.session.change({{"do", "exact"}});
   const State state = bench.finished();
