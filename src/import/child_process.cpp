@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string_view>
@@ -91,8 +92,8 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
 
 // Runs after the fork, where only system calls are safe. Allocation is limited by RLIMIT_DATA: unlike RLIMIT_AS it does
 // not count the address space that node reserves and never uses.
-[[noreturn]] void become(char* const* words, Sandbox& sandbox, const Limits& limits, std::uint64_t tasks, int nothing,
-                         int out, int err) noexcept {
+[[noreturn]] void become(char* const* words, char* const* environment, Sandbox& sandbox, const Limits& limits,
+                         std::uint64_t tasks, int nothing, int out, int err) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setpgid(0, 0);
   if (dup2(nothing, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(kCannotStart);
@@ -111,8 +112,7 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
   syscall(SYS_close_range, 3, ~0U, kCloseOnExec);
 #endif
   sandbox.enter();
-  char* const no_environment[] = {nullptr};
-  execve(words[0], words, no_environment);
+  execve(words[0], words, environment);
   _exit(kCannotStart);
 }
 
@@ -214,13 +214,21 @@ Ended run_limited(const std::vector<std::string>& words, const std::vector<std::
   std::vector<char*> argv;
   for (std::string& word : copies) argv.push_back(word.data());
   argv.push_back(nullptr);
-  Sandbox sandbox(programs, readable);
+  std::vector<std::string> variables;
+  if (limits.spawns)
+    for (const char* name : {"PATH", "VANTAGE_IMPORTERS"})
+      if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
+  Sandbox sandbox(programs, readable, limits.spawns);
   const std::uint64_t tasks = most_tasks();
   Pipe out, err;
   const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
   const pid_t process = fork();
   if (process < 0) throw Error(Errc::io, words.front() + " cannot be started: " + std::string(std::strerror(errno)));
-  if (process == 0) become(argv.data(), sandbox, limits, tasks, nothing.get(), out.to.get(), err.to.get());
+  if (process == 0)
+    become(argv.data(), environment.data(), sandbox, limits, tasks, nothing.get(), out.to.get(), err.to.get());
   out.to.reset();
   err.to.reset();
   Ended ended;

@@ -313,6 +313,7 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
     if (auto glb = cached(entry, limits)) return std::move(*glb);
   importer.words.insert(importer.words.end(), settings.begin(), settings.end());
   for (const fs::path& one : files) importer.words.push_back(one.string());
+  limits.spawns = importer.spawns;
   Ended ended = run_limited(importer.words, importer.readable, readable, limits, progress);
   if (ended.stopped) return {};
   if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))

@@ -132,7 +132,7 @@ scmp_arg_cmp masked(unsigned argument, std::uint64_t mask, std::uint64_t value) 
 }
 scmp_arg_cmp equal(unsigned argument, std::uint64_t value) { return masked(argument, 0xFFFFFFFF, value); }
 
-std::vector<sock_filter> make_filter() {
+std::vector<sock_filter> make_filter(bool spawns) {
   Filter filter;
   for (const char* call : kAllowed) filter.allow(call);
   // Files are opened for reading alone.
@@ -145,6 +145,8 @@ std::vector<sock_filter> make_filter() {
   // Threads, and no processes. The C library falls back to clone, whose flags can be seen.
   constexpr std::uint64_t kThread = CLONE_VM | CLONE_THREAD;
   filter.allow("clone", masked(0, kThread, kThread));
+  constexpr std::uint64_t kSpawn = CLONE_VM | CLONE_VFORK;
+  if (spawns) filter.allow("clone", masked(0, kSpawn | CLONE_THREAD, kSpawn));
   filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");
   // Neither an owner, which would get signals, nor a larger pipe.
   for (const int command : {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL})
@@ -164,8 +166,9 @@ std::vector<sock_filter> make_filter() {
 
 }  // namespace
 
-Sandbox::Sandbox(const std::vector<std::filesystem::path>& programs, const std::vector<std::filesystem::path>& readable)
-    : filter_(make_filter()) {
+Sandbox::Sandbox(const std::vector<std::filesystem::path>& programs, const std::vector<std::filesystem::path>& readable,
+                 bool spawns)
+    : filter_(make_filter(spawns)) {
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
   rules_ = make_ruleset();
   if (rules_ < 0) return;

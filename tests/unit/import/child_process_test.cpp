@@ -154,6 +154,27 @@ TEST_F(ChildProcessTest, StartsNoProcessAndSignalsNone) {
   EXPECT_EQ(text(ended), "\n0 1 ");
 }
 
+// One that starts a program of its own: that one has the same sandbox, and ends with it.
+TEST_F(ChildProcessTest, SpawnsWhereItMayInTheSameSandbox) {
+  const std::string script =
+      "import os\n"
+      "p = os.posix_spawn('/bin/bash', ['bash', '-c', 'echo in; echo text > ' + " +
+      ("'" + (folder_ / "written").string() + "'") +
+      " + '; exec sleep 60'], os.environ)\n"
+      "for f in (os.fork, os.setsid, lambda: os.kill(os.getppid(), 0)):\n"
+      "  try: f(); print('let')\n"
+      "  except PermissionError: pass\n"
+      "os.waitpid(p, 0)\n";
+  const std::vector<std::string> words{"/usr/bin/python3", "-I", "-c", script};
+  const auto begin = std::chrono::steady_clock::now();
+  const Ended ended = importers::run_limited(words, {}, {}, {.wall_s = 3, .spawns = true});
+  EXPECT_EQ(text(ended), "in\n");
+  EXPECT_TRUE(ended.timed_out);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "written"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30)) << "the spawned one holds no pipe open";
+  EXPECT_EQ(text(importers::run_limited(words, {}, {}, {})), "");
+}
+
 TEST_F(ChildProcessTest, HasNeitherSharedMemoryNorSockets) {
   const Ended ended = python({"mmap.mmap(-1, 4096, flags=mmap.MAP_PRIVATE)", "mmap.mmap(-1, 4096)",
                               "os.memfd_create('a')", "assert ctypes.CDLL(None).shmget(0, 4096, 0o1600) >= 0",
