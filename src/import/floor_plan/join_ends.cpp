@@ -110,12 +110,12 @@ class Ends {
       if (!done[end]) grid.add(end, at(end), at(end));
     std::vector<bool> closed(2 * lines_.size());
     for (const std::size_t end : loose_) {
-      if (done[end] || closed[end]) continue;
+      if (done[end] || closed[end] || lines_[end / 2].width >= kThinnestWall_m) continue;
       const Point p = at(end), outward = (p - other(end)) * (1 / distance(p, other(end)));
       std::optional<std::size_t> best;
       const Point reach{kThickestWall_m, kThickestWall_m};
       grid.visit(p - reach, p + reach, [&](std::size_t e) {
-        if (e / 2 == end / 2 || closed[e] || done[e]) return;
+        if (e / 2 == end / 2 || closed[e] || done[e] || lines_[e / 2].width >= kThinnestWall_m) return;
         const Point to = at(e) - p, way = (at(e) - other(e)) * (1 / distance(at(e), other(e)));
         const double wide = length(to);
         const bool side_by_side = wide >= kThinnestWall_m && wide <= kThickestWall_m && dot(way, outward) > 0.98 &&

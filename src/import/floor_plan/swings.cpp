@@ -70,7 +70,7 @@ std::vector<Swing> take_swings(Drawing& drawing) {
       if (!leaf) return false;
       is_taken[*leaf] = true;
     }
-    swings.push_back({arc.centre, {arc.start, arc.end()}, radius});
+    swings.push_back({arc.centre, {arc.start, arc.end()}, radius, arc.from.layer});
     return true;
   });
   Grid grid(1.0);
