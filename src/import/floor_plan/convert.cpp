@@ -26,8 +26,6 @@ namespace {
 using importer::Refused;
 using nlohmann::json;
 
-constexpr double kCurve_m = 0.005;  // by how much chords stray from curves
-
 // To metres, and around a point of whole metres amid the lines: floats hold no map coordinates. Curves become lines.
 Point scale_to_metres(Drawing& drawing, double metres) {
   const auto each = [&](const auto& visit) {

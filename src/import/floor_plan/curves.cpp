@@ -2,14 +2,12 @@
 // Curves as chains of points: arcs, ellipses and splines.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "import/floor_plan/content.hpp"
 
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kFine = 1.0 / 20'000;  // of a curve's extent
 
 std::vector<Point> fine(const std::vector<Point>& points) {

@@ -6,10 +6,14 @@
 #include <compare>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 namespace vantage::floor_plan {
+
+inline constexpr double kTurn = 2 * std::numbers::pi, kDegree = kTurn / 360;
+inline constexpr double kCurve_m = 0.005;  // by how much chords stray from curves
 
 struct Point {
   double x = 0, y = 0;

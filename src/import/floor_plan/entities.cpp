@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "import/floor_plan/content.hpp"
 #include "import/floor_plan/labels.hpp"
@@ -11,8 +10,6 @@
 
 namespace vantage::floor_plan {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi, kDegree = kTurn / 360;
 
 // A vertex of a polyline: `bulge` is the tangent of a quarter of the angle of the arc that follows.
 struct Vertex {

@@ -2,7 +2,6 @@
 // Boundaries of hatches. Their codes repeat, so they are read in their order.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "import/floor_plan/content.hpp"
@@ -10,7 +9,6 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi, kDegree = kTurn / 360;
 using Ring = std::vector<Point>;
 
 bool holds(const Ring& ring, Point p) {

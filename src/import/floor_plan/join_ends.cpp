@@ -11,7 +11,8 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kSame = 1e-3;  // ends closer than this are joined already
+constexpr double kSame = 1e-3;    // lines are longer; joins by half of it are told
+constexpr double kJoined = 1e-6;  // ends closer than this are joined already
 
 Point nearest_on(const Line& line, Point p) {
   const Point along = line.b - line.a;
@@ -31,10 +32,7 @@ class Ends {
  public:
   explicit Ends(std::vector<Line> lines) : lines_(std::move(lines)) {
     Grid grid(1.0);
-    for (std::size_t l = 0; l < lines_.size(); ++l) {
-      const Point margin{kTolerance_m, kTolerance_m};
-      grid.add(l, lowest(lines_[l].a, lines_[l].b) - margin, highest(lines_[l].a, lines_[l].b) + margin);
-    }
+    for (std::size_t l = 0; l < lines_.size(); ++l) grid.add_line(l, lines_[l].a, lines_[l].b, kTolerance_m);
     for (std::size_t e = 0; e < 2 * lines_.size(); ++e)
       if (loose(e, grid)) loose_.push_back(e);
     find_moves(grid);
@@ -51,6 +49,7 @@ class Ends {
       const Point target = move.onto ? at(*move.onto) : move.to;
       if (distance(target, other(move.end)) < kSame) continue;  // would make a point of it
       at(move.end) = target;
+      if (move.by < kSame / 2) continue;
       ++out.ends;
       out.farthest_m = std::max(out.farthest_m, move.by);
     }
@@ -74,7 +73,7 @@ class Ends {
     const Point p = at(end);
     bool meets = false;
     grid.visit(p, p, [&](std::size_t l) {
-      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kSame);
+      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kJoined);
     });
     return !meets;
   }
@@ -97,7 +96,8 @@ class Ends {
         const Point to = straight_on ? *meeting : nearest_on(lines_[l], p);
         better(to_line, {end, std::nullopt, to, distance(to, p)});
       });
-      if (to_end)
+      const bool on_line = to_line && to_line->by < kSame && !(to_end && to_end->by < kSame);
+      if (to_end && !on_line)
         moves_.push_back(*to_end);
       else if (to_line)
         moves_.push_back(*to_line);

@@ -106,8 +106,7 @@ class Finder {
       : solid_(clone(solid)), drawing_(drawing), swings_(swings), swing_used_(swings.size()) {
     for (const auto& ring : rings(solid))
       for (std::size_t i = 0; i < ring.size(); ++i) edges_.push_back({ring[i], ring[(i + 1) % ring.size()], {}});
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-      edge_grid_.add(e, lowest(edges_[e].a, edges_[e].b), highest(edges_[e].a, edges_[e].b));
+    for (std::size_t e = 0; e < edges_.size(); ++e) edge_grid_.add_line(e, edges_[e].a, edges_[e].b, 0);
     for (std::size_t s = 0; s < swings.size(); ++s) {
       const Point reach{swings[s].width, swings[s].width};
       swing_grid_.add(s, swings[s].hinge - reach, swings[s].hinge + reach);
@@ -364,10 +363,7 @@ class Finder {
     };
     constexpr double kTouch = 0.03;
     Grid grid(1.0);
-    for (std::size_t i = 0; i < loose.size(); ++i) {
-      const Point margin{kThickestWall_m, kThickestWall_m};
-      grid.add(i, lowest(loose[i].first, loose[i].second) - margin, highest(loose[i].first, loose[i].second) + margin);
-    }
+    for (std::size_t i = 0; i < loose.size(); ++i) grid.add_line(i, loose[i].first, loose[i].second, kThickestWall_m);
     for (std::size_t i = 0; i < loose.size(); ++i)
       for (const Point& p : {loose[i].first, loose[i].second, (loose[i].first + loose[i].second) * 0.5})
         grid.visit(p, p, [&](std::size_t j) {

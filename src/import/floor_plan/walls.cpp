@@ -13,7 +13,6 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kCurve_m = 0.005;                        // by how much chords stray from arcs
 constexpr double kSmallest_m2 = 1.2, kLargest_m2 = 2000;  // rooms, where layers are judged by them
 
 constexpr double kBeside_m = 0.01;  // lines so near a wall are its own
@@ -45,8 +44,32 @@ std::vector<Line> lines_of(const Drawing& drawing, const auto& wanted) {
 
 // Whether nothing as wide as kThickestWall_m fits in.
 bool is_wall(const Shape& face) {
+  const Bounds box = bounds(face);
+  if (std::min(box.high.x - box.low.x, box.high.y - box.low.y) <= kThickestWall_m) return true;
   if (2 * area(face) / perimeter(face) > kThickestWall_m) return false;  // the inscribed circle is no smaller
   return is_empty(grown(face, -kThickestWall_m / 2));
+}
+
+// Whether lines cross so often that their faces would be too many, as those of an exploded hatch.
+bool crosses_often(const std::vector<Line>& lines_in) {
+  constexpr std::size_t kMost = 200'000;
+  Grid grid(1.0);
+  std::size_t crossings = 0;
+  for (std::size_t l = 0; l < lines_in.size() && crossings <= kMost; ++l) {
+    const Line& line = lines_in[l];
+    const Point along = line.b - line.a;
+    grid.visit_line(line.a, line.b, [&](std::size_t k, Point low, double cell) {
+      const Point other = lines_in[k].b - lines_in[k].a, between = lines_in[k].a - line.a;
+      const double turn = cross(along, other);
+      if (turn == 0) return;
+      const double at = cross(between, other) / turn, on = cross(between, along) / turn;
+      if (!(at > 0 && at < 1 && on > 0 && on < 1)) return;
+      const Point p = line.a + along * at;  // which lies in one cell
+      crossings += p.x >= low.x && p.x < low.x + cell && p.y >= low.y && p.y < low.y + cell;
+    });
+    grid.add_line(l, line.a, line.b, 0);
+  }
+  return crossings > kMost;
 }
 
 struct Faces {
@@ -118,7 +141,8 @@ Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const 
     (line.width < kThinnestWall_m ? thin : wide[std::lround(1000 * line.width)]).push_back(line);
   Faces found = faces_of(thin);
   std::vector<Shape> parts = std::move(found.walls);
-  for (const auto& [width_mm, own] : wide) parts.push_back(strip(chained(lines(own)), width_mm / 2000.0));
+  for (const auto& [width_mm, own] : wide)
+    parts.push_back(strip(chained(lines(own)), static_cast<double>(width_mm) / 2000));
   for (const Area& filled : drawing.areas) {
     if (!wanted(filled.from)) continue;
     std::vector<Shape> rings;
@@ -168,7 +192,7 @@ std::set<int> enclosing_layers(const Drawing& drawing) {
   constexpr std::size_t kMostLines = 100'000;
   std::optional<std::pair<double, int>> best;
   for (const auto& [layer, own] : by_layer) {
-    if (own.size() > kMostLines) continue;
+    if (own.size() > kMostLines || crosses_often(own)) continue;
     const double score = likeness(own);
     if (score > 0 && (!best || score > best->first)) best = {score, layer};
   }
@@ -204,6 +228,11 @@ Walls find_walls(const Drawing& drawing) {
                             (names.empty() ? "" : " (it has " + names + ")"));
   }
   for (const int layer : layers) out.layers.push_back(drawing.layers[static_cast<std::size_t>(layer)]);
+  if (crosses_often(own))
+    throw importer::Refused(
+        "the lines of its walls cross more than 200,000 times, as those of an exploded hatch do (layer " +
+        out.layers.front() + (out.layers.size() > 1 ? ", …" : "") +
+        "); leave these out, or name the layers of walls with the setting wall-layer");
   Joined joined = join_ends(std::move(own));
   out.joined_ends = joined.ends, out.farthest_join_m = joined.farthest_m;
   out.solid = solid_of(drawing, joined.lines, wanted, out.by_name);

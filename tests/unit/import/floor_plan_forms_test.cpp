@@ -65,7 +65,7 @@ DrawingText room(int unit = 6, double scale = 1, double east = 0, double north =
   d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 5, 2, "East");
   return d;
 }
-const std::map<std::string, long> kOne{{"East / West", 240'000}};
+const std::map<std::string, long> kOne{{"West / East", 240'000}};
 // Both sides of a wall of 0.1 m from (4.4, 0) to (4.4, 4) and (4.5, 0) to (4.5, 4).
 const std::map<std::string, long> kTwo{{"West", 176'000}, {"East", 60'000}};
 
@@ -188,7 +188,7 @@ TEST_F(FloorPlanFormsTest, WhatIsNotReadIsTold) {
 
 TEST_F(FloorPlanFormsTest, ColumnsAreAsRoundAsTheyAreDrawn) {
   constexpr double kPi = std::numbers::pi;
-  const auto less = [](double area) { return Rooms{{"East / West", std::lround(1e4 * (24 - area))}}; };
+  const auto less = [](double area) { return Rooms{{"West / East", std::lround(1e4 * (24 - area))}}; };
   for (const bool below : {false, true}) {
     DrawingText circle = room(), spline = room(), ellipse = room(), bulges = room(), block = room();
     for (DrawingText* d : {&circle, &spline, &ellipse, &bulges, &block}) d->look({.below = below});
@@ -304,6 +304,25 @@ TEST_F(FloorPlanFormsTest, MillimetresAtNationalCoordinatesKeepTheirPlace) {
   EXPECT_NEAR(floor_area(scene.rooms()[0]), 24, 1e-3);
   EXPECT_NEAR(scene.rooms()[0].box.min.x, 500'000, 1e-3);
   EXPECT_NEAR(scene.rooms()[0].box.min.y, 5'400'000, 1e-3);
+}
+
+// An exploded hatch on the layer of walls.
+TEST_F(FloorPlanFormsTest, ThousandsOfWallLinesEndInTime) {
+  constexpr int kLines = 20'000;
+  constexpr unsigned kSeconds = 20;
+  DrawingText level = room(), slanted = room(), crossing = room();
+  for (int k = 0; k < kLines; ++k) {
+    const double at = 0.01 * k;
+    level.line(kWall, 10, at, 60, at), slanted.line(kWall, 10 + at, 0, 60 + at, 50);
+    if (k % 2 == 0) crossing.line(kWall, 10, at, 210, at), crossing.line(kWall, 10 + at, 0, 10 + at, 200);
+  }
+  for (const DrawingText* drawing : {&level, &slanted}) {
+    const Scene scene = load_within(write("plan.dxf", drawing->str()), kSeconds);
+    ASSERT_EQ(scene.rooms().size(), 1u);
+    EXPECT_NEAR(floor_area(scene.rooms()[0]), 24, 1e-3);
+  }
+  expect_error(Errc::malformed_file, "cross more than 200,000 times",
+               [&] { load_within(write("plan.dxf", crossing.str()), kSeconds); });
 }
 
 TEST_F(FloorPlanFormsTest, UnitsOfTheHeaderAreMany) {

@@ -16,7 +16,7 @@
 namespace vantage::test {
 namespace {
 
-constexpr const char* kWall = "A-WALL";
+constexpr const char* kWallLayer = "A-WALL";
 
 class RandomPlan {
  public:
@@ -51,7 +51,7 @@ class RandomPlan {
   }
 
   void draw() {
-    for (const char* layer : {kWall, "A-DOOR", "A-TEXT"}) text_.layer(layer);
+    for (const char* layer : {kWallLayer, "A-DOOR", "A-TEXT"}) text_.layer(layer);
     text_.layer("SWITCHED", -3), text_.layer("COLD", 3, 1);
     deep_ = between(3, 6);
     const std::size_t count = 1 + one_of(4);
@@ -85,20 +85,20 @@ class RandomPlan {
       case 0:
         for (const auto& ring : {in, out})
           for (std::size_t k = 0; k < 4; ++k)
-            text_.line(kWall, ring[k].first, ring[k].second, ring[(k + 1) % 4].first, ring[(k + 1) % 4].second);
+            text_.line(kWallLayer, ring[k].first, ring[k].second, ring[(k + 1) % 4].first, ring[(k + 1) % 4].second);
         break;
       case 1:
-        for (const auto& ring : {in, out}) text_.old_polyline(kWall, vertices(ring), true, chance(0.5));
+        for (const auto& ring : {in, out}) text_.old_polyline(kWallLayer, vertices(ring), true, chance(0.5));
         break;
       case 2:
-        text_.hatch(kWall, {out, in},
+        text_.hatch(kWallLayer, {out, in},
                     {.boundary = chance(0.5) ? DrawingText::Boundary::edges : DrawingText::Boundary::polyline,
                      .seeds = static_cast<int>(one_of(3))});
         break;
       case 3: {
         const DrawingText::Points middle{
             {-t / 2, -t / 2}, {wide + t / 2, -t / 2}, {wide + t / 2, deep_ + t / 2}, {-t / 2, deep_ + t / 2}};
-        text_.polyline(kWall, vertices(middle), true, t);
+        text_.polyline(kWallLayer, vertices(middle), true, t);
         break;
       }
       default:
@@ -109,7 +109,7 @@ class RandomPlan {
           text_.polyline("0", moved);
         }
         text_.end_block();
-        text_.insert(kWall, chance(0.5) ? "SHELL" : "shell", 0, 0, 1, 1, -90);
+        text_.insert(kWallLayer, chance(0.5) ? "SHELL" : "shell", 0, 0, 1, 1, -90);
     }
   }
 
@@ -125,26 +125,26 @@ class RandomPlan {
     const DrawingText::Points ring{{x, 0}, {x + t, 0}, {x + t, top}, {x, top}};
     text_.look({.below = chance(0.3)});
     switch (one_of(10)) {
-      case 0: text_.line(kWall, x, 0, x, top), text_.line(kWall, x + t, top, x + t, 0); return t;
-      case 1: text_.old_polyline(kWall, vertices(ring), true, chance(0.5)); return t;
-      case 2: text_.polyline(kWall, ring); return t;
-      case 3: text_.polyline(kWall, {{x + t / 2, 0}, {x + t / 2, top}}, false, t); return t;
-      case 4: text_.solid(kWall, x, 0, x + t, top); return t;
-      case 5: text_.multiline(kWall, x + t / 2, 0, x + t / 2, top, t); return t;
-      case 6: text_.hatch(kWall, {ring}, {.seeds = static_cast<int>(one_of(3))}); return t;
-      case 7: text_.faces(kWall, ring, {{1, 2, 3}, {1, 3, 4}}); return t;
+      case 0: text_.line(kWallLayer, x, 0, x, top), text_.line(kWallLayer, x + t, top, x + t, 0); return t;
+      case 1: text_.old_polyline(kWallLayer, vertices(ring), true, chance(0.5)); return t;
+      case 2: text_.polyline(kWallLayer, ring); return t;
+      case 3: text_.polyline(kWallLayer, {{x + t / 2, 0}, {x + t / 2, top}}, false, t); return t;
+      case 4: text_.solid(kWallLayer, x, 0, x + t, top); return t;
+      case 5: text_.multiline(kWallLayer, x + t / 2, 0, x + t / 2, top, t); return t;
+      case 6: text_.hatch(kWallLayer, {ring}, {.seeds = static_cast<int>(one_of(3))}); return t;
+      case 7: text_.faces(kWallLayer, ring, {{1, 2, 3}, {1, 3, 4}}); return t;
       case 8: {
         const std::string name = "part" + std::to_string(blocks_++);
         text_.begin_block(name, 1, 1);
         text_.rectangle("0", 1, 1, 3, 2);
         text_.end_block();
         if (chance(0.5))
-          text_.insert(kWall, name, x, 0, t / 2, top);
+          text_.insert(kWallLayer, name, x, 0, t / 2, top);
         else
-          text_.insert(kWall, name, x + t, 0, -t / 2, top);
+          text_.insert(kWallLayer, name, x + t, 0, -t / 2, top);
         return t;
       }
-      default: text_.line(kWall, x + 0.05, miss / 2, x + 0.05, deep_ - miss / 2); return 0.1;  // a single line
+      default: text_.line(kWallLayer, x + 0.05, miss / 2, x + 0.05, deep_ - miss / 2); return 0.1;  // a single line
     }
   }
 
@@ -155,14 +155,14 @@ class RandomPlan {
     text_.look({.below = chance(0.3)});
     double area = std::numbers::pi * kRadius * kRadius;
     switch (one_of(5)) {
-      case 0: text_.circle(kWall, x, y, kRadius); break;
-      case 1: text_.round_spline(kWall, x, y, kRadius); break;
-      case 2: text_.old_polyline(kWall, {{x - kRadius, y, 1}, {x + kRadius, y, 1}}, true); break;
+      case 0: text_.circle(kWallLayer, x, y, kRadius); break;
+      case 1: text_.round_spline(kWallLayer, x, y, kRadius); break;
+      case 2: text_.old_polyline(kWallLayer, {{x - kRadius, y, 1}, {x + kRadius, y, 1}}, true); break;
       case 3:
-        text_.ellipse(kWall, x, y, 0.28, 0, 0.5);
+        text_.ellipse(kWallLayer, x, y, 0.28, 0, 0.5);
         area = std::numbers::pi * 0.28 * 0.14;
         break;
-      default: text_.solid(kWall, x - 0.2, y - 0.2, x + 0.2, y + 0.2); area = 0.16;
+      default: text_.solid(kWallLayer, x - 0.2, y - 0.2, x + 0.2, y + 0.2); area = 0.16;
     }
     room.area -= area;
   }
@@ -175,22 +175,22 @@ class RandomPlan {
     };
     if (chance(0.3)) {
       text_.look({.invisible = true});
-      across(kWall), told.emplace_back("invisible, left out (A-WALL: 2 LINE)");
+      across(kWallLayer), told.emplace_back("invisible, left out (A-WALL: 2 LINE)");
     }
     if (chance(0.3)) {
       text_.look({.on_sheet = true});
-      across(kWall), told.emplace_back("paper space");
+      across(kWallLayer), told.emplace_back("paper space");
     }
     text_.look({});
     if (chance(0.3)) across("SWITCHED"), told.emplace_back("SWITCHED: 2 LINE");
     if (chance(0.3)) {
       text_.begin_block("cold");
-      across(kWall);
+      across(kWallLayer);
       text_.end_block();
       text_.insert("COLD", "Cold", 0, 0), told.emplace_back("COLD: 1 INSERT");
     }
-    if (chance(0.3)) text_.raw("REGION", kWall), told.emplace_back("not read (A-WALL: 1 REGION)");
-    if (chance(0.3)) text_.insert(kWall, "gone", 0, 0), told.emplace_back("1 INSERT of gone");
+    if (chance(0.3)) text_.raw("REGION", kWallLayer), told.emplace_back("not read (A-WALL: 1 REGION)");
+    if (chance(0.3)) text_.insert(kWallLayer, "gone", 0, 0), told.emplace_back("1 INSERT of gone");
   }
 
   std::mt19937_64 random_;
