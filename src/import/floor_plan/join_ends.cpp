@@ -31,7 +31,7 @@ std::optional<Point> crossing(const Line& line, const Line& other) {
 class Ends {
  public:
   explicit Ends(std::vector<Line> lines) : lines_(std::move(lines)) {
-    Grid grid(1.0);
+    Grid grid(0.25);
     for (std::size_t l = 0; l < lines_.size(); ++l) grid.add_line(l, lines_[l].a, lines_[l].b, kTolerance_m);
     for (std::size_t e = 0; e < 2 * lines_.size(); ++e)
       if (loose(e, grid)) loose_.push_back(e);

@@ -175,8 +175,18 @@ Shape closed(const Shape& shape, double gap) {
   const Shape wider = buffered(shape, gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
   return buffered(wider, -gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
 }
+Shape straightened(const Shape& shape) {
+  return areas(check(GEOSTopologyPreserveSimplify_r(context(), shape.get(), kGrid)));
+}
 Shape chained(const Shape& lines) { return check(GEOSLineMerge_r(context(), lines.get())); }
-Shape strip(const Shape& lines, double half_width) { return buffered(lines, half_width, GEOSBUF_CAP_FLAT); }
+// Line by line: GEOS widens many that overlap in quadratic time.
+Shape strip(const Shape& lines, double half_width) {
+  std::vector<Shape> parts;
+  for_parts(lines.get(), [&](const GEOSGeometry* line) {
+    parts.push_back(buffered(check(GEOSGeom_clone_r(context(), line)), half_width, GEOSBUF_CAP_FLAT));
+  });
+  return areas(united(std::move(parts)));
+}
 Shape around(std::span<const Point> points) {
   return check(GEOSMinimumRotatedRectangle_r(context(), multipoint(points).get()));
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/swings.hpp"
 #include "import/program.hpp"
 
@@ -81,11 +82,12 @@ std::string rounded(double value) {
 
 std::string sizes(const Drawing& drawing) {
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high{-low.x, -low.y};
-  for (const Line& line : drawing.lines)
-    for (const Point& p : {line.a, line.b}) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
+  const auto reach = [&](Point p) { low = lowest(low, p), high = highest(high, p); };
+  for (const Line& line : drawing.lines) reach(line.a), reach(line.b);
+  for (const Arc& arc : drawing.arcs) reach(arc.start), reach(arc.end());
+  for (const Curve& curve : drawing.curves) std::ranges::for_each(curve.points, reach);
+  for (const Area& area : drawing.areas)
+    for (const auto& ring : area.rings) std::ranges::for_each(ring, reach);
   std::string out;
   for (const Unit& unit : kUnits)
     out += std::string(out.empty() ? "" : ", ") + unit.name + " (" + rounded((high.x - low.x) * unit.metres) + " x " +

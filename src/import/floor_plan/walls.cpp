@@ -151,7 +151,7 @@ Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const 
     // Elsewhere a hatch may be that of a floor.
     if (!is_empty(shape) && (by_name || is_wall(shape))) parts.push_back(std::move(shape));
   }
-  Shape solid = areas(united(std::move(parts)));
+  Shape solid = straightened(areas(united(std::move(parts))));
   if (const auto rest = single_lines(found.cut, solid); !rest.empty()) solid = united(solid, single_walls(rest, solid));
   return solid;
 }
