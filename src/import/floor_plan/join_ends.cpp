@@ -33,8 +33,9 @@ class Ends {
   explicit Ends(std::vector<Line> lines) : lines_(std::move(lines)) {
     Grid grid(0.25);
     for (std::size_t l = 0; l < lines_.size(); ++l) grid.add_line(l, lines_[l].a, lines_[l].b, kTolerance_m);
+    is_loose_.resize(2 * lines_.size());
     for (std::size_t e = 0; e < 2 * lines_.size(); ++e)
-      if (loose(e, grid)) loose_.push_back(e);
+      if (loose(e, grid)) loose_.push_back(e), is_loose_[e] = true;
     find_moves(grid);
   }
 
@@ -42,16 +43,27 @@ class Ends {
     std::ranges::sort(moves_, {}, &Move::by);
     std::vector<bool> done(2 * lines_.size());
     Joined out;
+    const auto move_to = [&](std::size_t end, Point target) {
+      const double by = distance(at(end), target);
+      if (distance(target, other(end)) < kSame) return;  // would make a point of it
+      at(end) = target;
+      if (by < kSame / 2) return;
+      ++out.ends;
+      out.farthest_m = std::max(out.farthest_m, by);
+    };
     for (const Move& move : moves_) {
       if (done[move.end]) continue;
       done[move.end] = true;
-      if (move.onto) done[*move.onto] = true;  // which stays where it is
-      const Point target = move.onto ? at(*move.onto) : move.to;
-      if (distance(target, other(move.end)) < kSame) continue;  // would make a point of it
-      at(move.end) = target;
-      if (move.by < kSame / 2) continue;
-      ++out.ends;
-      out.farthest_m = std::max(out.farthest_m, move.by);
+      Point target = move.onto ? at(*move.onto) : move.to;
+      if (move.onto && !done[*move.onto]) {
+        // Both go on to where they meet, if that is near; else the other stays where it is.
+        const auto corner = crossing(lines_[move.end / 2], lines_[*move.onto / 2]);
+        const bool near = corner && is_loose_[*move.onto] && distance(*corner, at(move.end)) <= kTolerance_m &&
+                          distance(*corner, at(*move.onto)) <= kTolerance_m;
+        if (near) move_to(*move.onto, target = *corner);
+        done[*move.onto] = true;
+      }
+      move_to(move.end, target);
     }
     close_walls(done);
     out.lines = std::move(lines_);
@@ -130,6 +142,7 @@ class Ends {
 
   std::vector<Line> lines_;
   std::vector<std::size_t> loose_;  // ends that meet nothing: 2 l is the first of line l, 2 l + 1 the second
+  std::vector<bool> is_loose_;      // of all ends
   std::vector<Move> moves_;
 };
 
