@@ -185,7 +185,7 @@ Shape strip(const Shape& lines, double half_width) {
   for_parts(lines.get(), [&](const GEOSGeometry* line) {
     parts.push_back(buffered(check(GEOSGeom_clone_r(context(), line)), half_width, GEOSBUF_CAP_FLAT));
   });
-  return areas(united(std::move(parts)));
+  return straightened(areas(united(std::move(parts))));
 }
 Shape around(std::span<const Point> points) {
   return check(GEOSMinimumRotatedRectangle_r(context(), multipoint(points).get()));

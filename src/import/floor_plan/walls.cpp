@@ -152,7 +152,8 @@ Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const 
     if (!is_empty(shape) && (by_name || is_wall(shape))) parts.push_back(std::move(shape));
   }
   Shape solid = straightened(areas(united(std::move(parts))));
-  if (const auto rest = single_lines(found.cut, solid); !rest.empty()) solid = united(solid, single_walls(rest, solid));
+  if (const auto rest = single_lines(found.cut, solid); !rest.empty())
+    solid = straightened(united(solid, single_walls(rest, solid)));
   return solid;
 }
 

@@ -253,6 +253,14 @@ TEST_F(FloorPlanFormsTest, WallsThatMissEachOtherByCentimetresAreJoined) {
     halves.solid(kWall, 4.4, 0, 4.5, 2), halves.solid(kWall, 4.4, 2 + miss, 4.5, 4);
     expect_rooms(("two halves, " + what).c_str(), halves, kTwo, 20, "1 gap of up to");
   }
+  DrawingText corners(6);
+  for (const double out : {0.0, 0.2}) {  // each side stops short of its corners
+    const double low = -out, right = 6 + out, top = 4 + out;
+    corners.line(kWall, low + 0.04, low, right - 0.02, low), corners.line(kWall, right, low, right, top - 0.04);
+    corners.line(kWall, right - 0.01, top, low, top), corners.line(kWall, low, top - 0.02, low, low + 0.02);
+  }
+  corners.arc("A-DOOR", 2.8, 0, 0.9, 0, 90), corners.text("A-TEXT", 1.5, 2, "West");
+  expect_rooms("corners", corners, {{"West", 240'000}}, 20, "ends of wall lines joined to what they missed");
   DrawingText open = room();  // a door's place
   open.rectangle(kWall, 4.4, 0, 4.5, 3.1);
   EXPECT_NE(notes_of(load(open)).find("1 door and 1 passage"), std::string::npos) << notes_of(load(open));
@@ -309,7 +317,7 @@ TEST_F(FloorPlanFormsTest, MillimetresAtNationalCoordinatesKeepTheirPlace) {
 // An exploded hatch on the layer of walls.
 TEST_F(FloorPlanFormsTest, ThousandsOfWallLinesEndInTime) {
   constexpr int kLines = 20'000;
-  constexpr unsigned kSeconds = 20;
+  constexpr unsigned kSeconds = 60;
   DrawingText level = room(), slanted = room(), crossing = room();
   for (int k = 0; k < kLines; ++k) {
     const double at = 0.01 * k;
