@@ -52,7 +52,9 @@ bool is_wall(const Shape& face) {
 
 // Whether lines cross so often that their faces would be too many, as those of an exploded hatch.
 bool crosses_often(const std::vector<Line>& lines_in) {
-  constexpr std::size_t kMost = 200'000;
+  constexpr std::size_t kMost = 100'000;
+  constexpr double kEnd_m = 0.01;  // lines that end at others do not cross them
+  const auto amid = [](double share, double size) { return share * size > kEnd_m && (1 - share) * size > kEnd_m; };
   Grid grid(1.0);
   std::size_t crossings = 0;
   for (std::size_t l = 0; l < lines_in.size() && crossings <= kMost; ++l) {
@@ -63,7 +65,7 @@ bool crosses_often(const std::vector<Line>& lines_in) {
       const double turn = cross(along, other);
       if (turn == 0) return;
       const double at = cross(between, other) / turn, on = cross(between, along) / turn;
-      if (!(at > 0 && at < 1 && on > 0 && on < 1)) return;
+      if (!amid(at, length(along)) || !amid(on, length(other))) return;
       const Point p = line.a + along * at;  // which lies in one cell
       crossings += p.x >= low.x && p.x < low.x + cell && p.y >= low.y && p.y < low.y + cell;
     });
@@ -231,7 +233,7 @@ Walls find_walls(const Drawing& drawing) {
   for (const int layer : layers) out.layers.push_back(drawing.layers[static_cast<std::size_t>(layer)]);
   if (crosses_often(own))
     throw importer::Refused(
-        "the lines of its walls cross more than 200,000 times, as those of an exploded hatch do (layer " +
+        "the lines of its walls cross more than 100,000 times, as those of an exploded hatch do (layer " +
         out.layers.front() + (out.layers.size() > 1 ? ", …" : "") +
         "); leave these out, or name the layers of walls with the setting wall-layer");
   Joined joined = join_ends(std::move(own));

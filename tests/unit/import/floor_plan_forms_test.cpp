@@ -329,7 +329,7 @@ TEST_F(FloorPlanFormsTest, ThousandsOfWallLinesEndInTime) {
     ASSERT_EQ(scene.rooms().size(), 1u);
     EXPECT_NEAR(floor_area(scene.rooms()[0]), 24, 1e-3);
   }
-  expect_error(Errc::malformed_file, "cross more than 200,000 times",
+  expect_error(Errc::malformed_file, "cross more than 100,000 times",
                [&] { load_within(write("plan.dxf", crossing.str()), kSeconds); });
 }
 
