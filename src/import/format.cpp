@@ -266,9 +266,10 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
 
 // Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
 bool is_drawing(const std::filesystem::path& file) {
-  constexpr std::array kLines{"LINE"sv,  "LWPOLYLINE"sv, "ARC"sv,    "CIRCLE"sv,
-                              "HATCH"sv, "SOLID"sv,      "INSERT"sv, "POLYLINE"sv};
-  constexpr int kMeshes = 16 | 64;  // bits of a POLYLINE's group 70: a mesh of polygons, of faces
+  constexpr std::array kLines{"LINE"sv,   "LWPOLYLINE"sv, "ARC"sv,   "CIRCLE"sv,  "HATCH"sv, "SOLID"sv,
+                              "INSERT"sv, "POLYLINE"sv,   "MLINE"sv, "ELLIPSE"sv, "TRACE"sv, "SPLINE"sv};
+  // Bits of group 70: a POLYLINE that is a mesh of polygons or of faces, a VERTEX that is a place and no face.
+  constexpr int kPolygons = 16, kFaces = 64, kPlace = 64;
   std::ifstream stream(file, std::ios::binary);
   auto left = static_cast<std::streamsize>(kMostRecognised);
   const auto next = [&](std::string& line) {
@@ -286,18 +287,26 @@ bool is_drawing(const std::filesystem::path& file) {
   };
   bool lines = false;
   std::string code, value, entity;
-  double lowest = 0, highest = 0;
+  double lowest = 0, highest = 0, height = 0;
+  int flags = 0, mesh = 0;  // of the entity; of the polyline that its vertices follow
   bool any = false;
+  const auto reach = [&](double z) {
+    lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
+  };
   while (left > 0 && next(code) && next(value)) {
     if (code == "0") {
-      if (entity == "3DFACE" && any && highest - lowest > 1e-6) return false;
-      entity = value, any = false;
+      if (entity == "POLYLINE") mesh = flags & (kPolygons | kFaces), any = false;
+      if (entity == "VERTEX" && ((mesh & kPolygons) != 0 || (mesh != 0 && (flags & kPlace) != 0))) reach(height);
+      if (any && highest - lowest > 1e-6) return false;
+      if (value != "VERTEX") any = false;
+      entity = value, flags = 0, height = 0;
       lines = lines || std::ranges::find(kLines, entity) != kLines.end();
-    } else if (entity == "POLYLINE" && code == "70" && (std::atoi(value.c_str()) & kMeshes) != 0) {
-      return false;
+    } else if (code == "70") {
+      flags = std::atoi(value.c_str());
     } else if (entity == "3DFACE" && (code == "30" || code == "31" || code == "32" || code == "33")) {
-      const double z = std::atof(value.c_str());
-      lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
+      reach(std::atof(value.c_str()));
+    } else if (entity == "VERTEX" && code == "30") {
+      height = std::atof(value.c_str());
     }
   }
   return lines;

@@ -66,7 +66,7 @@ std::string remedy_for(std::string_view importer) {
   constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev"},
                               Needs{"vantage-import-gltf", "libdraco-dev and libmeshoptimizer-dev"},
                               Needs{"vantage-import-cloud", "libexpat1-dev"},
-                              Needs{"vantage-import-plan", "libdxflib-dev and libgeos-dev"}};
+                              Needs{"vantage-import-plan", "libgeos-dev"}};
   const auto needs = std::ranges::find(kNeeds, importer, &Needs::importer);
   return "install " + std::string(needs->packages) + " and build vantage again (setup.sh does both)";
 }
