@@ -77,13 +77,12 @@ class PlyReader {
     // The data begin right behind the line end of end_header, of the kind that the first line shows: a first byte
     // that looks like a line end belongs to the data.
     const std::size_t first = rest_.find_first_of("\r\n");
-    const std::string_view end = first == rest_.npos                       ? "\n"
-                                 : rest_.substr(first).starts_with("\r\n") ? "\r\n"
-                                                                           : rest_.substr(first, 1);
+    const bool returns = first != rest_.npos && rest_[first] == '\r' && !rest_.substr(first).starts_with("\r\n");
+    const char end = returns ? '\r' : '\n';
     while (!rest_.empty()) {
       const std::size_t at = std::min(rest_.find(end), rest_.size());
       std::string_view line = rest_.substr(0, at);
-      rest_.remove_prefix(std::min(at + end.size(), rest_.size()));
+      rest_.remove_prefix(std::min(at + 1, rest_.size()));
       const std::string_view word = take_word(line);
       if (word == "format") {
         const std::string_view kind = take_word(line);
