@@ -61,7 +61,8 @@ Model read_binary_stl(std::string_view bytes) {
   if (coloured)
     for (const Rgba& colour : colours) part.colours.insert(part.colours.end(), 3, colour);
   Model model;
-  model.nodes[0].meshes.push_back(model.add_mesh({{}, {std::move(part)}}));
+  model.nodes[0].meshes.push_back(model.add_mesh({{}, {}}));
+  model.meshes[0].parts.push_back(std::move(part));
   return model;
 }
 
@@ -73,7 +74,8 @@ Model read_text_stl(std::string_view text) {
   const auto finish_solid = [&] {
     if (!part.indices.empty()) {
       const std::size_t node = model.add_node(0, name);
-      model.nodes[node].meshes.push_back(model.add_mesh({name, {std::move(part)}}));
+      model.nodes[node].meshes.push_back(model.add_mesh({name, {}}));
+      model.meshes.back().parts.push_back(std::move(part));
     }
     part = {};
   };

@@ -151,7 +151,8 @@ class X3dReader {
       Part part = x3d_surface(
           *geometry, [this](const XmlElement& e) -> const XmlElement& { return resolved(e); }, units_);
       if (appearance) part.material = material_of(*appearance);
-      model_.add_mesh({{}, {std::move(part)}});
+      model_.add_mesh({});
+      model_.meshes.back().parts.push_back(std::move(part));
     }
     const std::size_t node = model_.add_node(parent, attribute(shape, "DEF"));
     model_.nodes[node].meshes.push_back(known->second);
