@@ -107,9 +107,9 @@ class ColladaReader {
   }
 
   void read_node(const XmlElement& element, std::size_t parent, int depth) {
-    constexpr int kDeepest = 200;
+    constexpr int kMostLevels = 200;
     constexpr std::size_t kMostNodes = 1'000'000;
-    if (depth > kDeepest || model_.nodes.size() > kMostNodes)
+    if (depth > kMostLevels || model_.nodes.size() > kMostNodes)
       throw Refused("its nodes instance one another without an end, or too often; export it again");
     glm::dmat4 outer_from_node(1);
     for (const XmlElement& child : element.children) outer_from_node = outer_from_node * step_of(child);

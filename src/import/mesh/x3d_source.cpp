@@ -94,11 +94,11 @@ class X3dReader {
   }
 
   void read_node(const XmlElement& given, std::size_t parent, int depth) {
-    constexpr int kDeepest = 200;
+    constexpr int kMostLevels = 200;
     constexpr std::size_t kMostNodes = 1'000'000;
     const XmlElement& element = resolved(given);
     const std::string& kind = element.name;
-    if (depth > kDeepest || model_.nodes.size() > kMostNodes)
+    if (depth > kMostLevels || model_.nodes.size() > kMostNodes)
       throw Refused("its nodes use one another without an end, or too often; export it again");
     if (!x3d_truth(element, "visible", true) && is_one_of(kind, {"Group", "Transform", "StaticGroup", "Shape", "Switch",
                                                                  "LOD", "Anchor", "Billboard", "Collision"})) {

@@ -3,6 +3,7 @@
 // with its faces outward. VANTAGE_SEEDS=first..last chooses the files.
 #include "random_meshes.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 
 #include "import_fixture.hpp"
@@ -14,8 +15,9 @@ using RandomMeshTest = ImportTest;
 
 TEST_F(RandomMeshTest, AreReadAsWhatTheyHold) {
   unsigned long long first = 1, last = 24;  // four of each format
-  if (const char* seeds = std::getenv("VANTAGE_SEEDS"))
+  if (const char* seeds = std::getenv("VANTAGE_SEEDS")) {
     ASSERT_EQ(std::sscanf(seeds, "%llu..%llu", &first, &last), 2) << seeds;
+  }
   for (std::uint64_t seed = first; seed <= last; ++seed) {
     const RandomMeshFile made = write_random_mesh(seed, folder_.path());
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + made.what);
