@@ -13,6 +13,7 @@
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
 #   readers    point clouds in PLY as the Point Cloud Library reads them (needs pcl-tools)
+#   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; 200 random files of meshes
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -70,6 +71,11 @@ readers() {
   command -v pcl_ply2pcd >/dev/null || { echo "nightly: pcl_ply2pcd is not installed (Debian: pcl-tools)"; return 1; }
   run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
 }
+writers() {
+  npm ci --prefix tests/writers >/dev/null
+  run node --no-warnings tests/writers/meshes.mjs "$PWD/build/release/vantage"
+  VANTAGE_SEEDS=1..200 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='RandomMeshTest.*'
+}
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
   cmake -G Ninja -S . -B build/mutation -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON -DCMAKE_LINK_DEPENDS_NO_SHARED=ON \
@@ -79,10 +85,10 @@ mutation() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers fuzz mutation)
+[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers writers fuzz mutation)
 for part in "${parts[@]}"; do
   case $part in
-    sites | faults | address | undefined | thread | machine | packages | docs | readers | fuzz | mutation) "$part" ;;
+    sites | faults | address | undefined | thread | machine | packages | docs | readers | writers | fuzz | mutation) "$part" ;;
     *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
   esac
 done

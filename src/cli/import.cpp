@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "cli/command.hpp"
@@ -19,21 +21,45 @@
 namespace vantage::cli {
 namespace {
 
-SettingTable<SiteOptions> settings_named(std::initializer_list<std::string_view> names) {
-  SettingTable<SiteOptions> rows;
-  for (const auto& row : site_settings())
-    if (std::ranges::find(names, row.name) != names.end()) rows.push_back(row);
-  return rows;
+const SettingTable<SiteOptions>& settings_of(std::initializer_list<std::string_view> names) {
+  static std::map<std::string_view, SettingTable<SiteOptions>> tables;
+  SettingTable<SiteOptions>& table = tables[*names.begin()];
+  if (table.empty())
+    for (const auto& row : site_settings())
+      if (std::ranges::find(names, row.name) != names.end()) table.push_back(row);
+  return table;
 }
 
-// Options refer to their rows.
-const SettingTable<SiteOptions>& floor_plan_settings() {
-  static const auto table = settings_named({"unit", "wall-layer", "wall-height"});
-  return table;
-}
-const SettingTable<SiteOptions>& run_settings() {
-  static const auto table = settings_named({"memory"});
-  return table;
+// A GLB of another unit or axis as one in metres with Y up, which says so: a node around all others changes them.
+std::vector<std::uint8_t> in_metres(const std::vector<std::uint8_t>& glb, Unit unit, UpAxis up) {
+  using nlohmann::json;
+  constexpr std::size_t kText = 20;  // behind the file's header and the chunk's
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t b = 0; b < 4; ++b) value |= static_cast<std::uint32_t>(glb[at + b]) << (8 * b);
+    return value;
+  };
+  const auto text_end = glb.begin() + static_cast<std::ptrdiff_t>(kText + word(12));
+  json document = json::parse(glb.begin() + static_cast<std::ptrdiff_t>(kText), text_end);
+  const double m = metres_in(unit);
+  const json matrix = up == UpAxis::x   ? json{0, m, 0, 0, -m, 0, 0, 0, 0, 0, m, 0, 0, 0, 0, 1}
+                      : up == UpAxis::z ? json{m, 0, 0, 0, 0, 0, -m, 0, 0, m, 0, 0, 0, 0, 0, 1}
+                                        : json{m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1};
+  for (json& scene : document["scenes"]) {
+    document["nodes"].push_back({{"matrix", matrix}, {"children", scene["nodes"]}});
+    scene["nodes"] = {document["nodes"].size() - 1};
+  }
+  document["asset"]["extras"]["vantage"].update({{"unit", "m"}, {"up", "y"}});
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::vector<std::uint8_t> out(glb.begin(), glb.begin() + kText);
+  out.insert(out.end(), text.begin(), text.end());
+  out.insert(out.end(), text_end, glb.end());
+  const auto set_word = [&](std::size_t at, std::size_t value) {
+    for (std::size_t b = 0; b < 4; ++b) out[at + b] = static_cast<std::uint8_t>(value >> (8 * b));
+  };
+  set_word(8, out.size()), set_word(12, text.size());
+  return out;
 }
 
 struct ImportOptions {
@@ -50,8 +76,9 @@ struct ImportOptions {
                     "LAS, PLY, XYZ, PTS, PTX or PCD; or a folder of scans, or of floor plans, a file for each storey")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
-    add_settings(command, floor_plan_settings(), site, "Floor plan");
-    add_settings(command, run_settings(), site);
+    add_settings(command, settings_of({"unit", "up"}), site, "Axes of a model or floor plan");
+    add_settings(command, settings_of({"wall-layer", "wall-height"}), site, "Floor plan");
+    add_settings(command, settings_of({"memory"}), site);
     add_number(command, "--cell", "M", "Size of the cells of a point cloud, in metres; chosen by its density otherwise",
                cell_m, {.low = 0.005, .high = 10})
         ->group("Point cloud");
@@ -75,9 +102,11 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
   }
   ProgressLine line(program.console, "reading " + options.file);
-  const auto glb = importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
-                                     {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  auto glb = importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
+                               {.report = [&](double done) { line.update(done); }, .stop = program.stop});
   if (glb.empty()) throw Stopped{};
+  if ((read.unit || read.up) && !takes_setting(format, "unit"))
+    glb = in_metres(glb, read.unit.value_or(Unit::metre), read.up.value_or(UpAxis::y));
   const auto write = [&] {
     write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
   };

@@ -63,7 +63,7 @@ std::string remedy_for(std::string_view importer) {
   struct Needs {
     std::string_view importer, packages;
   };
-  constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev"},
+  constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev and libexpat1-dev"},
                               Needs{"vantage-import-gltf", "libdraco-dev and libmeshoptimizer-dev"},
                               Needs{"vantage-import-cloud", "libexpat1-dev"},
                               Needs{"vantage-import-plan", "libgeos-dev"}};

@@ -83,7 +83,8 @@ bool is_exact(const File& file, int mesh, std::size_t index) {
   const auto& accessors = file.model().accessors;
   if (position == primitive.attributes.end() || static_cast<std::size_t>(position->second) >= accessors.size())
     return false;
-  return !accessors[static_cast<std::size_t>(position->second)].normalized;
+  const tinygltf::Accessor& accessor = accessors[static_cast<std::size_t>(position->second)];
+  return !accessor.normalized && accessor.componentType != TINYGLTF_COMPONENT_TYPE_DOUBLE;
 }
 
 // Whether the transform turns right-handed axes into left-handed ones.
