@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads one IFC file into a site: opens it, makes it plain, adds its products, and notes what is not read.
+import { Building } from "./building.mjs";
+import { geolocation } from "./geolocation.mjs";
+import { Materials } from "./materials.mjs";
+import { Plain } from "./plain.mjs";
+import { Skins } from "./skins.mjs";
+import { Step } from "./step.mjs";
+import { doubt } from "./doubt.mjs";
+import { stateLength, units } from "./units.mjs";
+
+const CHORD_M = 0.005, CHORDS = 12, MOST_CHORDS = 400;
+const LISTED = 10;  // products in a note
+// Products that are no part of what stands on the site.
+const DRAWN = /^IFC(ANNOTATION|GRID|VIRTUALELEMENT|REFERENT|ALIGNMENT.*|LINEARPOSITIONINGELEMENT|STRUCTURAL.*|.*PORT)$/;
+
+// Names that a model's unit may be given by.
+const METRES = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, ft: 0.3048 };
+
+// `unit`: one of METRES, or none for what the file says. Returns what readTogether() needs.
+export function open(ifc, api, bytes, unit) {
+  const mentions = (text) => bytes.includes(text);
+  const schema = /FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'/.exec(bytes.subarray(0, 65536).toString("latin1"))?.[1] ?? "";
+  let model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false });
+  if (model < 0) throw new Error(`its schema${schema ? `, ${schema},` : ""} is not known; IFC 2x3, IFC 4 and IFC 4.3 are read`);
+  let step = new Step(ifc, api, model);
+  const { length, angle } = units(step), metres = METRES[unit] ?? length?.value ?? null;
+  // Circles that remain web-ifc's get one number of chords each, which is chosen for the largest.
+  const chords = metres === null ? CHORDS : largestChords(step, metres);
+  if (chords > CHORDS) {
+    api.CloseModel(model);
+    model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: chords });
+    step = new Step(ifc, api, model);
+  }
+  return { step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: geolocation(step, metres ?? 1, mentions) };
+}
+
+function largestChords(step, metres) {
+  const free = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE", "IFCFIXEDREFERENCESWEPTAREASOLID", "IFCSURFACECURVESWEPTAREASOLID").length > 0;
+  const radii = free ? step.ids("IFCCYLINDRICALSURFACE", "IFCCIRCLE").map((id) => step.args(id)[1] * metres) : [];
+  const radius = radii.reduce((most, r) => (r > most ? r : most), 0);
+  return radius > CHORD_M ? Math.min(MOST_CHORDS, Math.ceil(Math.PI / Math.acos(1 - CHORD_M / radius))) : CHORDS;
+}
+
+// Entities that the reader does not know, by name: how many, and the first ones.
+function unknownEntities(step, bytes) {
+  const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map();
+  for (let at = 0; at < bytes.length; at += BLOCK) {
+    const text = bytes.latin1Slice(at, Math.min(bytes.length, at + BLOCK + OVERLAP));
+    for (const match of text.matchAll(/#\d+\s*=\s*(IFC[A-Za-z0-9_]+)\s*\(/g)) {
+      if (match.index >= BLOCK) break;
+      const name = match[1];
+      if (!names.has(name)) names.set(name, !step.api.GetNameFromTypeCode(step.ifc[name.toUpperCase()] ?? 0)?.startsWith("Ifc"));
+      if (!names.get(name)) continue;
+      const of = found.get(name) ?? { count: 0, products: [] };
+      ++of.count;
+      const [, guid, title] = /^\s*'([0-9A-Za-z_$]{22})'\s*,[^,]*,\s*(?:'([^']*)'|\$)/.exec(text.slice(match.index + match[0].length, match.index + 600)) ?? [];
+      if (guid && of.products.length < LISTED) of.products.push([name, title, guid].filter(Boolean).join(" "));
+      found.set(name, of);
+    }
+  }
+  return found;
+}
+
+const several = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
+const listed = (all) => all.slice(0, LISTED).join("; ") + (all.length > LISTED ? `; and ${all.length - LISTED} more` : "");
+
+// Adds an open model. `place` takes it to the site. Returns its notes.
+export function read(site, { step, metres, given, length, angle, unknown }, place) {
+  const { api, model } = step;
+  if (given || !length || length.value !== 1) stateLength(step, metres);
+  const plain = new Plain(step, CHORD_M / metres, angle.value);
+  const products = api.GetAllTypesOfModel(model).filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
+    .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
+  const made = new Map(products.map((id) => [id, plain.product(id)]));
+  const materials = new Materials(step);
+  materials.apply();
+  const skins = new Skins(step, plain.axes, plain.solids, metres).mend();
+
+  const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];
+  for (const id of products) {
+    if (!building.hasBody(id)) continue;
+    const { parts, problems, left } = made.get(id), empty = parts.length > 0 ? building.add(id, parts) : 0;
+    if (empty < 0) continue;
+    const why = [...new Set(problems)];
+    if (empty > 0) why.push(parts.length === 1 ? "no surface could be made of it" : `no surface could be made of ${empty} of its ${parts.length} items`);
+    const nothing = empty === parts.length;
+    if (why.length > 0) (nothing ? lost : incomplete).push(`${step.label(id)} (${why.join(", ")})`);
+    else if (nothing && left.length > 0 && !spatial(step.type(id))) bodiless.push(`${step.label(id)} (${[...new Set(left)].join(", ")})`);
+  }
+  building.addRooms();
+  const notes = [], label = (id) => step.label(id);
+  const note = (all, one, many, what) => { if (all.length > 0) notes.push(`${all.length} ${all.length === 1 ? one : many} ${what}: ${listed(all)}`); };
+  note(lost, "product has", "products have", "a shape of which no surface could be made, and are left out".replace("are", lost.length === 1 ? "is" : "are"));
+  note(incomplete, "product is", "products are", "incomplete or not sure");
+  const strange = [...unknown].map(([name, { count, products: some }]) => `${count} ${name}${some.length > 0 ? ` (${listed(some)})` : ""}`);
+  note(strange, "class of entities is", "classes of entities are", "unknown to the reader of IFC and left out");
+  note(bodiless, "product has", "products have", "no body, only what is drawn beside one, and no surface");
+  note(skins.filter(({ opened }) => opened).map(skinText(step)), "opening left", "openings left", "a skin of up to 1 cm in front of a face, which was opened");
+  note(skins.filter(({ opened }) => !opened).map(skinText(step)), "opening leaves", "openings leave", "a skin that closes it");
+  note(materials.guessed.map(label), "product has", "products have", "a material of the category glass without a style, and is taken as glass");
+  note(materials.unsaid.map(label), "product is", "products are", "of glass and other materials without saying which part is glass, and opaque");
+  note(building.twice.map(label), "product is", "products are", "in another file of the site, too, and read once");
+  if (plain.gridAxes > 0) notes.push(`${several(plain.gridAxes, "placement")} on a grid without a direction ${plain.gridAxes === 1 ? "keeps" : "keep"} the grid's axes`);
+  return { notes, doubt: given || !length ? null : doubt(step, site.extent, length, metres) };
+}
+
+const spatial = (type) => /^IFC(SITE|BUILDING|BUILDINGSTOREY|SPACE|PROJECT|.*ZONE|FACILITY.*|.*SPATIAL.*|ROAD|RAILWAY|BRIDGE|MARINEFACILITY)$/.test(type);
+const skinText = (step) => ({ opening, host, skin_m: skin }) => `${step.label(opening)} in ${step.label(host)}, ${(skin * 1000).toFixed(1)} mm`;
