@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/site.hpp"
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "scene/importer_settings.hpp"
@@ -34,9 +35,12 @@ struct ImportOptions {
 
   void add(CLI::App& command) {
     command
-        .add_option("file", file,
-                    "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, "
-                    "LAS, PLY, XYZ, PTS, PTX or PCD; or a folder of scans, or of floor plans, a file for each storey")
+        .add_option_function<std::vector<std::string>>(
+            "file", [this](const std::vector<std::string>& files) { take_files(files, file, site.scene); },
+            "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, LAS, "
+            "PLY, "
+            "XYZ, PTS, PTX or PCD; or a folder or several files of scans, IFC models, or floor plans, a file for each "
+            "storey")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, floor_plan_settings(), site, "Floor plan");
@@ -52,7 +56,7 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (!options.output) throw Error(Errc::invalid_argument, "import: no file to write; give one with -o site.glb");
   SceneOptions read = options.site.scene;
   read.doors = {"closed"};
-  const importers::Format& format = *importers::recognise(options.file).format;
+  const importers::Format& format = *importers::recognise(options.file, read.beside).format;
   std::vector<std::string> settings = importer_settings(read, format, options.file);
   if (options.cell_m && !takes_setting(format, "cell"))
     throw Error(Errc::invalid_argument, options.file + ": --cell is for point clouds, and this is " + format.name);
@@ -62,8 +66,9 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
   }
   ProgressLine line(program.console, "reading " + options.file);
-  const auto glb = importers::as_glb(options.file, format, {}, settings,
-                                     {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  const auto glb =
+      importers::as_glb(options.file, format, {}, settings,
+                        {.report = [&](double done) { line.update(done); }, .stop = program.stop}, read.beside);
   if (glb.empty()) throw Stopped{};
   const auto write = [&] {
     write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});

@@ -16,6 +16,7 @@ const rid = (v, axis) => plus(v, axis, -dot(v, axis));  // what of a vector is u
 export class Axes {
   constructor(step) {
     this.step = step;
+    this.locals = new Map();
   }
 
   // Always of three numbers.
@@ -41,8 +42,11 @@ export class Axes {
   // That of a product, in the model's coordinates, by its chain of local placements.
   local(ref) {
     if (!ref || this.step.type(ref.ref) !== "IFCLOCALPLACEMENT") return this.placement(null);
+    if (this.locals.has(ref.ref)) return this.locals.get(ref.ref);
     const [parent, relative] = this.step.args(ref.ref);
-    return parent ? composed(this.local(parent), this.placement(relative)) : this.placement(relative);
+    const place = parent ? composed(this.local(parent), this.placement(relative)) : this.placement(relative);
+    this.locals.set(ref.ref, place);
+    return place;
   }
 
   // That of an IfcCartesianTransformationOperator, scales included.

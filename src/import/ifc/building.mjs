@@ -9,6 +9,9 @@ const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoid
   "IfcExternalSpatialElement", "IfcVirtualElement", "IfcAnnotation", "IfcGrid"]);
 const DOORS = new Set(["IfcDoor", "IfcDoorStandardCase"]);
 
+// Where spaces and what they are in have their long names.
+const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7], ["IfcBuildingStorey", 7], ["IfcSpace", 7]]);
+
 const each = (ids, visit) => { for (let i = 0; i < ids.size(); ++i) visit(ids.get(i)); };
 
 // What several models become together.
@@ -99,6 +102,10 @@ export class Building {
       const back = inverse(sound[0].place);
       place = back ? sound[0].place : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...sound[0].place.slice(12)];
       const toFirst = back ?? inverse(place);
+      // web-ifc turns a geometry's faces each time that a product places it mirrored: all places see what is left.
+      const mirrored = new Map();
+      for (const part of sound) if (determinant(part.place) < 0) mirrored.set(part.geometry, !mirrored.get(part.geometry));
+      for (const part of sound) part.turned = mirrored.get(part.geometry) ?? false;
       for (const part of sound) part.place = product(toFirst, part.place);
       // An opening is cut out of the geometry itself: only products without one have it in common.
       ({ index, shown } = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0));
@@ -144,11 +151,10 @@ export class Building {
     if (this.nodeOf.has(id)) return this.nodeOf.get(id);
     visiting.add(id);
     const { nodes, roots } = this.site;
-    const line = this.api.GetLine(this.model, id) ?? {}, type = this.step.className(id);
-    const name = (line.Name?.value ?? "").replace(/\s+/g, " ").trim(), key = line.GlobalId?.value ?? "";
+    const args = this.step.args(id), type = this.step.className(id), text = (value) => (typeof value === "string" ? value.replace(/\s+/g, " ").trim() : "");
+    const key = text(args[0]), name = text(args[2]), longName = text(args[LONG_NAME.get(type)]);
     const vantage = { class: type, ...(name ? { name } : {}), ...(key ? { id: key } : {}) };
     if (DOORS.has(type)) vantage.door = true;
-    const longName = line.LongName?.value?.trim();
     if (longName) vantage.long_name = longName;
     const index = nodes.push({ name: [type, name, key].filter(Boolean).join(" "), extras: { vantage } }) - 1;
     this.nodeOf.set(id, index);
@@ -163,24 +169,23 @@ export class Building {
   }
 
   #mesh(parts, own) {
-    const key = own + " " + parts.map((part) => [part.geometry, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
+    const key = own + " " + parts.map((part) => [part.geometry, part.turned, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
     if (this.meshOf.has(key)) return this.meshOf.get(key);
     const { glb, meshes } = this.site, byMaterial = new Map(), shown = new Set();
     for (const part of parts) {
-      const { positions, indices } = this.#geometry(part.geometry, part.place);
-      if (indices.length === 0) continue;
+      const geometry = this.#geometry(part.geometry, part.place, part.turned);
+      if (geometry.indices.length === 0) continue;
       shown.add(part.geometry);
       const material = this.site.material(part.colour);
-      if (!byMaterial.has(material)) byMaterial.set(material, { positions: [], indices: [] });
-      const all = byMaterial.get(material), first = all.positions.length / 3;
-      for (const value of positions) all.positions.push(value);
-      for (const value of indices) all.indices.push(value + first);
+      if (!byMaterial.has(material)) byMaterial.set(material, []);
+      byMaterial.get(material).push(geometry);
     }
     const bounds = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
-    const primitives = [...byMaterial].map(([material, { positions, indices }]) => {
-      const accessor = glb.positions(Float32Array.from(positions)), { min, max } = glb.accessors[accessor];
+    const primitives = [...byMaterial].map(([material, geometries]) => {
+      const { positions, indices } = joined(geometries);
+      const accessor = glb.positions(positions), { min, max } = glb.accessors[accessor];
       for (let c = 0; c < 3; ++c) bounds.min[c] = Math.min(bounds.min[c], min[c]), bounds.max[c] = Math.max(bounds.max[c], max[c]);
-      return { attributes: { POSITION: accessor }, indices: glb.indices(Uint32Array.from(indices)), ...(material >= 0 ? { material } : {}) };
+      return { attributes: { POSITION: accessor }, indices: glb.indices(indices), ...(material >= 0 ? { material } : {}) };
     });
     const made = { index: primitives.length === 0 ? -1 : meshes.push({ primitives }) - 1, shown, bounds };
     this.meshOf.set(key, made);
@@ -199,16 +204,20 @@ export class Building {
   }
 
   // Vertices come with a normal each, already placed.
-  #geometry(id, place) {
+  #geometry(id, place, turned = false) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
-    const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize());
+    const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
     const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
-    const positions = [];
-    for (let v = 0; v + 5 < vertices.length; v += 6) positions.push(...transformed(place, ...vertices.subarray(v, v + 3)));
+    const positions = new Float64Array(3 * count);
+    let sound = indices.every((index) => index < count);
+    for (let v = 0; v < count; ++v) {
+      const [x, y, z] = transformed(place, vertices[6 * v], vertices[6 * v + 1], vertices[6 * v + 2]);
+      positions[3 * v] = x, positions[3 * v + 1] = y, positions[3 * v + 2] = z;
+      sound &&= Number.isFinite(x + y + z);
+    }
     geometry.delete();
-    const sound = positions.every(Number.isFinite) && indices.every((index) => index < positions.length / 3);
     if (!sound) return { positions: [], indices: [] };
-    if (determinant(place) < 0)  // mirrored: faces keep their outside
+    if (determinant(place) < 0 !== turned)  // faces keep their outside
       for (let i = 0; i + 2 < indices.length; i += 3) [indices[i + 1], indices[i + 2]] = [indices[i + 2], indices[i + 1]];
     return { positions, indices };
   }
@@ -220,10 +229,23 @@ export class Building {
       each(this.api.GetFlatMesh(this.model, id).geometries, (part) => {
         const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, Array.from(part.flatTransformation)));
         for (let i = 0; i + 2 < indices.length; i += 3)
-          triangles.push([0, 1, 2].map((k) => positions.slice(3 * indices[i + k], 3 * indices[i + k] + 3)));
+          triangles.push([0, 1, 2].map((k) => Array.from(positions.subarray(3 * indices[i + k], 3 * indices[i + k] + 3))));
       });
       const { vantage } = this.site.nodes[this.node(id)].extras;
       if (triangles.length > 0) Object.assign(vantage, { box: box(triangles), footprint: footprint(triangles) });
     }
   }
+}
+
+// One list of vertices and triangles of several.
+function joined(geometries) {
+  const sum = (key) => geometries.reduce((all, one) => all + one[key].length, 0);
+  const positions = new Float32Array(sum("positions")), indices = new Uint32Array(sum("indices"));
+  let vertex = 0, index = 0;
+  for (const one of geometries) {
+    positions.set(one.positions, 3 * vertex);
+    for (const value of one.indices) indices[index++] = value + vertex;
+    vertex += one.positions.length / 3;
+  }
+  return { positions, indices };
 }

@@ -17,6 +17,9 @@ const DRAWN = /^IFC(ANNOTATION|GRID|VIRTUALELEMENT|REFERENT|ALIGNMENT.*|LINEARPO
 // Names that a model's unit may be given by.
 const METRES = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, ft: 0.3048 };
 
+// What a person has to answer, in one line.
+export class Question extends Error {}
+
 // `unit`: one of METRES, or none for what the file says. Returns what readTogether() needs.
 export function open(ifc, api, bytes, unit) {
   const mentions = (text) => bytes.includes(text);
@@ -72,9 +75,11 @@ export function read(site, { step, metres, given, length, angle, unknown }, plac
   const plain = new Plain(step, CHORD_M / metres, angle.value);
   const products = api.GetAllTypesOfModel(model).filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
     .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
-  const made = new Map(products.map((id) => [id, plain.product(id)]));
+  const opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
+  const made = new Map(products.map((id) => [id, plain.product(id, opened.has(id))]));
   const materials = new Materials(step);
   materials.apply();
+  plain.styleCopies();
   const skins = new Skins(step, plain.axes, plain.solids, metres).mend();
 
   const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];

@@ -22,6 +22,7 @@ export class Plain {
     this.solids = new Solids(step, this.axes, this.curves, this.profiles);
     this.items = new Map();     // what became of each item
     this.shapes = new Map();    // and of each product's shape
+    this.copies = new Map();    // items made apart, and what they were
     this.done = new Set();      // placements, profiles and operators
     this.curved = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE").length > 0;
     this.gridAxes = 0;          // products on a grid without a direction
@@ -29,14 +30,43 @@ export class Plain {
 
   // Makes a product plain. Returns {parts, problems, left}: parts are lists of the geometries that web-ifc may give one
   // item, problems say what is not read, and left are the names of representations that are no body.
-  product(id) {
+  product(id, opened) {
     const [, , , , , placement, shape] = this.step.args(id);
     const problems = [];
     if (placement) problems.push(...this.#placement(placement.ref));
     if (!shape) return { parts: [], problems, left: [] };
     if (!this.shapes.has(shape.ref)) this.shapes.set(shape.ref, this.#shape(shape.ref));
     const { parts, problems: more, left } = this.shapes.get(shape.ref);
+    if (opened && new Set(parts.map(([one]) => one)).size < parts.length) parts.push(...this.#apart(this.step.args(shape.ref)[2]));
     return { parts, problems: [...problems, ...more], left };
+  }
+
+  // web-ifc cuts openings out of each place of an item that a product has several times, and shows all cuts at each:
+  // every place but the first gets an item of its own. Returns the parts of these.
+  #apart(representations) {
+    const { step } = this, seen = new Set(), parts = [];
+    const copy = (id) => { const to = step.api.GetMaxExpressID(step.model) + 1; step.copy(id, to); return { ref: to }; };
+    for (const { ref } of representations)
+      for (const mapped of step.args(ref)[3] ?? []) {
+        if (step.type(mapped.ref) !== "IFCMAPPEDITEM") continue;
+        const [source] = step.args(mapped.ref);
+        if (!seen.has(source.ref)) { seen.add(source.ref); continue; }
+        const map = copy(source.ref), [, of] = step.args(source.ref), representation = copy(of.ref);
+        const items = step.args(of.ref)[3].map((item) => { const own = copy(item.ref); this.copies.set(own.ref, item.ref); return own; });
+        step.change(representation.ref, { 3: items });
+        step.change(map.ref, { 1: representation });
+        step.change(mapped.ref, { 0: map });
+        parts.push(...items.map((item) => [item.ref]));
+      }
+    return parts;
+  }
+
+  // Items that were made apart look like those that they were.
+  styleCopies() {
+    if (this.copies.size === 0) return;
+    const { step } = this, styles = new Map();
+    for (const id of step.ids("IFCSTYLEDITEM")) { const [item, list] = step.args(id); if (item) styles.set(item.ref, list); }
+    for (const [own, item] of this.copies) if (styles.has(item)) step.add("IFCSTYLEDITEM", [{ ref: own }, styles.get(item), null]);
   }
 
   #shape(id) {
