@@ -208,12 +208,13 @@ export class Building {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
     const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
     const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
-    const positions = new Float64Array(3 * count);
-    let sound = indices.every((index) => index < count);
+    const positions = new Float64Array(3 * count), m = Float64Array.from(place);
+    let sound = true;
+    for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
     for (let v = 0; v < count; ++v) {
-      const [x, y, z] = transformed(place, vertices[6 * v], vertices[6 * v + 1], vertices[6 * v + 2]);
-      positions[3 * v] = x, positions[3 * v + 1] = y, positions[3 * v + 2] = z;
-      sound &&= Number.isFinite(x + y + z);
+      const x = vertices[6 * v], y = vertices[6 * v + 1], z = vertices[6 * v + 2];
+      for (let r = 0; r < 3; ++r) positions[3 * v + r] = m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];
+      sound &&= Number.isFinite(positions[3 * v] + positions[3 * v + 1] + positions[3 * v + 2]);
     }
     geometry.delete();
     if (!sound) return { positions: [], indices: [] };
@@ -244,7 +245,7 @@ function joined(geometries) {
   let vertex = 0, index = 0;
   for (const one of geometries) {
     positions.set(one.positions, 3 * vertex);
-    for (const value of one.indices) indices[index++] = value + vertex;
+    for (let i = 0; i < one.indices.length; ++i) indices[index++] = one.indices[i] + vertex;
     vertex += one.positions.length / 3;
   }
   return { positions, indices };

@@ -47,7 +47,9 @@ function largestChords(step, metres) {
 
 // Entities that the reader does not know, by name: how many, and the first ones.
 function unknownEntities(step, bytes) {
-  const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map();
+  const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map(), { api, model } = step;
+  const known = api.GetAllTypesOfModel(model).reduce((sum, { typeID }) => sum + api.GetLineIDsWithType(model, typeID).size(), 0);
+  if (known === api.GetAllLines(model).size()) return found;
   for (let at = 0; at < bytes.length; at += BLOCK) {
     const text = bytes.latin1Slice(at, Math.min(bytes.length, at + BLOCK + OVERLAP));
     for (const match of text.matchAll(/#\d+\s*=\s*(IFC[A-Za-z0-9_]+)\s*\(/g)) {
