@@ -12,6 +12,9 @@ const DOORS = new Set(["IfcDoor", "IfcDoorStandardCase"]);
 // Where spaces and what they are in have their long names.
 const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7], ["IfcBuildingStorey", 7], ["IfcSpace", 7]]);
 
+// Share of a solid's surface that may be missing: rounding.
+const OPEN = 1e-4;
+
 const each = (ids, visit) => { for (let i = 0; i < ids.size(); ++i) visit(ids.get(i)); };
 
 // What several models become together.
@@ -86,11 +89,11 @@ export class Building {
     return !NO_BODY.has(this.step.className(id));
   }
 
-  // Adds a product. `parts`: lists of geometries, one of each of which must have a surface. Returns how many have none,
-  // -1 if the product is in the site already.
-  add(id, parts) {
+  // Adds a product. `parts`: lists of geometries, one of each of which must have a surface; `isClosed` tells
+  // geometries that have to be. Returns how many have no surface, and how many are open; null if the product is in the site already.
+  add(id, parts, isClosed) {
     const guid = this.step.args(id)[0], pieces = [];
-    let index = -1, place = null, shown = new Set();
+    let index = -1, place = null, shown = new Map();
     const take = (mesh) => {
       each(mesh.geometries, (part) => pieces.push({
         geometry: part.geometryExpressID, colour: [part.color.x, part.color.y, part.color.z, part.color.w],
@@ -114,14 +117,17 @@ export class Building {
     try {
       this.api.StreamMeshes(this.model, [id], take);
     } catch {
-      shown = new Set();  // web-ifc gave the product up
+      shown = new Map();  // web-ifc gave the product up
     }
     if (index >= 0) {
-      if (guid && this.site.shown.has(guid)) { this.twice.push(id); return -1; }
+      if (guid && this.site.shown.has(guid)) { this.twice.push(id); return null; }
       this.site.shown.add(guid);
       this.site.shapes.set(this.node(id), { mesh: index, matrix: product(this.place, place) });
     }
-    return parts.filter((ids) => !ids.some((one) => shown.has(one))).length;
+    return {
+      empty: parts.filter((ids) => !ids.some((one) => shown.has(one))).length,
+      open: [...shown].filter(([one, share]) => isClosed(one) && share > OPEN).length,
+    };
   }
 
   // Whether an opening is cut out of a product or of one that it is a part of.
@@ -171,11 +177,11 @@ export class Building {
   #mesh(parts, own) {
     const key = own + " " + parts.map((part) => [part.geometry, part.turned, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
     if (this.meshOf.has(key)) return this.meshOf.get(key);
-    const { glb, meshes } = this.site, byMaterial = new Map(), shown = new Set();
+    const { glb, meshes } = this.site, byMaterial = new Map(), shown = new Map();
     for (const part of parts) {
       const geometry = this.#geometry(part.geometry, part.place, part.turned);
       if (geometry.indices.length === 0) continue;
-      shown.add(part.geometry);
+      shown.set(part.geometry, missing(geometry));
       const material = this.site.material(part.colour);
       if (!byMaterial.has(material)) byMaterial.set(material, []);
       byMaterial.get(material).push(geometry);
@@ -249,4 +255,16 @@ function joined(geometries) {
     vertex += one.positions.length / 3;
   }
   return { positions, indices };
+}
+
+// What a surface lacks to be closed, as a share of it: areas as vectors cancel each other all around a solid.
+function missing({ positions: p, indices }) {
+  let x = 0, y = 0, z = 0, all = 0;
+  for (let i = 0; i + 2 < indices.length; i += 3) {
+    const a = 3 * indices[i], b = 3 * indices[i + 1], c = 3 * indices[i + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2], vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    x += nx, y += ny, z += nz, all += Math.hypot(nx, ny, nz);
+  }
+  return all > 0 ? Math.hypot(x, y, z) / all : 0;
 }

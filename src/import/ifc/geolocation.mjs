@@ -19,6 +19,8 @@ export function geolocation(step, metres, mentions) {
     unit = 1;
     notes.push("its map conversion has no unit of the map; easting and northing are taken as metres");
   }
+  // The site is in metres: coordinates of a system in feet are no longer its own.
+  if (crs && Math.abs(unit - 1) > 1e-9) notes.push(`its coordinate system${name ? `, "${name}",` : ""} counts in units of ${unit} m, and the site is in metres: it is not used for maps`);
   let grow = scale * unit / metres;
   if (Math.abs(grow - 1) > 0.05) {
     notes.push(`its map conversion would make the site ${grow.toPrecision(3)} times as large by its scale, which is not applied`);
@@ -27,7 +29,7 @@ export function geolocation(step, metres, mentions) {
   const long = Math.hypot(abscissa, ordinate) || 1, [c, s] = [abscissa / long, ordinate / long], [fx, fy, fz] = factors.map((f) => f * grow);
   // (x, y, z) is (x, z, -y) with Y up.
   const place = [c * fx, 0, -s * fx, 0, 0, fz, 0, 0, s * fy, 0, c * fy, 0, east * unit, height * unit, -north * unit, 1];
-  return { crs, name, place, notes };
+  return { crs: Math.abs(unit - 1) > 1e-9 ? "" : crs, name, place, notes };
 }
 
 const code = (text) => {

@@ -91,7 +91,7 @@ export class Materials {
         if (!part) continue;
         for (const representation of representations)
           for (const item of step.args(representation.ref)[3] ?? []) {
-            pane ||= this.glass.has(part.id);
+            pane ||= this.glass.has(part.id) && items.all.includes(item.ref);
             paint(item.ref, this.glass.get(part.id) ?? this.#opaque(part.id));
           }
       }

@@ -35,7 +35,7 @@ export function open(ifc, api, bytes, unit) {
     model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: chords });
     step = new Step(ifc, api, model);
   }
-  return { step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: geolocation(step, metres ?? 1, mentions) };
+  return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: geolocation(step, metres ?? 1, mentions) };
 }
 
 function largestChords(step, metres) {
@@ -71,7 +71,7 @@ const several = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one 
 const listed = (all) => all.slice(0, LISTED).join("; ") + (all.length > LISTED ? `; and ${all.length - LISTED} more` : "");
 
 // Adds an open model. `place` takes it to the site. Returns its notes.
-export function read(site, { step, metres, given, length, angle, unknown }, place) {
+export function read(site, { schema, step, metres, given, length, angle, unknown }, place) {
   const { api, model } = step;
   if (given || !length || length.value !== 1) stateLength(step, metres);
   const plain = new Plain(step, CHORD_M / metres, angle.value);
@@ -87,10 +87,12 @@ export function read(site, { step, metres, given, length, angle, unknown }, plac
   const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];
   for (const id of products) {
     if (!building.hasBody(id)) continue;
-    const { parts, problems, left } = made.get(id), empty = parts.length > 0 ? building.add(id, parts) : 0;
-    if (empty < 0) continue;
-    const why = [...new Set(problems)];
+    const { parts, problems, left } = made.get(id), isClosed = (one) => plain.cut.has(one) || (opened.has(id) && plain.solid.has(one));
+    const added = parts.length > 0 ? building.add(id, parts, isClosed) : { empty: 0, open: 0 };
+    if (!added) continue;
+    const { empty, open: holes } = added, why = [...new Set(problems)];
     if (empty > 0) why.push(parts.length === 1 ? "no surface could be made of it" : `no surface could be made of ${empty} of its ${parts.length} items`);
+    if (holes > 0) why.push("its surface has a hole where something was cut out of it");
     const nothing = empty === parts.length;
     if (why.length > 0) (nothing ? lost : incomplete).push(`${step.label(id)} (${why.join(", ")})`);
     else if (nothing && left.length > 0 && !spatial(step.type(id))) bodiless.push(`${step.label(id)} (${[...new Set(left)].join(", ")})`);
@@ -108,6 +110,7 @@ export function read(site, { step, metres, given, length, angle, unknown }, plac
   note(materials.guessed.map(label), "product has", "products have", "a material of the category glass without a style, and is taken as glass");
   note(materials.unsaid.map(label), "product is", "products are", "of glass and other materials without saying which part is glass, and opaque");
   note(building.twice.map(label), "product is", "products are", "in another file of the site, too, and read once");
+  if (/^IFC4X(1|2|3_RC\d|2SCGL)$/i.test(schema)) notes.push(`its schema, ${schema}, is a draft of IFC 4.3 and read as that; entities that have changed since are read wrongly`);
   if (plain.gridAxes > 0) notes.push(`${several(plain.gridAxes, "placement")} on a grid without a direction ${plain.gridAxes === 1 ? "keeps" : "keep"} the grid's axes`);
   return { notes, doubt: given || !length ? null : doubt(step, site.extent, length, metres) };
 }

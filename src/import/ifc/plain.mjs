@@ -22,6 +22,8 @@ export class Plain {
     this.solids = new Solids(step, this.axes, this.curves, this.profiles);
     this.items = new Map();     // what became of each item
     this.shapes = new Map();    // and of each product's shape
+    this.cut = new Set();       // solids of which web-ifc cuts others out
+    this.solid = new Set();     // and others that are closed
     this.copies = new Map();    // items made apart, and what they were
     this.done = new Set();      // placements, profiles and operators
     this.curved = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE").length > 0;
@@ -92,10 +94,11 @@ export class Plain {
   #item(id) {
     const known = this.items.get(id);
     if (known) return known;
-    const made = { parts: [], problems: [], lost: false };
+    const made = { parts: [], problems: [], lost: false }, type = this.step.type(id);
     this.items.set(id, made);
     try {
       Object.assign(made, this.#read(id));
+      if (/SOLID|IFCBLOCK|IFCSPHERE|IFCRIGHT|IFCRECTANGULARPYRAMID|BREP/.test(type)) this.solid.add(id);
     } catch (error) {
       if (!(error instanceof Unread) && !(error instanceof TypeError)) throw error;
       Object.assign(made, { parts: [], problems: [`${shown(this.step, error instanceof Unread ? error.message : this.step.type(id))} is not read`], lost: true });
@@ -141,13 +144,8 @@ export class Plain {
       }
       case "IFCTRIANGULATEDFACESET": case "IFCTRIANGULATEDIRREGULARNETWORK": this.#indexed(id, args, 4); return whole;
       case "IFCPOLYGONALFACESET": this.#indexed(id, args, 3); return whole;
-      case "IFCFACETEDBREPWITHVOIDS": case "IFCADVANCEDBREPWITHVOIDS": {
-        const shells = [args[0], ...args[1]].flatMap((shell) => step.args(shell.ref)[0]);
-        step.write(id, type.replace("WITHVOIDS", ""), [step.add("IFCCLOSEDSHELL", [shells])]);
-        return this.#read(id);
-      }
-      case "IFCFACETEDBREP": return whole;
-      case "IFCADVANCEDBREP": return { ...whole, problems: this.#surfaces([args[0]]) };
+      case "IFCFACETEDBREP": case "IFCFACETEDBREPWITHVOIDS": return whole;
+      case "IFCADVANCEDBREP": case "IFCADVANCEDBREPWITHVOIDS": return { ...whole, problems: this.#surfaces([args[0], ...(args[1] ?? [])]) };
       case "IFCSHELLBASEDSURFACEMODEL": case "IFCFACEBASEDSURFACEMODEL":
         return { parts: args[0].map((shell) => [id, shell.ref]), problems: this.#surfaces(args[0]), lost: false };
       case "IFCFACESURFACE": return whole;
@@ -168,8 +166,7 @@ export class Plain {
     }
   }
 
-  // web-ifc has no INTERSECTION: A and B is A without what of A is outside B.
-  #boolean(id, [operator, first, second]) {
+  #boolean(id, [, first, second]) {
     const { step } = this, a = this.#item(first.ref), b = this.#item(second.ref);
     if (a.lost) throw new Unread(`the first operand of ${step.type(id)} (${a.problems[0] ?? "without a surface"})`);
     const problems = [...a.problems, ...b.problems];
@@ -178,11 +175,11 @@ export class Plain {
       step.copy(first.ref, id);
       return { parts: [[id]], problems: [...problems, `${shown(this.step, step.type(id))} is read without its second operand`] };
     }
-    if (operator === "INTERSECTION") {
-      const outside = step.add("IFCBOOLEANRESULT", [enumeration("DIFFERENCE"), first, second]);
-      step.write(id, "IFCBOOLEANRESULT", [enumeration("DIFFERENCE"), first, outside]);
-    }
+    if (!this.#isOpen(first.ref)) this.cut.add(id);
     return { parts: [[id]], problems, lost: false };
+  }
+  #isOpen(id) {
+    return /SURFACEMODEL|FACESET|GEOMETRICSET/.test(this.step.type(id)) && !this.solid.has(id);
   }
 
   #faces(id, points, triangles) {

@@ -42,7 +42,7 @@ function position(t, r, far = 3, upright = false) {
 }
 
 const circle = (rx, ry = rx) => Array.from({ length: 720 }, (_, i) => [rx * Math.cos(Math.PI * i / 360), ry * Math.sin(Math.PI * i / 360)]);
-const sphere = (a) => Array.from({ length: 61 }, (_, k) => Math.PI * k / 60).flatMap((e) => circle(a * Math.sin(e)).filter((_, i) => i % 8 === 0).map(([x, y]) => [x, y, a * Math.cos(e)]));
+const sphere = (a) => Array.from({ length: 181 }, (_, k) => Math.PI * k / 180).flatMap((e) => circle(a * Math.sin(e)).filter((_, i) => i % 3 === 0).map(([x, y]) => [x, y, a * Math.cos(e)]));
 const rectangle = (w, h) => [[-w / 2, -h / 2], [w / 2, -h / 2], [w / 2, h / 2], [-w / 2, h / 2]];
 
 // Profiles: entity, area and outline.
