@@ -4,7 +4,8 @@ import { cross, dot, length, minus, placed, plus, unit, within } from "./axes.mj
 
 export class Unread extends Error {}
 
-const LEAST = 12;  // chords of a full circle, however small
+const LEAST = 12;    // chords of a full circle, however small
+const MOST = 20_000;  // of any arc: that of a circle of 200 km
 
 export class Curves {
   // `chord`: in the model's unit; `radians`: of its unit of angles.
@@ -15,7 +16,9 @@ export class Curves {
   // Number of chords for an angle in radians.
   chords(radius, angle) {
     const most = 2 * Math.acos(1 - this.chord / Math.max(radius, this.like, this.chord));
-    return Math.max(1, Math.ceil(Math.abs(angle) / Math.min(most, 2 * Math.PI / LEAST) - 1e-9));
+    const count = Math.max(1, Math.ceil(Math.abs(angle) / Math.min(most, 2 * Math.PI / LEAST) - 1e-9));
+    if (!(count <= MOST)) throw new Unread("an arc with a radius beyond any site");
+    return count;
   }
 
   // Points of three numbers from the curve's start to its end. Throws Unread.

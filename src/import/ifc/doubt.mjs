@@ -2,9 +2,8 @@
 // Whether a person fits in a model as its unit has it.
 
 const UNITS = [["m", 1, "metres"], ["ft", 0.3048, "feet"], ["in", 0.0254, "inches"], ["cm", 0.01, "centimetres"], ["mm", 0.001, "millimetres"]];
-// Sizes of a whole site, of its storeys' walls and rooms, and of its doors, in metres: what is outside of them is
-// built for nobody.
-const SITE = [0.5, 50_000], STOREY = [1, 80], DOOR = [1, 12];
+// Sizes in metres: what is outside of them is built for nobody. Low walls alone may be a terrace's.
+const SITE = [0.5, 50_000], WALL = [1, 80], STOREY = [0.5, 25], DOOR = [1, 12], SMALL = 5;
 
 const middle = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const outside = (value, [low, high]) => value !== undefined && (value < low || value > high);
@@ -26,8 +25,10 @@ export function doubt(step, extent, length, metres) {
   const size = sizeOf(extent), longest = Math.max(...size);
   const doors = step.ids("IFCDOOR", "IFCDOORSTANDARDCASE").map((id) => step.args(id)[8]).filter((v) => typeof v === "number" && v > 0).map((v) => v * metres);
   const walls = wallHeights(step).map((v) => v * metres), few = walls.length < 3;
-  const highest = few ? undefined : Math.max(...walls);
-  const wrong = outside(longest, SITE) || outside(middle(doors), DOOR) || (!few && (highest < STOREY[0] || middle(walls) > STOREY[1]));
+  const highest = few ? undefined : Math.max(...walls), levels = step.ids("IFCBUILDINGSTOREY").map((id) => step.args(id)[9]).filter((v) => typeof v === "number").sort((a, b) => a - b);
+  const storeys = levels.slice(1).map((v, i) => (v - levels[i]) * metres).filter((v) => v > 0);
+  const wrong = outside(longest, SITE) || outside(middle(doors), DOOR) || (storeys.length > 1 && outside(middle(storeys), STOREY)) ||
+    (!few && ((highest < WALL[0] && longest < SMALL) || middle(walls) > WALL[1]));
   if (!wrong) return null;
   const said = highest !== undefined ? `, with walls up to ${text(highest)} m high` : doors.length > 0 ? `, with doors ${text(middle(doors))} m high` : "";
   return `its unit is doubtful: it says ${length.name}, and the whole site would be ${sizes(size)}${said}, in which no person fits; give the setting unit: ` +

@@ -35,7 +35,7 @@ export function open(ifc, api, bytes, unit) {
     model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: chords });
     step = new Step(ifc, api, model);
   }
-  return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: geolocation(step, metres ?? 1, mentions) };
+  return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: attempt(() => geolocation(step, metres ?? 1, mentions), { crs: "", name: "", place: null, notes: ["its map conversion is damaged, and not applied"] }) };
 }
 
 function largestChords(step, metres) {
@@ -67,6 +67,16 @@ function unknownEntities(step, bytes) {
   return found;
 }
 
+// What a damaged part of a model gives instead of an error.
+function attempt(make, instead) {
+  try {
+    return make();
+  } catch (error) {
+    if (!(error instanceof TypeError) && !(error instanceof RangeError)) throw error;
+    return instead;
+  }
+}
+
 const several = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
 const listed = (all) => all.slice(0, LISTED).join("; ") + (all.length > LISTED ? `; and ${all.length - LISTED} more` : "");
 
@@ -78,11 +88,12 @@ export function read(site, { schema, step, metres, given, length, angle, unknown
   const products = api.GetAllTypesOfModel(model).filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
     .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
   const opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
-  const made = new Map(products.map((id) => [id, plain.product(id, opened.has(id))]));
+  const damaged = [], part = (name) => { damaged.push(name); return null; };
+  const made = new Map(products.map((id) => [id, attempt(() => plain.product(id, opened.has(id)), { parts: [[id]], problems: ["its shape is damaged"], left: [] })]));
   const materials = new Materials(step);
-  materials.apply();
+  if (attempt(() => materials.apply() ?? true, null) === null) part("materials");
   plain.styleCopies();
-  const skins = new Skins(step, plain.axes, plain.solids, metres).mend();
+  const skins = attempt(() => new Skins(step, plain.axes, plain.solids, metres).mend(), null) ?? part("openings") ?? [];
 
   const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];
   for (const id of products) {
@@ -97,11 +108,12 @@ export function read(site, { schema, step, metres, given, length, angle, unknown
     if (why.length > 0) (nothing ? lost : incomplete).push(`${step.label(id)} (${why.join(", ")})`);
     else if (nothing && left.length > 0 && !spatial(step.type(id))) bodiless.push(`${step.label(id)} (${[...new Set(left)].join(", ")})`);
   }
-  building.addRooms();
+  if (attempt(() => building.addRooms() ?? true, null) === null) part("rooms");
   const notes = [], label = (id) => step.label(id);
   const note = (all, one, many, what) => { if (all.length > 0) notes.push(`${all.length} ${all.length === 1 ? one : many} ${what}: ${listed(all)}`); };
   note(lost, "product has", "products have", "a shape of which no surface could be made, and are left out".replace("are", lost.length === 1 ? "is" : "are"));
   note(incomplete, "product is", "products are", "incomplete or not sure");
+  for (const name of damaged) notes.push(`its ${name} are damaged, and not read whole`);
   const strange = [...unknown].map(([name, { count, products: some }]) => `${count} ${name}${some.length > 0 ? ` (${listed(some)})` : ""}`);
   note(strange, "class of entities is", "classes of entities are", "unknown to the reader of IFC and left out");
   note(bodiless, "product has", "products have", "no body, only what is drawn beside one, and no surface");
@@ -112,7 +124,7 @@ export function read(site, { schema, step, metres, given, length, angle, unknown
   note(building.twice.map(label), "product is", "products are", "in another file of the site, too, and read once");
   if (/^IFC4X(1|2|3_RC\d|2SCGL)$/i.test(schema)) notes.push(`its schema, ${schema}, is a draft of IFC 4.3 and read as that; entities that have changed since are read wrongly`);
   if (plain.gridAxes > 0) notes.push(`${several(plain.gridAxes, "placement")} on a grid without a direction ${plain.gridAxes === 1 ? "keeps" : "keep"} the grid's axes`);
-  return { notes, doubt: given || !length ? null : doubt(step, site.extent, length, metres) };
+  return { notes, doubt: given || !length ? null : attempt(() => doubt(step, site.extent, length, metres), null) };
 }
 
 const spatial = (type) => /^IFC(SITE|BUILDING|BUILDINGSTOREY|SPACE|PROJECT|.*ZONE|FACILITY.*|.*SPATIAL.*|ROAD|RAILWAY|BRIDGE|MARINEFACILITY)$/.test(type);
