@@ -232,7 +232,9 @@ export class Building {
   // Rooms are nodes without a mesh: the extras have their box and outline, in metres, Y up.
   addRooms() {
     for (const id of this.step.ids("IFCSPACE")) {
-      const triangles = [];
+      const guid = this.step.args(id)[0], triangles = [];
+      if (guid && this.site.shown.has(guid)) continue;  // in another file, too
+      this.site.shown.add(guid);
       each(this.api.GetFlatMesh(this.model, id).geometries, (part) => {
         const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, Array.from(part.flatTransformation)));
         for (let i = 0; i + 2 < indices.length; i += 3)

@@ -87,6 +87,7 @@ export function read(site, { schema, step, metres, given, length, angle, unknown
   const plain = new Plain(step, CHORD_M / metres, angle.value);
   const products = api.GetAllTypesOfModel(model).filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
     .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
+  const analysis = step.kinds("IFCSTRUCTURALITEM").filter((id) => step.args(id)[6]).length;
   const opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
   const damaged = [], part = (name) => { damaged.push(name); return null; };
   const made = new Map(products.map((id) => [id, attempt(() => plain.product(id, opened.has(id)), { parts: [[id]], problems: ["its shape is damaged"], left: [] })]));
@@ -123,6 +124,7 @@ export function read(site, { schema, step, metres, given, length, angle, unknown
   note(materials.unsaid.map(label), "product is", "products are", "of glass and other materials without saying which part is glass, and opaque");
   note(building.twice.map(label), "product is", "products are", "in another file of the site, too, and read once");
   if (/^IFC4X(1|2|3_RC\d|2SCGL)$/i.test(schema)) notes.push(`its schema, ${schema}, is a draft of IFC 4.3 and read as that; entities that have changed since are read wrongly`);
+  if (analysis > 0) notes.push(`${several(analysis, "member")} of a structural analysis ${analysis === 1 ? "is no body and is" : "are no bodies and are"} left out`);
   if (plain.gridAxes > 0) notes.push(`${several(plain.gridAxes, "placement")} on a grid without a direction ${plain.gridAxes === 1 ? "keeps" : "keep"} the grid's axes`);
   return { notes, doubt: given || !length ? null : attempt(() => doubt(step, site.extent, length, metres), null) };
 }

@@ -291,6 +291,27 @@ test("glass by constituents and shape aspects, of products and types", () => {
   near(thing(byType).glass, PANE, 1e-4);
 });
 
+test("glass by shape aspects of a type's map, and aspects that show nothing", () => {
+  const t = new StepText({ unit: "millimetre" }), [frame, pane] = window(t), map = t.add("IFCREPRESENTATIONMAP", t.axes(), t.representation([frame, pane]));
+  const windows = [0, 5].map((x, k) => {
+    const item = t.add("IFCMAPPEDITEM", map, t.add("IFCCARTESIANTRANSFORMATIONOPERATOR3D", "$", "$", t.point([0, 0, 0]), "$", "$"));
+    return t.product("IFCWINDOW", `w${k}`, t.shape([t.representation([item], "Body", "MappedRepresentation")]), { place: t.place(t.axes([x, 0, 0])) });
+  });
+  const type = t.add("IFCWINDOWTYPE", t.guid(), "$", "'type'", "$", "$", "$", list([map]), "$", "$", ".WINDOW.", "$", "$", "$");
+  t.add("IFCRELDEFINESBYTYPE", t.guid(), "$", "$", "$", list(windows), type);
+  t.made([type], constituents(t, [["Framing", t.material("steel", 0)], ["Glazing", t.material("glass", 0.6)]]));
+  aspects(t, map, [["Framing", frame], ["Glazing", pane]]);
+  const found = readBack(t.text());
+  assert.deepEqual(found.notes, []);
+  for (const name of ["w0", "w1"]) near(found.products.get(name).glass, PANE, 1e-3);
+  // An aspect with a pane of its own, which is not in the body.
+  const beside = glazed((u, { product, shape }) => {
+    u.made([product], constituents(u, [["Framing", u.material("steel", 0)], ["Glazing", u.material("glass", 0.6)]]));
+    aspects(u, shape, [["Glazing", u.box([1, 0.02, 0.9], [0, 0.04, 0.1])]]);
+  });
+  told(beside, "without saying which part is glass", "IfcWindow thing 0Made");
+});
+
 test("glass by single materials, layers, lists, categories and colour maps", () => {
   const all = PANE + 2 * (0.1 + 0.1 + 0.01);
   near(thing(glazed((t, { product }) => t.made([product], t.material("glass", 0.7)), "ifc2x3")).glass, all, 1e-4);
