@@ -12,6 +12,9 @@ import { enumeration, integer } from "./step.mjs";
 const LINES = /^IFC(POLYLINE|.*CURVE|.*CURVEWITHKNOTS|CIRCLE|ELLIPSE|LINE|CLOTHOID|EDGE|.*POINT|TEXTLITERAL.*|ANNOTATIONFILLAREA|GEOMETRICCURVESET|PATH|VERTEX.*|.*DIMENSION.*|.*HATCHING)$/;
 const AS_IT_IS = ["IFCPLANE", "IFCCYLINDRICALSURFACE", "IFCBSPLINESURFACEWITHKNOTS", "IFCRATIONALBSPLINESURFACEWITHKNOTS", "IFCSURFACEOFREVOLUTION", "IFCSURFACEOFLINEAREXTRUSION"];
 
+// What eleven corners, which web-ifc makes of twelve, miss of a circle of radius 1.
+const AS_ELEVEN = 1 - Math.cos(Math.PI / 11);
+
 export class Plain {
   // `chord`: what a chord may miss of an arc, in the model's unit; `radians`: of its unit of angles.
   constructor(step, chord, radians) {
@@ -210,7 +213,7 @@ export class Plain {
   #profile(id) {
     if (this.done.has(id)) return;
     const { step } = this, type = step.type(id), args = step.args(id);
-    const plain = type === "IFCRECTANGLEPROFILEDEF" ||
+    const plain = type === "IFCRECTANGLEPROFILEDEF" || (type === "IFCCIRCLEPROFILEDEF" && args[3] > 0 && args[3] < this.curves.chord / AS_ELEVEN) ||
       (type.startsWith("IFCARBITRARY") && this.#straight(args[2].ref) && (args[3] ?? []).every((hole) => this.#straight(hole.ref)));
     if (!plain) {
       const ring = (points) => this.#line([...points, points[0]]);

@@ -4,6 +4,8 @@
 
 const [STRING, TYPED, ENUM, REAL, REF, INTEGER] = [1, 2, 3, 4, 5, 10];
 
+const MOST = 100_000;
+
 const decode = (token) => {
   if (token === null || token === undefined) return null;
   if (Array.isArray(token)) return token.map(decode);
@@ -31,6 +33,7 @@ const encode = (value) => {
 
 export class Step {
   #names = new Map();
+  #read = new Map();  // attributes of entities, as many as MOST
 
   constructor(ifc, api, model) {
     Object.assign(this, { ifc, api, model });
@@ -65,14 +68,20 @@ export class Step {
     return this.#names.get(this.api.GetLineType(this.model, id)) ?? "";
   }
 
-  // Attributes in the order of the schema; [] if there is no such entity.
+  // Attributes in the order of the schema, which are not to be changed; [] if there is no such entity.
   args(id) {
-    return decode(this.api.GetRawLineData(this.model, id)?.arguments ?? []);
+    const known = this.#read.get(id);
+    if (known) return known;
+    const args = decode(this.api.GetRawLineData(this.model, id)?.arguments ?? []);
+    if (this.#read.size >= MOST) this.#read.clear();
+    this.#read.set(id, args);
+    return args;
   }
 
   // Replaces an entity, or makes it.
   write(id, name, args) {
     const is = this.type(id);
+    this.#read.delete(id);
     if (is && is !== name) this.api.DeleteLine(this.model, id);
     this.api.WriteRawLineData(this.model, { ID: id, type: this.ifc[name], arguments: args.map(encode) });
   }
@@ -83,11 +92,13 @@ export class Step {
   }
   // Changes some attributes of an entity, by their places.
   change(id, changes) {
+    this.#read.delete(id);
     const { type, arguments: raw } = this.api.GetRawLineData(this.model, id);
     this.api.WriteRawLineData(this.model, { ID: id, type, arguments: raw.map((token, i) => (i in changes ? encode(changes[i]) : this.#kept(token))) });
   }
   // Makes an entity what another one is.
   copy(from, to) {
+    this.#read.delete(to);
     const { type, arguments: raw } = this.api.GetRawLineData(this.model, from);
     if (this.type(to)) this.api.DeleteLine(this.model, to);
     this.api.WriteRawLineData(this.model, { ID: to, type, arguments: raw.map((token) => this.#kept(token)) });
