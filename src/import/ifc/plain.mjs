@@ -141,9 +141,9 @@ export class Plain {
       }
       case "IFCEXTRUDEDAREASOLIDTAPERED": case "IFCREVOLVEDAREASOLID": case "IFCSWEPTDISKSOLID": case "IFCSWEPTDISKSOLIDPOLYGONAL": case "IFCBLOCK": case "IFCSPHERE":
       case "IFCRIGHTCIRCULARCYLINDER": case "IFCRIGHTCIRCULARCONE": case "IFCRECTANGULARPYRAMID": {
-        const { points, triangles } = this.solids.of(id);
+        const { points, triangles, told } = this.solids.of(id);
         this.#faces(id, points, triangles);
-        return whole;
+        return { ...whole, problems: told ? [shown(step, told)] : [] };
       }
       case "IFCTRIANGULATEDFACESET": case "IFCTRIANGULATEDIRREGULARNETWORK": this.#indexed(id, args, 4); return whole;
       case "IFCPOLYGONALFACESET": this.#indexed(id, args, 3); return whole;

@@ -28,7 +28,7 @@ export class Solids {
     Object.assign(this, { step, axes, curves, profiles });
   }
 
-  // {points, triangles}, in the item's coordinates. Throws Unread.
+  // {points, triangles, told}, in the item's coordinates; `told`, if any, is what is not sure. Throws Unread.
   of(id) {
     const { step, axes } = this, type = step.type(id), args = step.args(id), faces = new Faces();
     switch (type) {
@@ -152,7 +152,7 @@ export class Solids {
 
   // A round bar or pipe along a line, mitred at its corners.
   #disk(faces, [directrix, radius, inner, start, end]) {
-    if (start !== null && start !== 0 || end !== null && end !== undefined && !this.#isWhole(directrix, end)) throw new Unread("IFCSWEPTDISKSOLID of a part of its directrix");
+    if (start !== null && start !== 0 || end !== null && end !== undefined && !this.#isWhole(directrix, end)) faces.told = "IFCSWEPTDISKSOLID of a part of its directrix is read along all of it";
     const line = this.curves.points(directrix), close = length(minus(line[0], line.at(-1))) <= 1e-6 * radius + 1e-12;
     if (close) line.pop();
     const count = line.length, along = (i) => unit(minus(line[(i + 1) % count], line[i]));

@@ -231,6 +231,9 @@ test("solids that web-ifc lacks or reads otherwise", () => {
   const pipe = thing(single({}, (t) => t.add("IFCSWEPTDISKSOLID", t.add("IFCPOLYLINE", list([[0, 0, 0], [4, 0, 0], [4, 0, 3]].map((p) => t.point(p)))), t.len(0.5), t.len(0.4), "$", "$")));
   near(pipe.volume / (Math.PI * (0.25 - 0.16) * 7), 1, 0.06);
   spans(pipe, [0, -0.5, -0.5], [4.5, 0.5, 3], 0.006);
+  const bar = (start, end) => single({}, (t) => t.add("IFCSWEPTDISKSOLID", t.add("IFCPOLYLINE", list([[0, 0, 0], [4, 0, 0], [4, 0, 3]].map((p) => t.point(p)))), t.len(0.5), "$", start, end));
+  thing(bar("0.", "2."));
+  told(bar("0.", "1."), "IfcSweptDiskSolid of a part of its directrix", "IfcBuildingElementProxy thing 0Made");
 });
 
 test("solids of solids", () => {
