@@ -163,6 +163,10 @@ export function randomSite(seed) {
   }
   for (let k = r.whole(3, 8); k > 0; --k) {
     const name = `p${k}`, items = [];
+    if (r.chance(0.15)) {
+      products.set(name, wall(t, r, name, map));
+      continue;
+    }
     for (let n = r.chance(0.3) ? 2 : 1; n > 0; --n) {
       const known = Object.keys(ITEMS).filter((kind) => !(t.schema === "ifc2x3" && kind === "none"));
       let item = ITEMS[r.pick(known)](t, r);
@@ -186,6 +190,17 @@ export function randomSite(seed) {
     products.set(name, { volume: items.reduce((all, item) => all + item.volume, 0), glass: glazed, loose: Math.max(1, share("loose")), short: share("short"), ...around(points) });
   }
   return { text: t.text(), products, told, crs };
+}
+
+// A wall with an opening: through it, short of a face by a skin that is opened, or a niche.
+function wall(t, r, name, map) {
+  const [long, thick, high] = [r.between(3, 8), r.between(0.1, 0.4), r.between(2.5, 4)], [w, h] = [r.between(0.7, 1.5), r.between(1, 2)], from = [r.between(0.5, long - 2), r.pick([0, 0.3])];
+  const short = r.pick([-0.1, -0.1, r.between(0.001, 0.009), thick * 0.6]), { id, place } = position(t, r, 20, true), where = t.place(id);
+  const host = t.product("IFCWALL", name, t.shape([t.representation([t.box([long, thick, high])])]), { place: where });
+  const hole = t.box([w, thick - short + 0.1, h], [from[0], -0.1, from[1]]);
+  t.open(host, t.product("IFCOPENINGELEMENT", `hole of ${name}`, t.shape([t.representation([hole])]), { place: where, stands: false }));
+  const depth = short > 0.01 ? thick - short : thick;
+  return { volume: long * thick * high - w * depth * h, glass: false, loose: 1, short: 0, ...around(corners([long, thick, high], [0, 0, 0]).map((p) => at(product(map, place), p))) };
 }
 
 function around(points) {
