@@ -34,6 +34,7 @@ sites() {
   VANTAGE_WHOLE_SITES=1 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='*Plans*'
   VANTAGE_SEEDS=1..200 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='RandomSites.*'
   VANTAGE_SEEDS=1..400 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='FloorPlanRandomTest.*'
+  VANTAGE_SEEDS=1..200 run node --test tests/unit/import/ifc/random_test.mjs
   run build/release/vantage-bench sweep office house street plant 1..40 -o build/sweep --by-hand tests/sites/by_hand --step 0.4 --user-size 0.3 --spacing 0.1
   VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'
 }

@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/site.hpp"
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "scene/importer_settings.hpp"
@@ -71,9 +72,12 @@ struct ImportOptions {
 
   void add(CLI::App& command) {
     command
-        .add_option("file", file,
-                    "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, "
-                    "LAS, PLY, XYZ, PTS, PTX or PCD; or a folder of scans, or of floor plans, a file for each storey")
+        .add_option_function<std::vector<std::string>>(
+            "file", [this](const std::vector<std::string>& files) { take_files(files, file, site.scene); },
+            "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, LAS, "
+            "PLY, "
+            "XYZ, PTS, PTX or PCD; or a folder or several files of scans, IFC models, or floor plans, a file for each "
+            "storey")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, settings_of({"unit", "up"}), site, "Axes of a model or floor plan");
@@ -92,7 +96,7 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   SceneOptions read = options.site.scene;
   read.doors = {"closed"};
   read.max_memory_bytes = options.site.memory_bytes;
-  const importers::Format& format = *importers::recognise(options.file).format;
+  const importers::Format& format = *importers::recognise(options.file, read.beside).format;
   std::vector<std::string> settings = importer_settings(read, format, options.file);
   if (options.cell_m && !takes_setting(format, "cell"))
     throw Error(Errc::invalid_argument, options.file + ": --cell is for point clouds, and this is " + format.name);
@@ -102,8 +106,9 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
   }
   ProgressLine line(program.console, "reading " + options.file);
-  auto glb = importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
-                               {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  auto glb =
+      importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
+                        {.report = [&](double done) { line.update(done); }, .stop = program.stop}, read.beside);
   if (glb.empty()) throw Stopped{};
   if ((read.unit || read.up) && !takes_setting(format, "unit"))
     glb = in_metres(glb, read.unit.value_or(Unit::metre), read.up.value_or(UpAxis::y));

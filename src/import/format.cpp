@@ -21,7 +21,7 @@ constexpr const char* kMesh = "vantage-import-mesh";
 constexpr const char* kCloud = "vantage-import-cloud";
 constexpr Format kGltf{"glTF", ".glb .gltf .b3dm ", nullptr};
 constexpr Format kPacked{"compressed glTF", ".gltf .gz ", "vantage-import-gltf"};
-constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc"};
+constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc", "unit", true};
 constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
@@ -181,6 +181,8 @@ std::string mistaken_for_a_model(const Head& head) {
   const std::string_view text = without_blanks(head.bytes);
   for (const Mistaken& other : kMistaken)
     if (std::string_view(head.bytes).starts_with(other.begins) || text.starts_with(other.begins)) return other.is;
+  if (text.starts_with("{") && text.find("ifcx") != std::string::npos && text.find("\"asset\"") == std::string::npos)
+    return "IFC 5 (ifcx), a draft that no importer reads; export IFC 4.3 or IFC 4 as STEP text (.ifc)";
   if (text.starts_with("<")) {
     const std::string root = root_element(text);
     if (root == "html" || lower(text.substr(0, 14)) == "<!doctype html")
@@ -332,10 +334,12 @@ void require_file(const std::filesystem::directory_entry& entry) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
+namespace {
+
+std::vector<std::filesystem::path> files_at(const std::filesystem::path& file) {
   std::error_code failure;
   if (!std::filesystem::is_directory(file, failure)) return {file};
-  constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan};
+  constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan, &kIfc};
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(file, failure))
     if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); })) {
@@ -346,20 +350,30 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
   if (files.empty())
     throw Error(Errc::malformed_file,
                 file.string() +
-                    ": a folder is a site if it holds scans (E57, PTX, LAS, PLY, XYZ, PCD), or floor plans "
-                    "in DXF, a file for each storey; this one holds neither");
+                    ": a folder is a site if it holds scans (E57, PTX, LAS, PLY, XYZ, PCD), IFC models, or floor plans "
+                    "in DXF, a file for each storey; this one holds none of them");
   std::ranges::sort(files);
   return files;
 }
 
-Recognised recognise(const std::filesystem::path& file) {
-  if (const std::vector<std::filesystem::path> files = files_of(file); files.front() != file) {
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const std::vector<std::string>& beside) {
+  std::vector<std::filesystem::path> files = files_at(file);
+  for (const std::string& other : beside)
+    for (std::filesystem::path& one : files_at(other)) files.push_back(std::move(one));
+  return files;
+}
+
+Recognised recognise(const std::filesystem::path& file, const std::vector<std::string>& beside) {
+  if (const auto files = files_of(file, beside); files.size() > 1 || files.front() != file) {
     const Recognised first = recognise(files.front());
     for (const std::filesystem::path& other : files) {
       const Format* const format = recognise(other).format;
       if (!format->several)
         throw Error(Errc::malformed_file, other.string() + ": this is " + format->name +
-                                              ", and a folder is a site of scans, or of floor plans, alone");
+                                              ", and several files are one site if they are IFC models, scans or "
+                                              "floor plans");
       if (format != first.format)
         throw Error(Errc::malformed_file, other.string() + ": this is " + format->name + ", and " +
                                               files.front().filename().string() + " is " + first.format->name +
@@ -371,12 +385,12 @@ Recognised recognise(const std::filesystem::path& file) {
   if (!head) return {&kGltf};
   if (is_packed(file, *head)) return {&kPacked};
   const Format* by_extension = format_by_extension(file);
+  if (const std::string other = mistaken_for_a_model(*head); !other.empty())
+    throw Error(Errc::malformed_file, file.string() + ": this is " + other);
   if (const Format* format = format_by_content(*head); format && format->importer == nullptr) {
     if (!by_extension || by_extension == format) return {format};
     return {format, std::string("it is named as ") + by_extension->name + ", but holds glTF, and is read as that"};
   }
-  if (const std::string other = mistaken_for_a_model(*head); !other.empty())
-    throw Error(Errc::malformed_file, file.string() + ": this is " + other);
   const Format* format = format_by_content(*head);
   if (!format) format = by_extension;
   if (!format) {

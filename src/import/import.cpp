@@ -277,10 +277,11 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 }  // namespace
 
 std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits,
-                                 const std::vector<std::string>& settings, const Progress& progress) {
+                                 const std::vector<std::string>& settings, const Progress& progress,
+                                 const std::vector<std::string>& beside) {
   limits.memory = memory_limit(limits.memory);
   limits.memory -= std::min(limits.memory / 8, kCode);
-  std::vector<fs::path> files = files_of(file);
+  std::vector<fs::path> files = files_of(file, beside);
   for (fs::path& one : files) one = fs::absolute(one);
   limits.cpu_s = std::min(limits.cpu_s, seconds_for(files));
   limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors

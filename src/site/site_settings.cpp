@@ -41,6 +41,9 @@ auto if_given(Value value, Interval interval) {
 void add_scene(Rows& rows) {
   rows.group("Scene")
       .texts(
+          "beside", "FILE", "Further files of the same site: IFC models, scans or floor plans, as the first one is",
+          [](SiteOptions & o) -> auto& { return o.scene.beside; })
+      .texts(
           "surveyed", "PATTERN", "Nodes to survey, by name; * is any text, ? any letter",
           [](SiteOptions & o) -> auto& { return o.scene.surveyed; })
       .texts(

@@ -741,13 +741,13 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
 }  // namespace
 
 Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
-  const importers::Recognised recognised = importers::recognise(file);
+  const importers::Recognised recognised = importers::recognise(file, options.beside);
   const auto settings = importer_settings(options, *recognised.format, file.string());
   if (!recognised.format->importer)
     return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); },
                       file.string(), options, recognised.note);
   const std::vector<std::uint8_t> glb =
-      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes}, settings);
+      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes}, settings, {}, options.beside);
   return load_scene([&](LoadBudget& budget) { return gltf::File(glb, file.string(), budget); }, file.string(), options,
                     recognised.note, takes_setting(*recognised.format, "unit"));
 }

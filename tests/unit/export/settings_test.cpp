@@ -100,6 +100,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false},
+    {"beside", [](SceneOptions& o) { o.beside = {"structure.ifc"}; }, false},
     {"wall_layers", [](SceneOptions& o) { o.wall_layers = {"A-WALL"}; }, false},
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
     {"shared_meshes", [](SceneOptions& o) { o.shared_meshes = SharedMeshes::always; }, false},
