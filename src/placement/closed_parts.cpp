@@ -37,6 +37,35 @@ double GroundField::reached_area() const {
   return area;
 }
 
+// Of these samples, those of level strips no longer than a rung: boards of a shelf and ledges of a wall are longer.
+// The others are unmarked.
+std::vector<std::uint32_t> GroundField::narrow_ones(std::vector<std::uint8_t>& marked) const {
+  const double longest = 5 * radius_;  // 1.5 m
+  const auto level = static_cast<float>(0.12 * climb_);
+  std::vector<std::uint32_t> narrow, strip;
+  std::vector<std::uint8_t> seen(z_.size(), 0);
+  for (std::uint32_t seed = 0; seed < z_.size(); ++seed) {
+    if (!marked[seed] || seen[seed]) continue;
+    strip.assign(1, seed), seen[seed] = 1;
+    glm::dvec2 least = middle(column_[seed]), most = least;
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+      const glm::dvec2 p = middle(column_[strip[k]]);
+      least = glm::min(least, p), most = glm::max(most, p);
+      for_neighbours(strip[k], [&](std::uint32_t n) {
+        if (!marked[n] || seen[n] || std::abs(z_[n] - z_[strip[k]]) > level) return;
+        seen[n] = 1;
+        strip.push_back(n);
+      });
+    }
+    if (std::max(most.x - least.x, most.y - least.y) <= longest)
+      narrow.insert(narrow.end(), strip.begin(), strip.end());
+    else
+      for (const std::uint32_t s : strip) marked[s] = 0;
+  }
+  std::ranges::sort(narrow);
+  return narrow;
+}
+
 // Samples with room and rungs are linked if one gets from one to the other with the hands. A rung has another one, or a
 // floor, a rung's height above or below it, and room for a body upright before it.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> GroundField::climbs(const MeshTree& tree) const {
@@ -52,18 +81,19 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> GroundField::climbs(const M
           if (std::abs(double{z_[n]} - z_[sample]) <= most) visit(n);
       }
   };
-  std::vector<std::uint32_t> rungs;
-  for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (has_room(s)) continue;
+  std::vector<std::uint8_t> is_rung(z_.size(), 0);
+  parallel::for_all(std::size_t{0}, z_.size(), [&](std::size_t k) {
+    const auto s = static_cast<std::uint32_t>(k);
+    if (has_room(s)) return;
     bool above = false, below = false;
     for_near(s, near / 2 + 1, [&](std::uint32_t n) {
       const double rise = double{z_[n]} - z_[s];
       above = above || rise >= least, below = below || rise <= -least;
     });
-    if (above && below) rungs.push_back(s);
-  }
+    is_rung[k] = above && below;
+  });
+  std::vector<std::uint32_t> rungs = narrow_ones(is_rung);
   if (rungs.size() > kMostRungs) return {};
-  std::vector<std::uint8_t> is_rung(z_.size(), 0);
   std::vector<std::uint8_t> climbed(rungs.size(), 0);
   parallel::for_all(std::size_t{0}, rungs.size(), [&](std::size_t k) {
     const glm::dvec2 p = middle(column_[rungs[k]]);
@@ -87,13 +117,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> GroundField::climbs(const M
   return links;
 }
 
-GroundField::Ways GroundField::ways_from_reached(const MeshTree& tree) const {
+GroundField::Ways GroundField::ways_from_reached() const {
   Ways ways{std::vector<std::uint8_t>(z_.size(), kEfforts), std::vector<std::uint32_t>(z_.size(), nowhere)};
   std::array<std::vector<std::uint32_t>, kEfforts> open;
   std::vector<std::uint8_t> done(z_.size(), 0);
   for (std::uint32_t s = 0; s < z_.size(); ++s)
     if (has_room(s) && access_[part_[s]] == Access::reached) ways.effort[s] = walk, open[walk].push_back(s);
-  const auto links = climbs(tree);
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
   for (std::size_t now = 0; now < kEfforts;) {
     if (open[now].empty()) {
@@ -115,8 +144,8 @@ GroundField::Ways GroundField::ways_from_reached(const MeshTree& tree) const {
       if (!(taken_[n] & (kBeside | kOverhead))) return go(n, through_door);
       if (!(taken_[n] & kLow)) go(n, stoop);
     });
-    for (auto link = std::lower_bound(links.begin(), links.end(), std::pair{s, 0U});
-         link != links.end() && link->first == s; ++link)
+    for (auto link = std::lower_bound(climbs_.begin(), climbs_.end(), std::pair{s, 0U});
+         link != climbs_.end() && link->first == s; ++link)
       go(link->second, climb);
     if (!has_room(s)) continue;
     for_columns_beside(column_[s], across, [&](std::uint32_t other) {
@@ -341,7 +370,7 @@ void GroundField::enter_closed(const MeshTree& tree) {
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i), all += parts_[i].area(cell_);
   if (all < enough) return;
-  const Ways ways = ways_from_reached(tree);
+  const Ways ways = ways_from_reached();
   const std::vector<std::uint32_t> first = first_closed(ways);
   std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, ClosedPart>>> together;  // by the first on the way
   for (const std::uint32_t i : told) {
@@ -367,7 +396,7 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i);
   if (told.empty()) return closed;
-  const Ways ways = ways_from_reached(tree);
+  const Ways ways = ways_from_reached();
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);
     const bool sky = 2 * parts_[i].in_the_sky > parts_[i].samples;
@@ -380,8 +409,25 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
 std::vector<GroundField::Patch> GroundField::thin_floors() const {
   std::vector<Patch> patches;
   const auto level = static_cast<float>(0.04 * climb_);
+  // Narrow triangles that fill all columns around are a surface of slivers, which is a floor of its own.
+  constexpr double kMostFilled = 0.7;
+  const auto is_grating = [&](std::uint32_t sample) {
+    constexpr std::int64_t kAround = 4;
+    const std::int64_t x = column_[sample] % columns_, y = column_[sample] / columns_;
+    int all = 0, filled = 0;
+    for (std::int64_t ny = std::max<std::int64_t>(0, y - kAround); ny <= std::min<std::int64_t>(y + kAround, rows_ - 1);
+         ++ny)
+      for (std::int64_t nx = std::max<std::int64_t>(0, x - kAround);
+           nx <= std::min<std::int64_t>(x + kAround, columns_ - 1); ++nx) {
+        const auto other = static_cast<std::uint32_t>(ny * columns_ + nx);
+        for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n)
+          if ((taken_[n] & kThin) && std::abs(z_[n] - z_[sample]) <= level)
+            ++all, filled += (taken_[n] & kCovered) != 0;
+      }
+    return filled <= kMostFilled * all;
+  };
   const auto wanted = [&](std::uint32_t s) {
-    return (taken_[s] & kThin) && has_room(s) && access_[part_[s]] == Access::reached;
+    return (taken_[s] & kThin) && has_room(s) && access_[part_[s]] == Access::reached && is_grating(s);
   };
   // Runs of samples in a row, and equal runs of following rows.
   struct Run {

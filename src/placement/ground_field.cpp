@@ -198,7 +198,7 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   std::vector<std::uint8_t> water(scene.meshes.size());
   std::ranges::transform(scene.meshes, water.begin(), [](const MeshInfo& mesh) { return names_water(mesh.name); });
   struct Found {
-    std::vector<std::uint64_t> wide, thin;
+    std::vector<std::uint64_t> wide, thin, covered;  // covered: by narrow triangles at the middle
   };
   tbb::enumerable_thread_specific<Found> collected;
   const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -230,20 +230,22 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
           const glm::dvec2 p = middle(column);
           const auto z = static_cast<float>(t[0].z - (n.x * (p.x - t[0].x) + n.y * (p.y - t[0].y)) / n.z);
           raise_to(top_[column], z);
-          if (walkable && !narrow) own.wide.push_back(std::uint64_t{column} << 32 | ordered(z));
+          if (walkable) (narrow ? own.covered : own.wide).push_back(std::uint64_t{column} << 32 | ordered(z));
         }
       });
     }
   };
   parallel::for_all(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
-  std::vector<std::uint64_t> all, wide;
+  std::vector<std::uint64_t> all, wide, covered;
   for (const Found& some : collected) {
     all.insert(all.end(), some.thin.begin(), some.thin.end());
     wide.insert(wide.end(), some.wide.begin(), some.wide.end());
+    covered.insert(covered.end(), some.covered.begin(), some.covered.end());
   }
   const bool any_thin = !all.empty();
   all.insert(all.end(), wide.begin(), wide.end());
-  if (any_thin) parallel::sort(wide.begin(), wide.end());
+  all.insert(all.end(), covered.begin(), covered.end());
+  if (any_thin) parallel::sort(wide.begin(), wide.end()), parallel::sort(covered.begin(), covered.end());
   if (plane)
     for (std::size_t column = 0; column < count; ++column)
       all.push_back(std::uint64_t{column} << 32 | ordered(static_cast<float>(plane->z)));
@@ -256,13 +258,15 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
     const auto column = static_cast<std::uint32_t>(all[i] >> 32);
     const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
     const bool is_thin = any_thin && !std::ranges::binary_search(wide, all[i]);
+    const bool at_middle = is_thin && std::ranges::binary_search(covered, all[i]);
     if (!column_.empty() && column_.back() == column && z - z_.back() < apart) {
       if (!is_thin) taken_.back() = 0;
+      if (at_middle && (taken_.back() & kThin)) taken_.back() |= kCovered;
       continue;
     }
     column_.push_back(column);
     z_.push_back(z);
-    taken_.push_back(is_thin ? kThin : 0);
+    taken_.push_back(static_cast<std::uint8_t>((is_thin ? kThin : 0) | (at_middle ? kCovered : 0)));
     ++first_[column + 1];
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
@@ -518,11 +522,10 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   };
   const double largest = std::max(largest_of(open), largest_of(closed));
   only_above(open, large_open * largest);
-  std::erase_if(open, [&](const Candidate& c) {
-    const bool top = c.sky && is_top(tree, c.part);
-    if (top) roofs.push_back(c);
-    return top;
-  });
+  // A block of terrain ends like the top of something, so that tops go only before other ground under the sky.
+  std::vector<Candidate> ground;
+  for (const Candidate& c : open)
+    if (c.sky && !is_top(tree, c.part)) ground.push_back(c);
   std::vector<Candidate> small = closed;
   std::erase_if(small, [&](const Candidate& c) { return c.area >= large_open * largest || c.area < 10 * room(); });
   only_above(closed, large_open * largest);
@@ -548,9 +551,8 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
   // One enters from the largest ground under the sky at any height, but a building from its lowest storey.
-  std::ranges::sort(choice, std::ranges::greater{}, &Candidate::area);
-  if (!choice.empty() && choice.front().sky)
-    std::erase_if(choice, [](const Candidate& c) { return !c.sky; });
+  if (!ground.empty() && largest_of(ground) >= largest_of(open))
+    choice = ground;
   else
     only_lowest(choice);
   std::ranges::sort(choice, [](const Candidate& a, const Candidate& b) {
@@ -618,6 +620,11 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
   }
   tell_apart();
   look_beyond_high_steps();
+  for (std::uint32_t i = 0; i < parts_.size(); ++i)
+    if (may_be_told(i)) {
+      climbs_ = climbs(tree);
+      break;
+    }
 }
 
 double GroundField::outline() const {

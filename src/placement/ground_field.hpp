@@ -119,6 +119,7 @@ class GroundField {
   static constexpr std::uint8_t kLeaf = 8;      // a closed leaf or a pane stands there
   static constexpr std::uint8_t kLow = 16;      // something is beside or above a person who stoops
   static constexpr std::uint8_t kThin = 32;     // all surfaces there are narrower than a column
+  static constexpr std::uint8_t kCovered = 64;  // one of these lies at the middle of the column
   static constexpr std::uint8_t kObstacles = kBeside | kOverhead | kLeaf;  // to a person who walks upright
   static constexpr double kStoops = 0.8;                                   // of the height of a passage: 1.5 m
 
@@ -142,9 +143,10 @@ class GroundField {
     std::vector<std::uint8_t> effort;  // per sample; kEfforts: none
     std::vector<std::uint32_t> from;   // per sample: the one before it
   };
-  Ways ways_from_reached(const MeshTree& tree) const;
+  Ways ways_from_reached() const;
   // Samples that are linked by rungs or steep steps, both ways, sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs(const MeshTree& tree) const;
+  std::vector<std::uint32_t> narrow_ones(std::vector<std::uint8_t>& marked) const;
   ClosedPart closed_part(const MeshTree& tree, const Ways& ways, std::uint32_t part) const;
   // The closed part through which the way to each closed part leads first.
   std::vector<std::uint32_t> first_closed(const Ways& ways) const;
@@ -194,8 +196,9 @@ class GroundField {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> leaves_;  // samples at closed leaves and panes, and their mesh
   std::vector<std::uint32_t> part_;                              // per sample with room
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> begin_, members_;  // samples with room, by their parts
-  std::vector<Access> access_;                  // per part
+  std::vector<std::uint32_t> begin_, members_;                   // samples with room, by their parts
+  std::vector<Access> access_;                                   // per part
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs_;  // if any part is to be told
   std::vector<glm::dvec3> entries_;
   std::vector<ClosedPart> entered_;
   std::optional<HighSteps> high_steps_;
