@@ -223,35 +223,41 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
   struct Rim {
     std::uint32_t sample;
     glm::dvec3 out;
+    bool bare;  // no surface goes on
   };
   std::vector<Rim> rims;
   const double step = std::max(climb_, 2.2 * std::tan(slope_) * cell_);
   for (const std::uint32_t s : members(part)) {
     const std::int64_t x = column_[s] % columns_, y = column_[s] / columns_;
     for (const auto& [dx, dy] : {std::pair<int, int>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-      bool bare = true;
-      for (std::int64_t far = 1; far <= 2 && bare; ++far) {
+      bool goes_on = false, bare = true;
+      for (std::int64_t far = 1; far <= 2; ++far) {
         const std::int64_t nx = x + dx * far, ny = y + dy * far;
         if (nx < 0 || ny < 0 || nx >= columns_ || ny >= rows_) continue;
         const auto other = static_cast<std::uint32_t>(ny * columns_ + nx);
-        for (std::uint32_t n = first_[other]; n < first_[other + 1] && bare; ++n)
-          bare = std::abs(double{z_[n]} - z_[s]) > step;
+        for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
+          if (std::abs(double{z_[n]} - z_[s]) > step) continue;
+          bare = false, goes_on = goes_on || part_[n] == part;
+        }
       }
-      if (bare) rims.push_back({s, {double(dx), double(dy), 0}});
+      if (!goes_on) rims.push_back({s, {double(dx), double(dy), 0}, bare});
     }
   }
-  if (rims.empty()) return false;
   const std::size_t stride = std::max<std::size_t>(1, rims.size() / kMost);
   std::size_t looked = 0, steep = 0;
   for (std::size_t k = 0; k < rims.size(); k += stride) {
-    const glm::dvec2 p = middle(column_[rims[k].sample]);
-    const auto face = [&](double below) {  // within the overhang of eaves
-      const glm::dvec3 from = glm::dvec3{p.x, p.y, z_[rims[k].sample] - below} + rims[k].out * (2 * cell_);
-      return tree.between(from, from - rims[k].out * (2 * cell_ + 3 * radius_));
+    const auto& [sample, out, bare] = rims[k];
+    const glm::dvec2 p = middle(column_[sample]);
+    // Beyond a parapet, or beside the bare edge; under eaves.
+    const double beyond = bare ? 2 * cell_ : 3.3 * radius_, under = 3 * radius_;
+    const auto met = [&](double above, double from, double to) {
+      const glm::dvec3 at{p.x, p.y, z_[sample] + above * height_};
+      return tree.between(at + out * from, at + out * to);
     };
-    ++looked, steep += face(0.25 * height_) && face(0.8 * height_);
+    ++looked;
+    if (!met(0.8, 0, beyond)) steep += met(-0.25, beyond, -under) && met(-0.8, beyond, -under);
   }
-  return static_cast<double>(steep) > kMostFaces * static_cast<double>(looked);
+  return looked > 0 && static_cast<double>(steep) > kMostFaces * static_cast<double>(looked);
 }
 
 double GroundField::open_ground_area(const MeshTree& tree) const {

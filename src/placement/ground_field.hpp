@@ -156,7 +156,7 @@ class GroundField {
   }
   bool is_attic(std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
-  // Whether it is the top of something: steep faces lead down from most of its bare edges.
+  // Whether it is the top of something: steep faces lead down under most of its edge.
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
   // Whether one sees what is reached, or out of the model, from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
