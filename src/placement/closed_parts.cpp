@@ -180,24 +180,23 @@ std::vector<std::uint32_t> GroundField::first_closed(const Ways& ways) const {
   return first;
 }
 
-// Floor under a slope of the roof, or under what else comes down to it, goes on where no headroom is.
+// Under a slope of the roof, floor where one only stoops goes along the sides.
 bool GroundField::is_attic(std::uint32_t part) const {
-  constexpr double kUnderEaves = 0.25;
+  constexpr double kUnderEaves_m = 0.4;  // of the side of a square as large, for a passage of 0.6 m
   std::vector<std::uint8_t> seen(z_.size(), 0);
-  std::vector<std::uint32_t> open;
-  open.assign(members(part).begin(), members(part).end());
-  const std::size_t with_room = open.size();
-  std::size_t without = 0;
+  std::vector<std::uint32_t> open(members(part).begin(), members(part).end());
+  std::size_t stooped = 0;
   while (!open.empty()) {
     const std::uint32_t s = open.back();
     open.pop_back();
     for_neighbours(s, [&](std::uint32_t n) {
-      if (seen[n] || !(taken_[n] & kOverhead)) return;
-      seen[n] = 1, ++without;
+      if (seen[n] || has_room(n) || (taken_[n] & (kLow | kLeaf))) return;
+      seen[n] = 1, ++stooped;
       open.push_back(n);
     });
   }
-  return static_cast<double>(without) > kUnderEaves * static_cast<double>(with_room);
+  const double strip = kUnderEaves_m / 0.3 * radius_;
+  return static_cast<double>(stooped) * cell_ * cell_ > strip * std::sqrt(parts_[part].area(cell_));
 }
 
 // Whether a person can turn on it, as on a platform but not on a rack.
