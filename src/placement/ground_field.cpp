@@ -160,7 +160,9 @@ bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
   if (scene.shares() && range.triangle_count > kMostTriangles) return false;
   const auto leaf = leaf_around(
       range.triangle_count, [&](std::uint32_t triangle) { return corners_of(scene, range.first_triangle + triangle); });
-  return leaf && (scene.meshes[mesh].glass || is_plain_leaf(*leaf) || names_a_door(scene.meshes[mesh].name));
+  constexpr double kPanel_m = 0.06;  // thinner than a wall
+  return leaf && (scene.meshes[mesh].glass || is_plain_leaf(*leaf) || leaf->thickness <= kPanel_m ||
+                  names_a_leaf(scene.meshes[mesh].name));
 }
 
 }  // namespace
