@@ -305,12 +305,13 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   return false;
 }
 
-// Ground under the sky as large as a hall, sealed parts as large as a room, and covered ones as large as a hall.
+// Ground under the sky that is large enough to be entered, sealed parts as large as a room, and covered ones as large
+// as a hall.
 bool GroundField::may_be_told(std::uint32_t part) const {
   const Part& p = parts_[part];
   const double area = p.area(cell_), hall = 10 * room();
   if (access_[part] == Access::reached) return false;
-  if (2 * p.in_the_sky > p.samples) return area >= hall;
+  if (2 * p.in_the_sky > p.samples) return area >= kEnteredRooms * room();
   return area >= (access_[part] == Access::sealed ? 3 * room() : hall);
 }
 

@@ -256,11 +256,16 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   // Triangles that meet over a middle, and surfaces that nearly touch, count as one sample.
   const auto apart = static_cast<float>(tolerance_share * height_);
   first_.assign(count + 1, 0);
+  const auto is_next = [&](const std::vector<std::uint64_t>& keys, std::size_t& at, std::uint64_t key) {
+    while (at < keys.size() && keys[at] < key) ++at;
+    return at < keys.size() && keys[at] == key;
+  };
+  std::size_t next_wide = 0, next_covered = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto column = static_cast<std::uint32_t>(all[i] >> 32);
     const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
-    const bool is_thin = any_thin && !std::ranges::binary_search(wide, all[i]);
-    const bool at_middle = is_thin && std::ranges::binary_search(covered, all[i]);
+    const bool is_thin = any_thin && !is_next(wide, next_wide, all[i]);
+    const bool at_middle = is_thin && is_next(covered, next_covered, all[i]);
     if (!column_.empty() && column_.back() == column && z - z_.back() < apart) {
       if (!is_thin) taken_.back() = 0;
       if (at_middle && (taken_.back() & kThin)) taken_.back() |= kCovered;
