@@ -74,7 +74,6 @@ std::vector<Box> boxes_of(std::span<const PlacedRun> runs) {
 struct Leaf : DoorLeaf {
   std::size_t mesh = 0;
   bool named = false;
-  bool single = true;  // it has the size of a door of one leaf
   std::vector<std::uint32_t> triangles;
   // The panel alone, without a frame and its trims: from and to, through the leaf, from its middle. None, if a pane of
   // another mesh fills the leaf.
@@ -331,7 +330,7 @@ std::optional<std::pair<double, double>> panel_among(const Reading& model, std::
 std::optional<Leaf> leaf_of(const Reading& model, std::size_t mesh, std::vector<std::uint32_t> triangles) {
   const auto box = leaf_around(triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); });
   if (!box) return std::nullopt;
-  Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), true, std::move(triangles), {}};
+  Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), std::move(triangles), {}};
   leaf.panel = panel_among(model, leaf.triangles, leaf);
   if (!leaf.named && !is_plain_leaf(leaf.alone())) return std::nullopt;
   return leaf;
@@ -342,7 +341,7 @@ std::optional<Leaf> gate_of(const Reading& model, std::size_t mesh, std::vector<
   const auto box = leaf_around(
       triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); }, kGateSizes);
   if (!box) return std::nullopt;
-  Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), false, std::move(triangles), {}};
+  Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), std::move(triangles), {}};
   leaf.panel = panel_among(model, leaf.triangles, leaf);
   return leaf;
 }
@@ -417,7 +416,7 @@ std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, cons
     }
     DoorLeaf all = together(door);
     if (all.width > kWidestOpening) continue;
-    Leaf whole{all, door.front().mesh, false, false, {}, {}};
+    Leaf whole{all, door.front().mesh, false, {}, {}};
     for (const Leaf& leaf : door)
       whole.triangles.insert(whole.triangles.end(), leaf.triangles.begin(), leaf.triangles.end());
     std::ranges::sort(whole.triangles);
