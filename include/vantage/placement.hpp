@@ -40,7 +40,7 @@ struct WalkableOptions {
   double passage_height_m = 1.9;  ///< Height of the lowest such opening.
   double climb_m = 0.25;          ///< Highest step that a person takes.
   std::vector<Vec3> enter = {};   ///< Entrances of the site, survey frame; empty: found automatically.
-  /// Whether large parts that something bars the way to belong to the search area, too, unless `enter` is given: ground
+  /// Adds large parts that something bars the way to to the search area, unless `enter` is given: ground
   /// under the sky and rooms, from a tenth of the reached floor or 20 m² on. `SearchArea::entered()` lists them.
   bool enter_closed = true;
   /// Lowest and highest level of the ground, survey frame. Like the two below, it also limits a marked search area.
@@ -77,7 +77,7 @@ struct LeftOut {
   std::vector<std::array<std::uint32_t, 3>> triangles = {};
 };
 
-/// What bars the way to a part of the floor, on the easiest way there.
+/// Obstacle to a part of the floor, on the easiest way there.
 enum class Bar {
   door,      ///< A closed leaf, gate or pane.
   headroom,  ///< A low opening, in which a person stoops.
@@ -87,7 +87,7 @@ enum class Bar {
 };
 std::string to_string(Bar);
 
-/// What a closed part of the floor is.
+/// Kinds of closed parts of the floor.
 enum class ClosedKind {
   room,    ///< A room, a storey or a platform.
   ground,  ///< Ground under the sky.
@@ -107,8 +107,8 @@ struct ClosedPart {
   double height_m = 0;  ///< Least headroom (`headroom`) or highest step (`climb`, `step`) on the way there.
   /// Names of the closed leaves and panes on the way to it.
   std::vector<std::string> doors = {};
-  /// Whether the surveyor has to decide if it belongs to the survey: a room or ground, as opposed to an attic, or most
-  /// of all floor.
+  /// True if the surveyor has to decide whether it belongs to the survey: a room or ground, as opposed to an attic, or
+  /// most of all floor.
   bool to_decide() const { return kind == ClosedKind::room || kind == ClosedKind::ground || share >= 0.5; }
 };
 

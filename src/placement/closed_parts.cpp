@@ -37,8 +37,8 @@ double GroundField::reached_area() const {
   return area;
 }
 
-// Of these samples, those of level strips no longer than a rung: boards of a shelf and ledges of a wall are longer.
-// The others are unmarked.
+// Returns those of these samples that lie on level strips no longer than a rung: boards of a shelf and ledges of a wall
+// are longer. The others are unmarked.
 std::vector<std::uint32_t> GroundField::narrow_ones(std::vector<std::uint8_t>& marked) const {
   const double longest = 5 * radius_;  // 1.5 m
   const auto level = static_cast<float>(0.12 * climb_);
@@ -199,7 +199,7 @@ bool GroundField::is_attic(std::uint32_t part) const {
   return static_cast<double>(stooped) * cell_ * cell_ > strip * std::sqrt(parts_[part].area(cell_));
 }
 
-// Whether a person can turn on it, as on a platform but not on a rack.
+// True if a person can turn on it, as on a platform but not on a rack.
 bool GroundField::is_wide(std::uint32_t part) const {
   const auto far = static_cast<std::int64_t>(std::ceil(2.5 * radius_ / cell_));
   for (const std::uint32_t s : members(part)) {
@@ -352,7 +352,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
     return closed;
   }
   if (effort == high_step || effort == climb) {
-    // What stands on the floor is climbed, too: only what is wide or spans a floor is one.
+    // People climb onto goods, too: only a wide part is a floor.
     if (!is_wide(number)) closed.kind = ClosedKind::top;
     if (effort == high_step && is_attic(number)) closed.kind = ClosedKind::attic;
   }

@@ -153,7 +153,7 @@ void raise_to(float& top, float z) {
   }
 }
 
-// Whether a mesh is a closed leaf or a pane: it stops people until it is opened, or while nobody finds the door in it.
+// True for a closed leaf or a pane: it stops people until it is opened, or while nobody finds the door in it.
 bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
   constexpr std::uint32_t kMostTriangles = 20'000;  // of a leaf, where nodes share meshes
   const MeshRange& range = scene.ranges[mesh];

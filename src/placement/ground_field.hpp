@@ -112,7 +112,7 @@ class GroundField {
     double area(double cell) const { return static_cast<double>(samples) * cell * cell; }
   };
   static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
-  // What is known of a sample, as bits.
+  // Facts about a sample, as bits.
   static constexpr std::uint8_t kBeside = 1;    // something stands beside a person there
   static constexpr std::uint8_t kOverhead = 2;  // something hangs above
   static constexpr std::uint8_t kAtDoor = 4;    // a door that counts as open stands there
@@ -156,9 +156,9 @@ class GroundField {
   }
   bool is_attic(std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
-  // Whether it is the top of something: steep faces lead down under most of its edge.
+  // True for the top of something: steep faces lead down under most of its edge.
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
-  // Whether one sees what is reached, or out of the model, from it.
+  // True if one sees what is reached, or out of the model, from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
   bool may_be_told(std::uint32_t part) const;
   bool has_room(std::uint32_t sample) const;

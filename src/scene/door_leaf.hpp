@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a door's leaf looks like.
+// The shape of a door's leaf.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct LeafSizes {
   double lowest = 1.75, highest = 3.0, narrowest = 0.55, widest = 2.6, thickest = 0.4;
   bool high(double height) const { return height >= lowest && height <= highest; }
 };
-// Of gates, and of the leaves that stand side by side in one opening.
+// Sizes of gates, and of the leaves that stand side by side in one opening.
 inline constexpr LeafSizes kGateSizes{.highest = 5.0, .narrowest = 0.4, .widest = 6.0, .thickest = 0.25};
 
 // The box around triangles, if it has such a size.

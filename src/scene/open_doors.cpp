@@ -353,7 +353,7 @@ bool leads_through(const Reading& model, std::span<const std::uint32_t> others, 
   return clear(sight.before) && clear(sight.behind);
 }
 
-// What stands around a panel: a wall that is thicker, in the plane of one of whose faces it may lie, or anything, such
+// Surroundings of a panel: a wall that is thicker, in the plane of one of whose faces it may lie, or anything, such
 // as posts and panes.
 struct Around {
   bool wall_beside = false, wall_above = false, frame = false;
@@ -374,7 +374,7 @@ bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, cons
   return found.wall_beside && found.wall_above;
 }
 
-// Whether two leaves stand side by side in one opening.
+// True for two leaves side by side in one opening.
 bool side_by_side(const DoorLeaf& a, const DoorLeaf& b) {
   const glm::dvec3 between = b.middle - a.middle;
   const double gap = std::abs(dot(between, a.along)) - (a.width + b.width) / 2;
@@ -382,7 +382,7 @@ bool side_by_side(const DoorLeaf& a, const DoorLeaf& b) {
          std::abs(gap) <= kGap && std::abs(between.z) <= kGap && std::abs(a.height - b.height) <= kGap;
 }
 
-// What several leaves make up.
+// The box that several leaves make up.
 DoorLeaf together(std::span<const Leaf> leaves) {
   DoorLeaf all = leaves.front().alone();
   double from = std::numeric_limits<double>::infinity(), to = -from, before = from, behind = -from;

@@ -47,7 +47,7 @@ void stand(const RandomSite& random, const Scene& scene, bool whole) {
     for (const Vec3& aside : {Vec3{kEdge, 0, 0}, {-kEdge, 0, 0}, {0, kEdge, 0}, {0, -kEdge, 0}})
       if (standing.surface != Surface::floor) standing = random.site.at(*p + aside);
     const std::string where = standing.surface != Surface::floor ? to_string(standing.surface) : standing.place;
-    // What no way leads to may be planned, and is told then.
+    // Parts that no way leads to may be planned, and are told then.
     const bool shut = random.shut.contains(standing.place);
     if (shut && standing.surface == Surface::floor) entered.insert(standing.place);
     const bool off = standing.surface != Surface::floor || (shut && area.entered().empty());

@@ -126,7 +126,7 @@ TEST(ClosedParts, ClosedLeavesAndPanesAreNamed) {
   EXPECT_EQ(window.entered()[0].bar, Bar::no_way);
 }
 
-// Of a room without any opening nobody can tell that it is one.
+// Nobody can tell a room from a hollow if it has no opening.
 TEST(ClosedParts, WhatHasNoOpeningIsNoRoom) {
   Builder b = rooms_with_opening(1.0, 0, 2.1);
   slab(b, 20, 0, 24, 6, 0);
@@ -182,7 +182,7 @@ TEST(ClosedParts, ALadderIsAWay) {
   ASSERT_FALSE(up.entered().empty());
   EXPECT_EQ(up.entered()[0].bar, Bar::climb);
   EXPECT_LE(up.entered()[0].height_m, 0.45);
-  // Without it the storey has a window, and is planned, too.
+  // The storey has a window, and is planned without the ladder, too.
   const SearchArea none = SearchArea::build(storeys(false).scene());
   ASSERT_FALSE(none.entered().empty());
   EXPECT_EQ(none.entered()[0].bar, Bar::no_way);
