@@ -28,7 +28,7 @@ const SettingTable<SiteOptions>& floor_plan_settings() {
 struct ImportOptions {
   std::string file;
   std::optional<std::string> output;
-  SiteOptions site;              // as far as an importer takes them
+  SiteOptions site;                    // as far as an importer takes them
   std::optional<double> cell_m;        // of a point cloud
   std::optional<std::string> columns;  // of a point cloud in text
   bool json = false;
@@ -46,7 +46,8 @@ struct ImportOptions {
                cell_m, {.low = 0.005, .high = 10})
         ->group("Point cloud");
     add_text(command, "--columns", "LIST",
-             "Columns of a point cloud in text: x, y, z, and - for others, e.g. -,x,y,z; recognised by default", columns)
+             "Columns of a point cloud in text: x, y, z, and - for others, e.g. -,x,y,z; recognised by default",
+             columns)
         ->group("Point cloud");
     command.add_flag("--json", json, "Print one JSON object");
   }

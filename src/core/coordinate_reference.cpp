@@ -128,8 +128,7 @@ class Reference {
   Object with_metres(const PJ* system, bool parameters) const {
     Object altered(proj_crs_alter_cs_linear_unit(context_, system, "metre", 1, "EPSG", "9001"));
     if (altered && parameters)
-      altered.reset(
-          proj_crs_alter_parameters_linear_unit(context_, altered.get(), "metre", 1, "EPSG", "9001", 1));
+      altered.reset(proj_crs_alter_parameters_linear_unit(context_, altered.get(), "metre", 1, "EPSG", "9001", 1));
     if (altered) altered.reset(proj_alter_name(context_, altered.get(), (name_of(system) + " in metres").c_str()));
     return altered;
   }

@@ -20,8 +20,8 @@ struct CoordinateReference {
   std::string name = {};
   Axis first = {}, second = {};
   std::optional<Axis> height = {};  // if the system has one
-  // Well-known text of version 1 (OGC 01-009, as GDAL writes it) in one line; empty where version 1 has no words for the
-  // system. The other one is that of the same system with all lengths in metres and heights upwards.
+  // Well-known text of version 1 (OGC 01-009, as GDAL writes it) in one line; empty where version 1 has no words for
+  // the system. The other one is that of the same system with all lengths in metres and heights upwards.
   std::string text = {}, in_metres = {};
 
   bool has_lengths() const { return kind == Kind::projected || kind == Kind::local; }

@@ -68,8 +68,9 @@ void check(const CoordinateReference& system, const std::string& source) {
   if (system.kind == Kind::geographic)
     refuse(which + "longitude and latitude are angles; vantage's points are in metres: give a projected system");
   if (system.kind == Kind::geocentric)
-    refuse(which + "its axes begin in the middle of the earth, and vantage's point east, north and up: give a projected "
-                   "system");
+    refuse(which +
+           "its axes begin in the middle of the earth, and vantage's point east, north and up: give a projected "
+           "system");
   if (!system.has_lengths()) refuse(which + "it is no projected system; give one, as EPSG:25832");
   if (!system.has_usual_axes())
     refuse(which + "its axes point " + system.first.direction + " and " + system.second.direction +
@@ -104,8 +105,9 @@ std::string checked(const std::string& written, const std::string& source) {
   // LAS 1.4 needs version 1 (OGC 01-009).
   const std::string result = first_version ? text : system->text;
   if (result.empty())
-    refuse(source + ": its well-known text cannot be told in version 1 (OGC 01-009), which LAS 1.4 needs; give a system "
-                    "that begins with PROJCS");
+    refuse(source +
+           ": its well-known text cannot be told in version 1 (OGC 01-009), which LAS 1.4 needs; give a system "
+           "that begins with PROJCS");
   if (result.size() > 65'534) refuse(source + ": the well-known text is longer than LAS can hold");
   const auto unit = system ? std::nullopt : unit_of(result);
   if (unit && std::abs(*unit - 1) > 1e-9)

@@ -29,8 +29,8 @@ using nlohmann::json;
 constexpr std::int32_t kClosedGap = 3;
 // A person's space above ground, in metres: known if so much of it was seen through.
 constexpr double kFromGround_m = 0.3, kHeight_m = 1.8, kKnownShare = 0.5;
-constexpr double kGround = 0.8;   // least z of a normal of ground
-constexpr double kUpright = 0.3;  // largest z of a wall's
+constexpr double kGround = 0.8;      // least z of a normal of ground
+constexpr double kUpright = 0.3;     // largest z of a wall's
 constexpr double kFarthest_m = 1e9;  // of a scene's coordinates
 // Rays of all scans that are followed to find free space; more say nothing new.
 constexpr std::uint64_t kMostRays = 20'000'000;
@@ -51,10 +51,17 @@ std::string with_unit(double value, const char* unit) {
   return std::string(text) + unit;
 }
 
-// Triangles of one node, about the cloud's middle; Y up, as glTF has it.
+// A place with Z up as glTF has it, with Y up, or as it is.
+std::array<double, 3> up_axis(const Eigen::Vector3d& p, bool y_up) {
+  return y_up ? std::array{p.x(), p.z(), -p.y()} : std::array{p.x(), p.y(), p.z()};
+}
+
+// Triangles of one node, about the cloud's middle.
 class Surface {
  public:
   explicit Surface(const char* name) : name_(name) {}
+
+  void stand_up(bool y_up) { y_up_ = y_up; }
 
   void add(const FlatRegion& region, const std::vector<Square>& squares, double cell_m, bool turned) {
     const std::vector<Rectangle> all = rectangles(squares);
@@ -92,7 +99,7 @@ class Surface {
     Eigen::Vector3d p;
     p[(region.axis + 1) % 3] = u, p[(region.axis + 2) % 3] = v, p[region.axis] = region.height(u, v);
     p *= cell_m;
-    for (const double c : {p.x(), p.z(), -p.y()}) positions_.push_back(static_cast<float>(c));
+    for (const double c : up_axis(p, y_up_)) positions_.push_back(static_cast<float>(c));
   }
   void add_triangle(std::array<std::uint32_t, 3> corners, bool forwards) {
     if (!forwards) std::swap(corners[1], corners[2]);
@@ -100,6 +107,7 @@ class Surface {
   }
 
   const char* name_;
+  bool y_up_ = true;
   std::vector<float> positions_;
   std::vector<std::uint32_t> indices_;
 };
@@ -162,7 +170,8 @@ class Converter {
       // Nothing on earth is that far but in millimetres.
       source_ = moved(std::move(source_), Eigen::Matrix3d::Identity(), 0.001);
       metric_ = true;
-      unit_note_ = "its coordinates are too large for metres, and are taken as millimetres; the setting unit tells another";
+      unit_note_ =
+          "its coordinates are too large for metres, and are taken as millimetres; the setting unit tells another";
       density = density_of(1);
     }
     double cell = 0;
@@ -236,6 +245,7 @@ class Converter {
   // `free`: null if nothing is known about it.
   void cover(const std::vector<FlatRegion>& regions, const FreeSpace* free) {
     const double square_m2 = grid_->cell_m() * grid_->cell_m();
+    for (Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_}) surface->stand_up(metric_);
     for (const FlatRegion& region : regions) {
       std::vector<Square> known = close_gaps(region.columns, kClosedGap), unknown;
       const bool ground = region.normal.z() >= kGround && region.axis == 2;
@@ -271,13 +281,11 @@ class Converter {
   void tell(std::uint32_t lone, std::uint32_t moving) {
     notes_ = source_->notes();
     const std::size_t scans = source_->scans().size();
-    notes_.push_back("a point cloud, " + counted(points_, "points") +
-                     (scans > 1 ? " of " + counted(scans, "scans") : std::string()) +
-                     ": surfaces are fitted in cells of " +
-                     (metric_ ? with_unit(100 * grid_->cell_m(), "cm")
-                              : with_unit(grid_->cell_m(), "of its unit of length")) +
-                     ", " +
-                     counted(triangles(), "triangles"));
+    notes_.push_back(
+        "a point cloud, " + counted(points_, "points") +
+        (scans > 1 ? " of " + counted(scans, "scans") : std::string()) + ": surfaces are fitted in cells of " +
+        (metric_ ? with_unit(100 * grid_->cell_m(), "cm") : with_unit(grid_->cell_m(), "in the file's unit")) + ", " +
+        counted(triangles(), "triangles"));
     if (lone > 0) notes_.push_back(counted(lone, "cells of lone points are left out"));
     if (far_ > 0) notes_.push_back(counted(far_, "points far from all others are left out"));
     if (moving > 0)
@@ -297,13 +305,14 @@ class Converter {
     Buffer buffer;
     json nodes = json::array(), meshes = json::array();
     const Eigen::Vector3d& middle = grid_->middle();
-    const json translation{middle.x(), middle.z(), -middle.y()};
+    const json translation = up_axis(middle, metric_);
     for (const Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_})
       surface->write(buffer, nodes, meshes, translation);
     json roots = json::array();
     for (std::size_t k = 0; k < nodes.size(); ++k) roots.push_back(k);
-    json vantage{{"up", "y"}, {"scanned", true}};
-    if (metric_) vantage["unit"] = "m";  // else the scene's reader recognises it, or asks
+    // Without a unit, which the reader of scenes then recognises or asks, the axes stay those that the user knows.
+    json vantage{{"up", metric_ ? "y" : "z"}, {"scanned", true}};
+    if (metric_) vantage["unit"] = "m";
     const std::string& crs = source_->crs();
     if (crs.starts_with("PROJCS[") || crs.starts_with("COMPD_CS[") || crs.starts_with("EPSG:")) vantage["crs"] = crs;
     return buffer.finish({{"asset",
@@ -359,8 +368,7 @@ bool take_setting(CloudSettings& settings, const std::string& word) {
   return true;
 }
 
-std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format,
-                                         const CloudSettings& settings) {
+std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format, const CloudSettings& settings) {
   const Reading reading{.own_unit = !settings.unit_m, .columns = settings.columns};
   std::vector<std::unique_ptr<PointSource>> sources;
   for (const std::filesystem::path& file : files) try {

@@ -36,7 +36,8 @@ void Density::add(const Eigen::Vector3d& p) {
   for (std::size_t s = 0; s < sizes_m.size(); ++s) {
     std::uint64_t hash = s;
     for (int axis = 0; axis < 3; ++axis)
-      hash = mixed(hash + static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / (sizes_m[s] * scale_)))));
+      hash = mixed(hash +
+                   static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / (sizes_m[s] * scale_)))));
     Sample& sample = samples_[s];
     if (hash & sample.mask) continue;
     ++sample.counts[hash];

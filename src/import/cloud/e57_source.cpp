@@ -158,8 +158,8 @@ class E57Source final : public PointSource {
   void read_scan(const Data3d& data, const std::string& name, std::uint32_t scan, const PointSink& sink) {
     std::vector<std::size_t> wanted;
     // Records may have both, of which each has its own state.
-    const Coordinates cartesian = want_coordinates(data, name, {"cartesianX", "cartesianY", "cartesianZ"},
-                                                   "cartesianInvalidState", wanted);
+    const Coordinates cartesian =
+        want_coordinates(data, name, {"cartesianX", "cartesianY", "cartesianZ"}, "cartesianInvalidState", wanted);
     Coordinates spherical;
     if (!cartesian.first || cartesian.state)
       spherical = want_coordinates(data, name, {"sphericalRange", "sphericalAzimuth", "sphericalElevation"},

@@ -66,8 +66,7 @@ class LasSource final : public PointSource {
       extended = value_at<std::uint64_t>(more + 235), extended_count = value_at<std::uint32_t>(more + 243);
     }
     const bool compressed = (format & (kCompressed | kOtherFlag)) != 0;
-    if (head_.first > file_.size() ||
-        (!compressed && head_.count > (file_.size() - head_.first) / head_.record))
+    if (head_.first > file_.size() || (!compressed && head_.count > (file_.size() - head_.first) / head_.record))
       throw Refused("it is truncated: its header announces " + std::to_string(head_.count) + " points of " +
                     std::to_string(head_.record) + " bytes, it has " + std::to_string(file_.size()) +
                     " bytes; copy or export it again");
@@ -133,9 +132,12 @@ class LasSource final : public PointSource {
       if (wanted && length <= kMost) {
         std::string body(file_.take(length), length);
         if (projection && id == 2112) records.text = body.substr(0, body.find('\0'));
-        if (projection && id == 34735) records.keys = std::move(body);
-        else if (projection && id == 34736) records.doubles = std::move(body);
-        else if (!projection && id == 22204) records.laszip = std::move(body);
+        if (projection && id == 34735)
+          records.keys = std::move(body);
+        else if (projection && id == 34736)
+          records.doubles = std::move(body);
+        else if (!projection && id == 22204)
+          records.laszip = std::move(body);
       }
       place += length;
     }

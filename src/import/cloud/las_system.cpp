@@ -67,8 +67,7 @@ DeclaredSystem system_of(const CoordinateReference& system, const std::string& t
   const bool depth = system.height && system.height->direction == "down";
   out.metres = {system.first.factor, system.second.factor, depth ? -height : height};
   tell(out, system.height.has_value());
-  if (system.kind == Kind::projected)
-    out.text = to_utf8(metric(out.metres) && !told.empty() ? told : system.in_metres);
+  if (system.kind == Kind::projected) out.text = to_utf8(metric(out.metres) && !told.empty() ? told : system.in_metres);
   return out;
 }
 

@@ -10,9 +10,9 @@
 namespace vantage::importer {
 
 struct DeclaredSystem {
-  bool unit = false;                                   // whether the file tells its unit
-  Eigen::Vector3d metres = Eigen::Vector3d::Ones();    // in a unit of each axis; below 0 for depths
-  std::string text = {};                               // of the system in metres: well-known text or EPSG:N; empty: none
+  bool unit = false;                                 // whether the file tells its unit
+  Eigen::Vector3d metres = Eigen::Vector3d::Ones();  // in a unit of each axis; below 0 for depths
+  std::string text = {};                             // of the system in metres: well-known text or EPSG:N; empty: none
   std::vector<std::string> notes = {};
 };
 

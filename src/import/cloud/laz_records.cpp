@@ -61,7 +61,8 @@ struct Ends {
 LazRecords::LazRecords(const fs::path& file, const LazLayout& layout)
     : record_(layout.format >= 6 ? kLateRecord : layout.record) {
   const std::string program = node();
-  std::vector<std::string> words{program, script().string(), file.string()};
+  // A call for each point leaves garbage; room for it to collect saves a tenth of the time.
+  std::vector<std::string> words{program, "--max-semi-space-size=16", script().string(), file.string()};
   for (const std::uint64_t number : {layout.first, layout.count, std::uint64_t{layout.format},
                                      std::uint64_t{layout.record}, std::uint64_t{layout.chunk}})
     words.push_back(std::to_string(number));

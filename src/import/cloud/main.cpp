@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // vantage-import-cloud FORMAT [SETTING=VALUE...] FILE...: fits surfaces to the points of all files together and writes
-// them to standard output, as GLB. FORMAT is e57, las (also for LAZ), ply, xyz (also for PTS, CSV and PTX) or pcd; e57-scans lists the scans of
-// an E57 file; e57-points and xyz-points thin the points of scans to one for each cell, 0.02 m otherwise.
+// them to standard output, as GLB. FORMAT is e57, las (also for LAZ), ply, xyz (also for PTS, CSV and PTX) or pcd;
+// e57-scans lists the scans of an E57 file; e57-points and xyz-points thin the points of scans to one for each cell,
+// 0.02 m otherwise.
 #include <cstdio>
 #include <string_view>
 
@@ -28,7 +29,8 @@ int main(int argc, char** argv) {
     const importer::Files files(argv + first, argv + argc);
     if (format == "e57-scans") return importer::list_scans(files.front());
     if (format.ends_with(kPoints))
-      return importer::thin_scans(files, format.substr(0, format.size() - kPoints.size()), settings.cell_m.value_or(0.02));
+      return importer::thin_scans(files, format.substr(0, format.size() - kPoints.size()),
+                                  settings.cell_m.value_or(0.02));
     return importer::convert_cloud(files, format, settings);
   });
 }

@@ -42,7 +42,8 @@ std::string lower_case(std::string_view text) {
 
 constexpr const char* kGiveColumns = "give the setting columns, e.g. -,x,y,z where one column stands before them";
 
-// Whether digits are set apart in groups of three from the decimal mark on. `body`: without sign, fraction and exponent.
+// Whether digits are set apart in groups of three from the decimal mark on. `body`: without sign, fraction and
+// exponent.
 bool grouped(std::string_view body, char decimal) {
   std::size_t digits = 0;
   bool marks = false;
@@ -168,36 +169,43 @@ Title title_of(std::string_view word) {
     std::string_view name;
     double metres;
   };
-  constexpr std::array kUnits{Unit{"m", 1},        Unit{"cm", 0.01},      Unit{"mm", 0.001}, Unit{"ft", 0.3048},
-                              Unit{"feet", 0.3048}, Unit{"usft", 1200.0 / 3937}, Unit{"in", 0.0254}, Unit{"inch", 0.0254}};
+  constexpr std::array kUnits{Unit{"m", 1},       Unit{"cm", 0.01},     Unit{"mm", 0.001},
+                              Unit{"ft", 0.3048}, Unit{"feet", 0.3048}, Unit{"usft", 1200.0 / 3937},
+                              Unit{"in", 0.0254}, Unit{"inch", 0.0254}};
   if (const auto found = std::ranges::find(kUnits, unit, &Unit::name); found != kUnits.end()) {
     title.metres = found->metres;
     if (bracket == std::string::npos) name.resize(name.rfind('_'));
   }
   std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-' || c == '.' || c == ':'; });
-  constexpr std::array kX{std::string_view("x"), std::string_view("east"), std::string_view("easting"),
-                          std::string_view("eastings"), std::string_view("e"), std::string_view("rechts"),
-                          std::string_view("rechtswert"), std::string_view("ost"), std::string_view("ostwert"),
-                          std::string_view("est"), std::string_view("xcoord"), std::string_view("xcoordinate"),
-                          std::string_view("coordx"), std::string_view("posx"), std::string_view("positionx"),
-                          std::string_view("px"), std::string_view("cartesianx"), std::string_view("points0")};
-  constexpr std::array kY{std::string_view("y"), std::string_view("north"), std::string_view("northing"),
-                          std::string_view("northings"), std::string_view("n"), std::string_view("hoch"),
-                          std::string_view("hochwert"), std::string_view("nord"), std::string_view("nordwert"),
-                          std::string_view("norte"), std::string_view("ycoord"), std::string_view("ycoordinate"),
-                          std::string_view("coordy"), std::string_view("posy"), std::string_view("positiony"),
-                          std::string_view("py"), std::string_view("cartesiany"), std::string_view("points1")};
-  constexpr std::array kZ{std::string_view("z"), std::string_view("height"), std::string_view("elevation"),
-                          std::string_view("elev"), std::string_view("h"), std::string_view("hoehe"),
-                          std::string_view("h\xC3\xB6he"), std::string_view("alt"), std::string_view("altitude"),
-                          std::string_view("level"), std::string_view("rl"), std::string_view("zcoord"),
+  constexpr std::array kX{
+      std::string_view("x"),          std::string_view("east"),       std::string_view("easting"),
+      std::string_view("eastings"),   std::string_view("e"),          std::string_view("rechts"),
+      std::string_view("rechtswert"), std::string_view("ost"),        std::string_view("ostwert"),
+      std::string_view("est"),        std::string_view("xcoord"),     std::string_view("xcoordinate"),
+      std::string_view("coordx"),     std::string_view("posx"),       std::string_view("positionx"),
+      std::string_view("px"),         std::string_view("cartesianx"), std::string_view("points0")};
+  constexpr std::array kY{
+      std::string_view("y"),         std::string_view("north"),      std::string_view("northing"),
+      std::string_view("northings"), std::string_view("n"),          std::string_view("hoch"),
+      std::string_view("hochwert"),  std::string_view("nord"),       std::string_view("nordwert"),
+      std::string_view("norte"),     std::string_view("ycoord"),     std::string_view("ycoordinate"),
+      std::string_view("coordy"),    std::string_view("posy"),       std::string_view("positiony"),
+      std::string_view("py"),        std::string_view("cartesiany"), std::string_view("points1")};
+  constexpr std::array kZ{std::string_view("z"),           std::string_view("height"), std::string_view("elevation"),
+                          std::string_view("elev"),        std::string_view("h"),      std::string_view("hoehe"),
+                          std::string_view("h\xC3\xB6he"), std::string_view("alt"),    std::string_view("altitude"),
+                          std::string_view("level"),       std::string_view("rl"),     std::string_view("zcoord"),
                           std::string_view("zcoordinate"), std::string_view("coordz"), std::string_view("posz"),
-                          std::string_view("positionz"), std::string_view("pz"), std::string_view("cartesianz"),
+                          std::string_view("positionz"),   std::string_view("pz"),     std::string_view("cartesianz"),
                           std::string_view("points2")};
-  constexpr std::array kDegrees{std::string_view("lat"), std::string_view("latitude"), std::string_view("lon"),
-                                std::string_view("long"), std::string_view("lng"), std::string_view("longitude")};
+  constexpr std::array kDegrees{std::string_view("lat"),  std::string_view("latitude"), std::string_view("lon"),
+                                std::string_view("long"), std::string_view("lng"),      std::string_view("longitude")};
   const auto is_in = [&](const auto& names) { return std::ranges::find(names, name) != names.end(); };
-  title.role = is_in(kX) ? Role::x : is_in(kY) ? Role::y : is_in(kZ) ? Role::z : is_in(kDegrees) ? Role::degrees : Role::other;
+  title.role = is_in(kX)         ? Role::x
+               : is_in(kY)       ? Role::y
+               : is_in(kZ)       ? Role::z
+               : is_in(kDegrees) ? Role::degrees
+                                 : Role::other;
   return title;
 }
 
@@ -281,8 +289,9 @@ TextColumns by_values(std::span<const std::string> points, Layout layout) {
       constexpr double kTime = 1e5;
       const bool time = at(0).rising && at(0).low > kTime && at(3).low < at(0).low;
       if (share || time)
-        ask(points, "which of its columns are x, y and z is not clear: the first one could be " +
-                        std::string(share ? "an intensity" : "a time"),
+        ask(points,
+            "which of its columns are x, y and z is not clear: the first one could be " +
+                std::string(share ? "an intensity" : "a time"),
             kGiveColumns);
     }
   }

@@ -34,8 +34,9 @@ struct TextColumns {
   void split(std::string_view line, std::vector<std::string_view>& words) const;
 };
 
-// By the first lines of a text, without empty ones. `told`: words x, y, z, and - for other columns, with commas between;
-// empty: recognised by titles and values. Throws Refused, with a question that shows three lines, if it is not clear.
+// By the first lines of a text, without empty ones. `told`: words x, y, z, and - for other columns, with commas
+// between; empty: recognised by titles and values. Throws Refused, with a question that shows three lines, if it is not
+// clear.
 TextColumns columns_of(std::span<const std::string> lines, const std::string& told);
 
 }  // namespace vantage::importer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points as lines of numbers: XYZ and CSV; PTS, which counts them first; and PTX, scans with a head of ten lines each: columns,
-// rows, the scanner's place, its axes, and the matrix that moves its points (row vectors; Leica, Cyclone pointcloud
-// export format).
+// Points as lines of numbers: XYZ and CSV; PTS, which counts them first; and PTX, scans with a head of ten lines each:
+// columns, rows, the scanner's place, its axes, and the matrix that moves its points (row vectors; Leica, Cyclone
+// pointcloud export format).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -111,7 +111,8 @@ class TextSource final : public PointSource {
     notes_.clear();
     if (!columns_.note.empty()) notes_.push_back(columns_.note);
     if (metres != 1)
-      notes_.push_back("its titles tell the unit, " + std::to_string(metres) + " m, and coordinates are taken as metres");
+      notes_.push_back("its titles tell the unit, " + std::to_string(metres) +
+                       " m, and coordinates are taken as metres");
     if (others > 2) notes_.push_back(std::to_string(others) + " lines that are no points are passed over");
   }
 

@@ -104,14 +104,15 @@ TEST(CoordinateSystem, HasTheAxesOfTheSurvey) {
   for (const char* code : {"EPSG:5514", "EPSG:31467", "EPSG:3031", "EPSG:32661"})
     EXPECT_EQ(refusal(code), "accepted") << code;
   // Text of version 1 has no axes of Krovak's; its code tells them.
-  EXPECT_NE(refusal("PROJCS[\"S-JTSK / Krovak\",GEOGCS[\"S-JTSK\",DATUM[\"S_JTSK\",SPHEROID[\"Bessel 1841\",6377397.155,"
-                    "299.1528128]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Krovak\"],"
-                    "PARAMETER[\"latitude_of_center\",49.5],PARAMETER[\"longitude_of_center\",24.8333333333333],"
-                    "PARAMETER[\"azimuth\",30.2881397527778],PARAMETER[\"pseudo_standard_parallel_1\",78.5],"
-                    "PARAMETER[\"scale_factor\",0.9999],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],"
-                    "UNIT[\"metre\",1],AUTHORITY[\"EPSG\",\"5513\"]]")
-                .find("its axes point"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("PROJCS[\"S-JTSK / Krovak\",GEOGCS[\"S-JTSK\",DATUM[\"S_JTSK\",SPHEROID[\"Bessel 1841\",6377397.155,"
+              "299.1528128]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Krovak\"],"
+              "PARAMETER[\"latitude_of_center\",49.5],PARAMETER[\"longitude_of_center\",24.8333333333333],"
+              "PARAMETER[\"azimuth\",30.2881397527778],PARAMETER[\"pseudo_standard_parallel_1\",78.5],"
+              "PARAMETER[\"scale_factor\",0.9999],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],"
+              "UNIT[\"metre\",1],AUTHORITY[\"EPSG\",\"5513\"]]")
+          .find("its axes point"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ std::string keys(const std::vector<std::pair<std::uint16_t, std::uint16_t>>& val
 
 std::string projected(const std::string& unit, const std::string& height = {}) {
   const std::string plan =
-      "PROJCS[\"Own\",GEOGCS[\"NAD83\",DATUM[\"North_American_Datum_1983\",SPHEROID[\"GRS 1980\",6378137,298.257222101]],"
+      "PROJCS[\"Own\",GEOGCS[\"NAD83\",DATUM[\"North_American_Datum_1983\",SPHEROID[\"GRS "
+      "1980\",6378137,298.257222101]],"
       "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],"
       "PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",-75],PARAMETER[\"scale_factor\",0.9996],"
       "PARAMETER[\"false_easting\",1000],PARAMETER[\"false_northing\",0]," +
@@ -150,7 +151,8 @@ TEST_F(LasSystems, WithoutMetresAreRefused) {
   expect_refused_for("degrees", [&] { with(34735, keys({{1024, 2}})); });
   expect_refused_for("degrees", [&] { with(2112, wgs84); });
   expect_refused_for("degrees", [&] {
-    with(2112, std::string("COMPD_CS[\"a\",") + wgs84 + ",VERT_CS[\"h\",VERT_DATUM[\"h\",2005],UNIT[\"metre\",1]]]", true);
+    with(2112, std::string("COMPD_CS[\"a\",") + wgs84 + ",VERT_CS[\"h\",VERT_DATUM[\"h\",2005],UNIT[\"metre\",1]]]",
+         true);
   });
   expect_refused_for("middle of the earth", [&] { with(34735, keys({{1024, 3}})); });
   expect_refused_for("point south and west", [&] { with(34735, keys({{1024, 1}, {3072, 5513}})); });

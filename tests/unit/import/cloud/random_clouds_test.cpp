@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid files of points, each with its truth: what is read is the truth, or a question. VANTAGE_SEEDS=first..last
-// chooses them.
+// Random valid files of points, each with its truth: what is read is the truth, or a question.
+// VANTAGE_SEEDS=first..last chooses them.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -31,8 +31,7 @@ class Maker {
     if (place > 0) origin_ = {real(-500, 500), real(-500, 500), real(-5, 50)};
     if (place == 2) origin_ += Vector3d(whole(300, 800) * 1000.0, whole(4'700, 6'200) * 1000.0, 300);
     const int count = whole(40, 300);
-    for (int k = 0; k < count; ++k)
-      points_.push_back(origin_ + Vector3d(real(0, 12), real(0, 8), real(0, 3)));
+    for (int k = 0; k < count; ++k) points_.push_back(origin_ + Vector3d(real(0, 12), real(0, 8), real(0, 3)));
   }
 
   std::filesystem::path make(const std::string& format, Truth& truth) {
@@ -148,11 +147,13 @@ class Maker {
       std::string name, type;
     };
     const bool wide = origin_.norm() > 1000 || chance(2), capitals = chance(6);
-    const std::string type = wide ? one_of<std::string>({"double", "float64"}) : one_of<std::string>({"float", "float32"});
+    const std::string type =
+        wide ? one_of<std::string>({"double", "float64"}) : one_of<std::string>({"float", "float32"});
     std::vector<Property> properties;
     for (const char* name : {"x", "y", "z"})
       properties.push_back({capitals ? std::string(1, static_cast<char>(*name - 'a' + 'A')) : name, type});
-    for (const auto& [name, of] : {std::pair{"red", "uchar"}, {"intensity", "float"}, {"label", "int16"}, {"t", "double"}})
+    for (const auto& [name, of] :
+         {std::pair{"red", "uchar"}, {"intensity", "float"}, {"label", "int16"}, {"t", "double"}})
       if (chance(3)) properties.push_back({name, of});
     std::shuffle(properties.begin(), properties.end(), random_);
     const std::string kind = one_of<std::string>({"ascii", "binary_little_endian", "binary_big_endian"});
@@ -252,8 +253,8 @@ class Maker {
   std::string text(Truth& truth) {
     truth.metric = false;
     const bool comma = chance(3), titles = chance(2);
-    const std::string between = comma ? one_of<std::string>({";", " ", "\t", "; "})
-                                      : one_of<std::string>({" ", ",", ";", "\t", ", ", "   "});
+    const std::string between =
+        comma ? one_of<std::string>({";", " ", "\t", "; "}) : one_of<std::string>({" ", ",", ";", "\t", ", ", "   "});
     std::vector<std::string> columns{"x", "y", "z"};
     if (titles) {
       if (chance(2)) columns.emplace_back("intensity");
@@ -323,8 +324,9 @@ class Maker {
         for (int r = 0; r < rows; ++r) {
           const double a = 0.3 * c, e = 0.1 * r - 0.8, range = real(2, 6);
           const bool none = chance(9);
-          const Vector3d p = none ? Vector3d(Vector3d::Zero())
-                                  : Vector3d(range * Vector3d(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)));
+          const Vector3d p =
+              none ? Vector3d(Vector3d::Zero())
+                   : Vector3d(range * Vector3d(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)));
           row(p, colours ? " 0.5 10 20 30" : " 0.5");
           if (!none) truth.points.push_back(turned * p + head);
         }
@@ -391,8 +393,8 @@ class Maker {
           else if (cartesian)
             value = kind == 2 && by_sphere ? 7 : p[f.name.back() - 'X'];
           else if (f.name.starts_with("spherical"))
-            value = kind == 2 && !by_sphere ? 0.5
-                    : f.name == "sphericalRange" ? range
+            value = kind == 2 && !by_sphere        ? 0.5
+                    : f.name == "sphericalRange"   ? range
                     : f.name == "sphericalAzimuth" ? a
                                                    : e;
           if (zero && !state && f.type != 3) value = 0;
@@ -416,7 +418,8 @@ class Maker {
           constexpr int kMost = 30'000;
           for (const double v : f.values) values.push_back(static_cast<std::uint64_t>(std::lround(v / kScale) + kMost));
           bytes = packed_bits(values, static_cast<unsigned>(std::bit_width(2U * kMost)));
-          scan.prototype += "<" + f.name + " type=\"ScaledInteger\" minimum=\"-30000\" maximum=\"30000\" scale=\"0.0005\"/>";
+          scan.prototype +=
+              "<" + f.name + " type=\"ScaledInteger\" minimum=\"-30000\" maximum=\"30000\" scale=\"0.0005\"/>";
         } else {
           for (const double v : f.values) {
             if (f.type == 1)
@@ -424,8 +427,7 @@ class Maker {
             else
               put(bytes, v);
           }
-          scan.prototype +=
-              "<" + f.name + " type=\"Float\"" + (f.type == 1 ? " precision=\"single\"" : "") + "/>";
+          scan.prototype += "<" + f.name + " type=\"Float\"" + (f.type == 1 ? " precision=\"single\"" : "") + "/>";
         }
         streams.push_back(bytes);
       }

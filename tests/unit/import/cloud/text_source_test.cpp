@@ -87,8 +87,9 @@ TEST_F(TextColumnsTest, Titles) {
       return std::to_string(k) + between + fixed_text(z) + between + fixed_text(y) + between + fixed_text(x);
     };
   };
-  for (const char* head : {"intensity;Height;North;East\n", "I;Z;Y;X\r\n", "# i; z; y; x\n", "\"no\";\"H\";\"Hochwert\";\"Rechtswert\"\n",
-                           "\xEF\xBB\xBFid;z [m];y [m];x [m]\n", "Made by hand with x, y and z in columns\nID;Points:2;Points:1;Points:0\n"})
+  for (const char* head : {"intensity;Height;North;East\n", "I;Z;Y;X\r\n", "# i; z; y; x\n",
+                           "\"no\";\"H\";\"Hochwert\";\"Rechtswert\"\n", "\xEF\xBB\xBFid;z [m];y [m];x [m]\n",
+                           "Made by hand with x, y and z in columns\nID;Points:2;Points:1;Points:0\n"})
     expect_points(text_of(shuffled(";"), 40, head));
   expect_points(text_of(shuffled(" "), 40, "//I Z Y X\n"));
   expect_points(text_of(shuffled(","), 40, "i,elevation,northing,easting\n"));
@@ -106,14 +107,14 @@ TEST_F(TextColumnsTest, NumbersNamesAndIntensitiesBeforePoints) {
   const auto point = [](double x, double y, double z) {
     return fixed_text(x) + " " + fixed_text(y) + " " + fixed_text(z);
   };
-  expect_points(text_of([&](int k, double x, double y, double z) { return std::to_string(k + 7) + " " + point(x, y, z); }));
-  expect_points(text_of([&](int k, double x, double y, double z) { return "P" + std::to_string(k) + " " + point(x, y, z); }));
-  expect_points(text_of([&](int k, double x, double y, double z) {
-    return std::to_string(900 - 31 * k % 500) + " " + point(x, y, z);
-  }));
-  expect_points(text_of([&](int k, double x, double y, double z) {
-    return std::to_string(k % 7) + " 12 255 " + point(x, y, z);
-  }));
+  expect_points(
+      text_of([&](int k, double x, double y, double z) { return std::to_string(k + 7) + " " + point(x, y, z); }));
+  expect_points(
+      text_of([&](int k, double x, double y, double z) { return "P" + std::to_string(k) + " " + point(x, y, z); }));
+  expect_points(text_of(
+      [&](int k, double x, double y, double z) { return std::to_string(900 - 31 * k % 500) + " " + point(x, y, z); }));
+  expect_points(text_of(
+      [&](int k, double x, double y, double z) { return std::to_string(k % 7) + " 12 255 " + point(x, y, z); }));
   // Whole coordinates stay what they are.
   const auto whole = open_text(write("a.xyz", text_of([](int k, double, double, double) {
                                        return std::to_string(k % 9) + " " + std::to_string(k % 7) + " " +
@@ -131,10 +132,11 @@ TEST_F(TextColumnsTest, WhatIsNotClearIsAsked) {
                     return fixed_text(5.4e6 + y) + " " + fixed_text(512'000 + x) + " " + fixed_text(z);
                   }),
                   "could be northings");
-  const auto told = open_text(write("a.xyz", text_of([](int, double x, double y, double z) {
-                                      return fixed_text(5.4e6 + y) + " " + fixed_text(512'000 + x) + " " + fixed_text(z);
-                                    })),
-                              {.columns = "y,x,z"});
+  const auto told =
+      open_text(write("a.xyz", text_of([](int, double x, double y, double z) {
+                        return fixed_text(5.4e6 + y) + " " + fixed_text(512'000 + x) + " " + fixed_text(z);
+                      })),
+                {.columns = "y,x,z"});
   expect_at(points_of(*told).at(0), 512'000.125, 5'400'010, 20, 1e-6);
   expect_refused_for("does not name", [&] { open_text(write("a.xyz", "1 2 3\n4 5 6\n"), {.columns = "x,y"}); });
 }
@@ -171,7 +173,8 @@ std::string ptx_without_matrix(bool moved, const std::vector<Eigen::Vector3d>& h
     for (int c = 0; c < kColumns; ++c)
       for (int r = 0; r < kRows; ++r) {
         const double a = 0.5 * c, e = 0.25 * r - 1, range = 3 + 0.1 * ((c + r) % 4);
-        const Eigen::Vector3d p(range * std::cos(a) * std::cos(e), range * std::sin(a) * std::cos(e), range * std::sin(e));
+        const Eigen::Vector3d p(range * std::cos(a) * std::cos(e), range * std::sin(a) * std::cos(e),
+                                range * std::sin(e));
         const Eigen::Vector3d q = moved ? Eigen::Vector3d(head + Eigen::Vector3d(-p.y(), p.x(), p.z())) : p;
         line({q.x(), q.y(), q.z(), 0.5});
       }
