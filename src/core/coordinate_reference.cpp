@@ -33,8 +33,12 @@ class Reference {
   Reference(PJ_CONTEXT* context, const PJ* whole) : context_(context) { split(whole); }
 
   std::optional<CoordinateReference> read() {
-    if (!plan_) return {};
     CoordinateReference out;
+    if (!plan_) {
+      if (!height_) return {};
+      out.name = name_of(height_.get());  // heights alone
+      return out;
+    }
     out.kind = kind_of(plan_.get());
     out.name = name_of(plan_.get());
     if (!read_axes(plan_.get(), out)) return {};

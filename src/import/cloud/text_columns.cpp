@@ -17,7 +17,7 @@ constexpr std::string_view kBlanks = " \t";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::string_view trimmed(std::string_view word) {
+std::string_view word_itself(std::string_view word) {
   const auto first = word.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
   word = word.substr(first, word.find_last_not_of(kBlanks) + 1 - first);
@@ -46,17 +46,18 @@ constexpr const char* kGiveColumns = "give the setting columns, e.g. -,x,y,z whe
 // exponent.
 bool grouped(std::string_view body, char decimal) {
   std::size_t digits = 0;
-  bool marks = false;
+  char mark = 0;
   for (std::size_t k = body.size(); k-- > 0;) {
-    if (is_digit(body[k])) {
+    const char c = body[k];
+    if (is_digit(c)) {
       ++digits;
       continue;
     }
-    const bool mark = body[k] == '\'' || body[k] == ' ' || body[k] == (decimal == '.' ? ',' : '.');
-    if (!mark || digits != 3) return false;
-    digits = 0, marks = true;
+    const bool known = c == '\'' || c == ' ' || c == (decimal == '.' ? ',' : '.');
+    if (!known || digits != 3 || (mark != 0 && c != mark)) return false;
+    digits = 0, mark = c;
   }
-  return marks ? digits >= 1 && digits <= 3 && body.front() != '0' : true;
+  return mark == 0 || (digits >= 1 && digits <= 3 && body.front() != '0');
 }
 
 // Styles from the simplest on.
@@ -94,12 +95,16 @@ char separator_of(std::span<const std::string> lines) {
     return true;
   });
   const bool commas = std::ranges::any_of(lines, [](const std::string& line) { return line.find(',') < line.size(); });
-  return blanks && commas && inner ? ' ' : 0;
+  const bool apostrophes =
+      std::ranges::any_of(lines, [](const std::string& line) { return line.find('\'') < line.size(); });
+  if (blanks && (commas ? inner : apostrophes)) return ' ';
+  return several(',') ? ',' : 0;
 }
 
 Layout layout_of(std::span<const std::string> lines) {
   Layout layout{separator_of(lines), {}};
-  if (layout.between == 0) {
+  if (layout.between == 0) return layout;
+  if (layout.between == ',') {
     // Commas alone: between numbers, unless no number has a point and every other one looks like a fraction.
     const auto no_point = [](const std::string& line) {
       return line.find('.') == std::string::npos && line.find(' ') == std::string::npos;
@@ -121,7 +126,6 @@ Layout layout_of(std::span<const std::string> lines) {
     if (fractions && leading_zero)
       ask(lines, "whether commas stand between its numbers or in them is not clear",
           "export it with points in its numbers");
-    return layout;
   }
   // The simplest style that reads all words.
   std::array<bool, kStyles.size()> reads{};
@@ -140,8 +144,6 @@ Layout layout_of(std::span<const std::string> lines) {
     ask(lines, "whether its commas stand before decimals or between thousands is not clear",
         "export it with points before decimals");
   layout.numbers = kStyles[first];
-  // Usual words need no such care.
-  if (layout.numbers.decimal == '.' && !layout.numbers.thousands) layout.between = 0;
   return layout;
 }
 
@@ -153,7 +155,7 @@ struct Title {
 };
 
 Title title_of(std::string_view word) {
-  std::string name = lower_case(trimmed(word));
+  std::string name = lower_case(word_itself(word));
   while (!name.empty() && (name.front() == '#' || name.front() == '/' || name.front() == '%')) name.erase(0, 1);
   Title title;
   // A unit in brackets, or behind an underscore.
@@ -215,10 +217,11 @@ std::optional<TextColumns> by_titles(std::span<const std::string> lines, const s
   Words words;
   std::string text = line;
   if (const std::size_t begin = text.find_first_not_of("#/% \t"); begin != std::string::npos) text.erase(0, begin);
-  (layout.between == ' ' ? TextColumns{} : out).split(text, words);
   Words values;
   out.split(lines.front(), values);
-  if (words.size() > values.size()) return {};  // prose
+  out.split(text, words);
+  if (words.size() != values.size()) TextColumns{}.split(text, words);  // titles may stand apart by blanks alone
+  if (words.size() > values.size()) return {};                          // prose
   std::array<int, 3> found{};
   for (std::size_t k = 0; k < words.size(); ++k) {
     const Title title = title_of(words[k]);
@@ -256,6 +259,7 @@ struct Column {
 // By the values of points alone.
 TextColumns by_values(std::span<const std::string> points, Layout layout) {
   TextColumns out{.between = layout.between, .numbers = layout.numbers};
+  if (out.numbers.decimal == '.' && !out.numbers.thousands) out.between = 0;  // usual words need no such care
   std::vector<Column> columns;
   Words words;
   for (const std::string& line : points) {
@@ -362,14 +366,14 @@ void TextColumns::split(std::string_view line, std::vector<std::string_view>& wo
     const std::string_view marks = between == 0 ? kAny : kOnlyBlanks;
     for (std::size_t at = line.find_first_not_of(marks); at < line.size();) {
       const std::size_t end = std::min(line.find_first_of(marks, at), line.size());
-      words.push_back(trimmed(line.substr(at, end - at)));
+      words.push_back(word_itself(line.substr(at, end - at)));
       at = line.find_first_not_of(marks, end);
     }
     return;
   }
   for (;;) {
     const std::size_t end = line.find(between);
-    words.push_back(trimmed(line.substr(0, end)));
+    words.push_back(word_itself(line.substr(0, end)));
     if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
   }
