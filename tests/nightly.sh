@@ -3,7 +3,7 @@
 # tests/nightly.sh [part...]
 # What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
 #
-#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked; random drawings;
+#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked; random drawings and clouds;
 #              the sweep of docs/sweep.md
 #   faults     every n of the faults of device, disk and process, and every number for every option
 #   address, undefined, thread
@@ -35,6 +35,7 @@ sites() {
   VANTAGE_SEEDS=1..200 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='RandomSites.*'
   VANTAGE_SEEDS=1..400 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='FloorPlanRandomTest.*'
   VANTAGE_SEEDS=1..200 run node --test tests/unit/import/ifc/random_test.mjs
+  VANTAGE_SEEDS=1..200 run "$tests/unit/import/cloud/cloud_test" --gtest_brief=1 --gtest_filter='RandomClouds.*'
   run build/release/vantage-bench sweep office house street plant 1..40 -o build/sweep --by-hand tests/sites/by_hand --step 0.4 --user-size 0.3 --spacing 0.1
   VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'
 }

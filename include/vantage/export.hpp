@@ -25,8 +25,9 @@
 namespace vantage {
 
 /// Returns the well-known text (version 1, OGC 01-009, as LAS 1.4 requires) of a coordinate system. `text`:
-/// "EPSG:25832" and the like, the name of a .prj or .wkt file, or well-known text. Throws Error: io, invalid_argument
-/// (an unknown code, angles, a unit other than metres, version 2).
+/// "EPSG:25832" and the like, "EPSG:26918+5703" with heights, the name of a .prj or .wkt file, or well-known text of
+/// either version. Throws Error: io, invalid_argument (an unknown code, angles, a unit other than metres, heights
+/// included, axes other than east and north).
 std::string coordinate_system(const std::string& text);
 
 /// Description of one station in a file that keeps stations apart (E57).

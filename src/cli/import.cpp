@@ -66,8 +66,9 @@ std::vector<std::uint8_t> in_metres(const std::vector<std::uint8_t>& glb, Unit u
 struct ImportOptions {
   std::string file;
   std::optional<std::string> output;
-  SiteOptions site;              // as far as an importer takes them
-  std::optional<double> cell_m;  // of a point cloud
+  SiteOptions site;                    // as far as an importer takes them
+  std::optional<double> cell_m;        // of a point cloud
+  std::optional<std::string> columns;  // of a point cloud in text
   bool json = false;
 
   void add(CLI::App& command) {
@@ -75,9 +76,8 @@ struct ImportOptions {
         .add_option_function<std::vector<std::string>>(
             "file", [this](const std::vector<std::string>& files) { take_files(files, file, site.scene); },
             "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; a floor plan in DXF; or points: E57, LAS, "
-            "PLY, "
-            "XYZ, PTS, PTX or PCD; or a folder or several files of scans, IFC models, or floor plans, a file for each "
-            "storey")
+            "LAZ, PLY, XYZ, PTS, CSV, PTX or PCD; or a folder or several files of scans, IFC models, or floor plans, a "
+            "file for each storey")
         ->type_name("FILE");
     add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     add_settings(command, settings_of({"unit", "up"}), site, "Axes of a model or floor plan");
@@ -85,6 +85,10 @@ struct ImportOptions {
     add_settings(command, settings_of({"memory"}), site);
     add_number(command, "--cell", "M", "Size of the cells of a point cloud, in metres; chosen by its density otherwise",
                cell_m, {.low = 0.005, .high = 10})
+        ->group("Point cloud");
+    add_text(command, "--columns", "LIST",
+             "Columns of a point cloud in text: x, y, z, and - for others, e.g. -,x,y,z; recognised by default",
+             columns)
         ->group("Point cloud");
     command.add_flag("--json", json, "Print one JSON object");
   }
@@ -101,6 +105,11 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (options.cell_m && !takes_setting(format, "cell"))
     throw Error(Errc::invalid_argument, options.file + ": --cell is for point clouds, and this is " + format.name);
   if (options.cell_m) settings.push_back("cell=" + number(*options.cell_m));
+  if (options.columns && !takes_setting(format, "columns"))
+    throw Error(Errc::invalid_argument,
+                options.file + ": --columns is for points as lines of text, and this is " + format.name);
+  if (options.columns) settings.push_back("columns=" + *options.columns);
+  const bool by_hand = options.cell_m || options.columns;
   if (!format.importer) {
     Scene::load(options.file, read);  // reports what is wrong with it
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
@@ -115,11 +124,11 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   const auto write = [&] {
     write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
   };
-  // It is read to report what is wrong with it, mostly from the cache; the cache of a site has no cells by hand.
-  if (options.cell_m) write();
-  const Scene scene = options.cell_m ? Scene::load(*options.output, {.max_memory_bytes = read.max_memory_bytes})
-                                     : Scene::load(options.file, read);
-  if (!options.cell_m) write();
+  // It is read to report what is wrong with it, mostly from the cache; the cache of a site has nothing by hand.
+  if (by_hand) write();
+  const Scene scene = by_hand ? Scene::load(*options.output, {.max_memory_bytes = read.max_memory_bytes})
+                              : Scene::load(options.file, read);
+  if (!by_hand) write();
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
   if (options.json)
     program.console.print(nlohmann::json{{"format", format.name},

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "vantage/error.hpp"
@@ -26,10 +25,11 @@ constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
 // A PLY holds either; its name alone means faces.
-constexpr const char* kCell = "cell";
-constexpr Format kE57{"E57", ".e57 ", kCloud, kCell, true}, kLas{"LAS", ".las .laz ", kCloud, kCell, true},
-    kPlyPoints{"PLY of points", ".ply ", kCloud, kCell, true},
-    kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud, kCell, true}, kPcd{"PCD", ".pcd ", kCloud, kCell, true};
+constexpr const char* kOfClouds = "cell unit up";
+constexpr Format kE57{"E57", ".e57 ", kCloud, kOfClouds, true}, kLas{"LAS", ".las .laz ", kCloud, kOfClouds, true},
+    kPlyPoints{"PLY of points", ".ply ", kCloud, kOfClouds, true},
+    kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud, "cell unit up columns", true},
+    kPcd{"PCD", ".pcd ", kCloud, kOfClouds, true};
 constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "unit wall-layer wall-height", true};
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
                               &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
@@ -114,17 +114,21 @@ bool holds_obj(std::string_view text) {
   return vertices && known > 20 * others;
 }
 
-// Whether most of the first lines begin with three numbers, behind titles and counts.
+// Whether most of the first lines have three numbers and no more other words, behind titles and counts.
 bool holds_numbers(std::string_view text) {
   constexpr std::size_t kLines = 40;
   const auto three_numbers = [](std::string_view line) {
-    std::string words(line);
-    std::ranges::replace_if(
-        words, [](char c) { return c == ',' || c == ';'; }, ' ');
-    std::istringstream stream(words);
-    stream.imbue(std::locale::classic());
-    double value = 0;
-    return bool{stream >> value >> value >> value};
+    constexpr std::string_view kBetween = " \t,;";
+    std::size_t numbers = 0, others = 0;
+    for (std::size_t at = line.find_first_not_of(kBetween); at < line.size();) {
+      const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
+      const std::string_view word = line.substr(at, end - at);
+      const bool number = word.find_first_of("0123456789") < word.size() &&
+                          word.find_first_not_of("0123456789+-.'eE") == std::string_view::npos;
+      ++(number ? numbers : others);
+      at = line.find_first_not_of(kBetween, end);
+    }
+    return numbers >= 3 && numbers >= others;
   };
   std::size_t points = 0, others = 0;
   for (const std::string_view line : first_lines(text, kLines))

@@ -178,9 +178,10 @@ class Loader {
   }
 
   void settle_axes() {
-    if (converted_) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
-    std::optional<Unit> unit = options_.unit;
-    std::optional<UpAxis> up = options_.up;
+    // An importer that takes these settings has applied them; it declares no unit where the model tells none.
+    if (converted_ && !declared("unit").empty()) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
+    std::optional<Unit> unit = converted_ ? std::nullopt : options_.unit;
+    std::optional<UpAxis> up = converted_ ? std::nullopt : options_.up;
     try {
       if (const std::string text = declared("unit"); !unit && !text.empty()) unit = unit_from_string(text);
       if (const std::string text = declared("up"); !up && !text.empty()) up = up_axis_from_string(text);
