@@ -2,16 +2,34 @@
 #include "objective/registered_sample.hpp"
 
 #include <algorithm>
-
+#include <cmath>
+#include <map>
 
 namespace vantage {
 namespace {
 
-constexpr std::uint64_t kLeastVoxels = std::uint64_t{1} << 14, kWeighingVoxels = std::uint64_t{1} << 16;
+constexpr std::uint64_t kLeastVoxels = std::uint64_t{1} << 13, kWeighingVoxels = std::uint64_t{1} << 16;
 // Standard error up to which an error is known: a share of it, or a length if that is larger.
 constexpr double kKnownShare = 0.02, kKnown_m = 0.02e-3;
+// Standard errors of the smaller sample within which the larger one must agree with it. A sample that holds no voxel of
+// what holds the scans together, as of the reveals along a facade, does not know that it knows nothing.
+constexpr double kAgree = 2;
 
-bool is_known(const Estimate& rms_m) { return rms_m.standard_error <= std::max(kKnownShare * rms_m.value, kKnown_m); }
+// Tells of each network whether its error is known, sample after sample.
+class Known {
+ public:
+  bool operator()(std::size_t network, const Estimate& rms_m) {
+    const double enough = std::max(kKnownShare * rms_m.value, kKnown_m);
+    const auto before = before_.find(network);
+    const bool agree = before != before_.end() && std::abs(rms_m.value - before->second.value) <=
+                                                      kAgree * before->second.standard_error + enough / 2;
+    before_[network] = rms_m;
+    return agree && rms_m.standard_error <= enough;
+  }
+
+ private:
+  std::map<std::size_t, Estimate> before_;
+};
 
 }  // namespace
 
@@ -23,8 +41,9 @@ EvaluateOptions count_surveyed(const RequiredInputs& needs, const RegistrationOp
     return options;
   }
   options.registration_voxels = kLeastVoxels;
-  options.registration_known = [registration, &simulator](std::size_t, const NetworkCounts& counts) {
-    return is_known(registration_estimate(counts, simulator.voxel_count(), registration));
+  options.registration_known = [known = Known(), registration, &simulator](std::size_t k,
+                                                                           const NetworkCounts& counts) mutable {
+    return known(k, registration_estimate(counts, simulator.voxel_count(), registration));
   };
   return options;
 }
@@ -36,10 +55,10 @@ EvaluateOptions count_surroundings(const RequiredInputs& needs, const Registrati
   if (!needs.surroundings_registration) return options;
   options.registration = needs.registration;
   options.registration_voxels = kLeastVoxels;
-  options.registration_known = [registration, &surveyed, &simulator, &surroundings](std::size_t k,
-                                                                                    const NetworkCounts& counts) {
-    return is_known(
-        registration_estimate(surveyed[k], simulator.voxel_count(), registration, &counts, surroundings.voxel_count()));
+  options.registration_known = [known = Known(), registration, &surveyed, &simulator, &surroundings](
+                                   std::size_t k, const NetworkCounts& counts) mutable {
+    return known(k, registration_estimate(surveyed[k], simulator.voxel_count(), registration, &counts,
+                                          surroundings.voxel_count()));
   };
   return options;
 }
