@@ -5,6 +5,7 @@
 #include <random>
 
 #include "ifc_house.hpp"
+#include "import/import.hpp"
 #include "import_fixture.hpp"
 #include "vantage/export.hpp"
 #include "vantage/missed.hpp"
