@@ -165,7 +165,11 @@ class X3dReader {
     const XmlElement* given = nullptr;
     for (const XmlElement& child : appearance.children) {
       if (is_one_of(child.name, {"Material", "PhysicalMaterial", "UnlitMaterial"})) given = &resolved(child);
-      if (child.name.ends_with("Texture")) material.textured = true;
+      if (child.name.ends_with("Texture")) {  // which some programs write empty
+        const XmlElement& texture = resolved(child);
+        material.textured = material.textured || !texture.children.empty() || !attribute(texture, "url").empty() ||
+                            !attribute(texture, "image").empty();
+      }
     }
     if (!given) return -1;
     const char* colour = given->name == "Material"           ? "diffuseColor"
