@@ -230,20 +230,16 @@ CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution fr
   if (from.violation == 0 && (!problem.graph || from.link >= enough || from.chosen.size() < 2)) return from;
   const TabuSearch tabu(problem, kPatience, stop);
   CoverSolution best = std::move(from);
-  // The same start with other random numbers: a link that is missed for want of a search costs stations later.
-  const auto swapped = [&](double link) {
-    const std::vector<std::vector<std::size_t>> starts(kStarts, best.chosen);
-    std::vector<TabuSearch::Found> found = tabu.run(starts, link, 0);
-    return evaluate_cover(problem,
-                          std::move(std::ranges::min_element(found, {}, &TabuSearch::Found::violation)->network));
-  };
   if (best.violation > 0) {
-    CoverSolution found = swapped(problem.link);
+    CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, problem.link).network);
     if (found.violation < best.violation) best = std::move(found);
   }
   while (problem.graph && best.violation == 0 && best.chosen.size() > 1 && best.link < enough &&
          !stop.stop_requested()) {
-    CoverSolution found = swapped(std::min(best.link + kLinkStep, enough));
+    // The same start with other random numbers: a link that is missed for want of a search costs stations later.
+    const std::vector<std::vector<std::size_t>> starts(kStarts, best.chosen);
+    CoverSolution found =
+        evaluate_cover(problem, tabu.run(starts, std::min(best.link + kLinkStep, enough), 0).back().network);
     if (found.violation > 0 || found.link <= best.link) break;
     best = std::move(found);
   }
