@@ -189,17 +189,14 @@ struct ConnectedCover {
 
 /// Finds a connected network of few candidates with the wanted coverage. It begins with `start`, or with a network that
 /// grows along links. A tabu search over swaps (Glover: Tabu Search, Part I, 1989) then tries one candidate fewer,
-/// while that succeeds. With more than 10 000 elements, some of them choose first; the candidates that this tried are
-/// then chosen from on all elements. If no network of at most `problem.most` is feasible, the result has the least
-/// violation found. The same for any number of threads, unless stopped; a stopped call returns at least a grown network.
+/// while that succeeds. If no network of at most `problem.most` is feasible, the result has the least violation found.
+/// Deterministic unless stopped; a stopped call returns at least a grown network.
 ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token stop = {},
                                    std::optional<CoverSolution> start = {});
 
-/// Swaps at the same number of candidates, first until nothing is violated, then until the weakest link has an overlap
-/// of `enough`, or as much as is found. The result is never worse than `from`. The same for any number of threads,
-/// unless stopped.
-CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, double enough = 1,
-                                   std::stop_token stop = {});
+/// Swaps at the same number of candidates, first until nothing is violated, then while the weakest link grows. The
+/// result is never worse than `from`. Deterministic unless stopped.
+CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, std::stop_token stop = {});
 
 /// Settings of bounds.
 struct BoundConfig {

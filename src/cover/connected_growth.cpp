@@ -36,7 +36,7 @@ class Growth {
     if (network_.empty())
       if (const auto first = first_candidate()) add({*first});
     const std::size_t fewest = problem_.existing.size() + problem_.fewest;
-    const bool along_links = problem_.link > 0;
+    bool along_links = problem_.link > 0;
     while (network_.size() < most_) {
       const bool enough = gains_.cover().value() >= problem_.coverage;
       if (enough && network_.size() >= fewest) {
@@ -49,9 +49,9 @@ class Growth {
       Path path;
       if (along_links) path = best_path();
       if (path.empty()) {
-        // No path adds anything. Only coverage is left to gain, each time for a missing link.
-        if (along_links && violation(problem_, gains_.cover().value(), 1) <= violation(problem_, problem_.coverage, 2))
-          break;
+        // No path adds anything. Only coverage is left to gain; missing links are a violation.
+        if (along_links && enough) break;
+        along_links = false;
         const auto best = best_anywhere();
         if (!best) break;
         path.assign(1, *best);
@@ -99,23 +99,19 @@ class Growth {
 // The candidate with the most coverage in the component that covers most as a whole.
 std::optional<std::size_t> Growth::first_candidate() const {
   const Components parts = components_of(problem_, free_, problem_.link);
-  struct Part {
-    double apart = 0;  // what its candidates cover one by one: at least what they cover together
-    std::vector<std::size_t> members = {};
-  };
-  std::vector<Part> found(parts.count);
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    found[parts.of[i]].apart += gains_[free_[i]];
-    found[parts.of[i]].members.push_back(free_[i]);
-  }
+  const PartialCover none(problem_.matrix);
   std::optional<std::size_t> best;
   double most = 0;
-  for (const Part& part : found) {
-    if (best && part.apart <= most) continue;
-    const double together = parts.count > 1 ? problem_.matrix.coverage(part.members) : part.apart;
-    if (best && together <= most) continue;
-    most = together;
-    best = *std::ranges::max_element(part.members, {}, [&](std::size_t k) { return gains_[k]; });
+  for (std::size_t part = 0; part < parts.count; ++part) {
+    PartialCover all(problem_.matrix);
+    std::size_t richest = 0;
+    double gain = -1;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      if (parts.of[i] != part) continue;
+      all.add(free_[i]);
+      if (const double alone = none.gain(free_[i]); alone > gain) gain = alone, richest = free_[i];
+    }
+    if (const double together = all.value(); !best || together > most) most = together, best = richest;
   }
   return best;
 }
@@ -153,37 +149,35 @@ double Growth::gain_along(const Path& path) const {
 
 // The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
 Path Growth::best_path() const {
-  std::vector<std::size_t> hops(none_, none_), from(none_, none_), reached = network_, next;
+  std::vector<std::size_t> hops(none_, none_), from(none_, none_), next;
   for (const std::size_t k : network_) hops[k] = 0;
   struct End {
     double score;  // upper bound of the path's gain for each candidate
     std::size_t candidate;
   };
   std::vector<End> ends;
-  double one_step = 0;  // the largest gain of a path of one candidate
   for (std::size_t hop = 1; hop <= kLongestPath; ++hop) {
-    next.clear();
-    for (const std::size_t before : reached)
-      for (const StationGraph::Overlap& other : problem_.graph->overlaps(before)) {
-        const std::size_t k = other.candidate;
-        if (hops[k] < none_ || static_cast<double>(other.share) < problem_.link || !joinable_.may_stand(k)) continue;
-        if (from[k] < none_ && gains_[before] <= gains_[from[k]]) continue;
-        if (!may_follow(k, before, from)) continue;
-        if (from[k] == none_) next.push_back(k);
-        from[k] = before;
+    // Ways back lead over earlier hops, which stay as they are.
+    parallel::for_all(std::size_t{0}, free_.size(), [&](std::size_t i) {
+      const std::size_t k = free_[i];
+      if (hops[k] < none_ || !joinable_.may_stand(k)) return;
+      for (const StationGraph::Overlap& other : problem_.graph->overlaps(k)) {
+        const std::size_t before = other.candidate;
+        if (hops[before] == hop - 1 && static_cast<double>(other.share) >= problem_.link &&
+            (from[k] == none_ || gain(before) > gain(from[k])) && may_follow(k, before, from))
+          from[k] = before;
       }
+    });
+    next.clear();
+    for (const std::size_t k : free_)
+      if (hops[k] == none_ && from[k] < none_) next.push_back(k);
     if (next.empty()) break;
-    std::ranges::sort(next);
     for (const std::size_t k : next) {
       hops[k] = hop;
       double sum = 0;
       for (std::size_t at = k; hops[at] > 0; at = from[at]) sum += gain(at);
       if (gain(k) > 0) ends.push_back({sum / static_cast<double>(hop), k});
-      if (hop == 1) one_step = std::max(one_step, gain(k));
     }
-    // A longer path gains more for each candidate only if one of them gains more than any that is a step away.
-    if (std::ranges::none_of(free_, [&](std::size_t k) { return hops[k] == none_ && gain(k) > one_step; })) break;
-    reached.swap(next);
   }
   const std::size_t tried = std::min(kPathsTried, ends.size());
   std::ranges::partial_sort(ends, ends.begin() + static_cast<std::ptrdiff_t>(tried), [](const End& a, const End& b) {

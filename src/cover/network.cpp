@@ -168,28 +168,7 @@ std::vector<std::size_t> NetworkLinks::counts_without() const {
 }
 
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link) {
-  const std::size_t size = network.size();
-  if (link <= 0) return {.of = std::vector<std::size_t>(size, 0), .count = 1};
-  const std::vector<std::uint32_t> places = places_of(problem, network);
-  Components found{.of = std::vector<std::size_t>(size, size)};
-  std::vector<std::size_t> open;
-  for (std::size_t first = 0; first < size; ++first) {
-    if (found.of[first] < size) continue;
-    found.of[first] = found.count;
-    open.assign(1, first);
-    while (!open.empty()) {
-      const std::size_t here = open.back();
-      open.pop_back();
-      for (const StationGraph::Overlap& other : problem.graph->overlaps(network[here])) {
-        const std::size_t at = places[other.candidate];
-        if (at == size || found.of[at] < size || static_cast<double>(other.share) < link) continue;
-        found.of[at] = found.count;
-        open.push_back(at);
-      }
-    }
-    ++found.count;
-  }
-  return found;
+  return NetworkLinks(problem, network, link).components();
 }
 
 Joinable::Joinable(const CoverProblem& problem, std::span<const std::size_t> network)

@@ -69,75 +69,29 @@ ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : matrix_(matrix), offset
 }
 
 CoverGains::CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen)
-    : matrix_(matrix),
-      columns_(columns),
-      cover_(matrix, chosen),
-      value_(cover_.value()),
-      gains_(matrix.candidates()),
-      losses_(matrix.candidates(), 0),
-      members_(matrix.elements()) {
-  for (const std::size_t k : chosen) {
-    losses_[k] = cover_.loss(k);
-    for (const CoverageMatrix::Entry& one : matrix.column(k))
-      members_[one.element].push_back({static_cast<std::uint32_t>(k), one.amount});
-  }
+    : matrix_(matrix), columns_(columns), cover_(matrix, chosen), gains_(matrix.candidates()) {
   parallel::for_all(std::size_t{0}, gains_.size(), [&](std::size_t k) { gains_[k] = cover_.gain(k); });
 }
 
-void CoverGains::change_losses(std::size_t element, double had, double has) {
-  const double goal = matrix_.goal(element), each = this->each(element);
-  for (const ColumnIndex::Column& member : members_[element]) {
-    // A member is missed as far as the others leave its amount open.
-    const double amount = member.amount;
-    const auto missed = [&](double all) { return std::clamp(goal - (all - amount), 0.0, amount); };
-    losses_[member.candidate] += each * (missed(has) - missed(had));
+void CoverGains::change(std::optional<std::size_t> leaving, std::size_t joining) {
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> before;  // amounts of elements
+  const auto remember = [&](std::size_t candidate) {
+    for (const CoverageMatrix::Entry& one : matrix_.column(candidate))
+      before.emplace_back(one.element, cover_.amount(one.element));
+  };
+  if (leaving) remember(*leaving);
+  remember(joining);
+  if (leaving) cover_.remove(*leaving);
+  cover_.add(joining);
+  std::vector<char> changed(gains_.size(), 0);
+  for (const auto& [element, had] : before) {
+    const std::uint64_t has = cover_.amount(element);
+    if (has == had || static_cast<double>(std::min(has, had)) >= matrix_.goal(element)) continue;
+    for (const ColumnIndex::Column& one : columns_.of(element)) changed[one.candidate] = 1;
   }
-}
-
-void CoverGains::add(std::size_t candidate) {
-  value_ += losses_[candidate] = gains_[candidate];
-  for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
-    const double goal = matrix_.goal(one.element), had = static_cast<double>(cover_.amount(one.element)),
-                 has = had + one.amount;
-    if (matrix_.weight(one.element) <= 0) continue;
-    change_losses(one.element, had, has);
-    members_[one.element].push_back({static_cast<std::uint32_t>(candidate), one.amount});
-    if (had >= goal) continue;
-    const double before = goal - had, now = std::max(goal - has, 0.0), each = this->each(one.element);
-    for (const ColumnIndex::Column& other : columns_.of(one.element)) {
-      const double amount = other.amount;
-      gains_[other.candidate] += each * (std::min(amount, now) - std::min(amount, before));
-    }
-  }
-  cover_.add(candidate);
-}
-
-void CoverGains::gains_without(std::size_t member, std::vector<double>& more) const {
-  more.assign(gains_.size(), 0);
-  for (const CoverageMatrix::Entry& one : matrix_.column(member)) {
-    const double goal = matrix_.goal(one.element), has = static_cast<double>(cover_.amount(one.element)),
-                 left = has - one.amount;
-    if (left >= goal || matrix_.weight(one.element) <= 0) continue;
-    const double now = std::max(goal - has, 0.0), then = goal - left, each = this->each(one.element);
-    for (const ColumnIndex::Column& other : columns_.of(one.element)) {
-      const double amount = other.amount;
-      more[other.candidate] += each * (std::min(amount, then) - std::min(amount, now));
-    }
-  }
-}
-
-void CoverGains::remove(std::size_t member, std::span<const double> more) {
-  value_ -= losses_[member];
-  for (std::size_t k = 0; k < gains_.size(); ++k) gains_[k] += more[k];
-  for (const CoverageMatrix::Entry& one : matrix_.column(member)) {
-    if (matrix_.weight(one.element) <= 0) continue;
-    std::vector<ColumnIndex::Column>& members = members_[one.element];
-    *std::ranges::find(members, member, &ColumnIndex::Column::candidate) = members.back();
-    members.pop_back();
-    const auto had = static_cast<double>(cover_.amount(one.element));
-    change_losses(one.element, had, had - one.amount);
-  }
-  cover_.remove(member);
+  parallel::for_all(std::size_t{0}, gains_.size(), [&](std::size_t k) {
+    if (changed[k]) gains_[k] = cover_.gain(k);
+  });
 }
 
 }  // namespace vantage

@@ -52,35 +52,39 @@ class ColumnIndex {
   std::vector<Column> columns_;
 };
 
-// A set S with the gains of all candidates to it, and the losses without each member. A change costs what the elements
-// of one column touch: the rows of those whose coverage changes, and the members that have one of them.
+// A set S with the gains of all candidates to it. A change computes those anew that have an element whose coverage
+// changed.
 class CoverGains {
  public:
-  // Keeps references. REQUIRES: no candidate twice.
-  CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen = {});
-  void add(std::size_t candidate);  // REQUIRES: not in S
-  // Sets `more`, by candidate, to what each would gain more without a member; then the member leaves.
-  void gains_without(std::size_t member, std::vector<double>& more) const;  // REQUIRES: in S
-  void remove(std::size_t member, std::span<const double> more);
+  // Keeps references.
+  CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen);
+  void add(std::size_t candidate) { change({}, candidate); }
+  void replace(std::size_t leaving, std::size_t joining) { change(leaving, joining); }  // REQUIRES: leaving in S
 
   const PartialCover& cover() const { return cover_; }
-  double value() const { return value_; }  // F(S) as changes add up; cover().value() sums it anew
   double operator[](std::size_t candidate) const { return gains_[candidate]; }
-  double loss(std::size_t member) const { return losses_[member]; }  // REQUIRES: in S
+  // Calls gained(k, d) for candidates k whose gain grows by d once `leaving` is not in S, in parts.
+  template <class Gained>
+  void for_gains_without(std::size_t leaving, const Gained& gained) const {
+    if (matrix_.total_weight() <= 0) return;
+    for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {
+      const std::uint64_t has = cover_.amount(one.element), left = has - one.amount;
+      if (static_cast<double>(left) >= matrix_.goal(one.element)) continue;  // covered without it, too
+      const double share = matrix_.weight(one.element) / matrix_.total_weight();
+      const double lost = cover_.covered(one.element, has) - cover_.covered(one.element, left);
+      for (const ColumnIndex::Column& other : columns_.of(one.element))
+        gained(other.candidate, share * (lost - (cover_.covered(one.element, has + other.amount) -
+                                                 cover_.covered(one.element, left + other.amount))));
+    }
+  }
 
  private:
-  // The change in the members' losses once an element has another amount.
-  void change_losses(std::size_t element, double had, double has);
-  double each(std::size_t element) const {
-    return matrix_.weight(element) / matrix_.goal(element) / matrix_.total_weight();
-  }
+  void change(std::optional<std::size_t> leaving, std::size_t joining);
 
   const CoverageMatrix& matrix_;
   const ColumnIndex& columns_;
   PartialCover cover_;
-  double value_ = 0;
-  std::vector<double> gains_, losses_;                     // by candidate
-  std::vector<std::vector<ColumnIndex::Column>> members_;  // by element
+  std::vector<double> gains_;
 };
 
 }  // namespace vantage

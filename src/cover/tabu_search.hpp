@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <span>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -16,35 +14,33 @@ namespace vantage {
 
 class TabuSearch {
  public:
-  struct Found {
-    std::vector<std::size_t> network = {};  // the one with the least violation, then the most coverage
-    double violation = 0;
-    std::vector<std::size_t> joined = {};  // candidates that any network on the way had, besides those of its start
-  };
+  // Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
+  // return. A candidate that came may leave again after half as many.
+  static constexpr std::size_t kPatience = 40, kTabu = 7;
 
-  // Keeps a reference to the problem. `patience`: swaps tried without a network of less violation, besides one of each
-  // member, before a search gives up.
-  TabuSearch(const CoverProblem& problem, std::size_t patience, std::stop_token stop = {});
+  // Keeps a reference to the problem.
+  explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
 
-  // Swaps members of a network, first for candidates that leave it nearly as good as the best one so far, until its
-  // violation is at most `enough`. `link` replaces that of the problem.
-  Found run(std::vector<std::size_t> start, double link, double enough = 0) const;
-  // The same from several starts at once. Returns the results up to the first one that is good enough: all, if none is.
-  // They are the same for any number of threads.
-  std::vector<Found> run(std::span<const std::vector<std::size_t>> starts, double link, double enough) const;
+  // Makes the best swap each time, even to a worse network, and returns the best network found. Ends once nothing is
+  // violated. `link` replaces that of the problem.
+  std::vector<std::size_t> run(std::vector<std::size_t> start, double link);
 
  private:
+  // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
-  Found run(std::vector<std::size_t> start, double link, double enough, std::uint64_t seed,
-            const std::function<bool()>& stopped) const;
-  Swap best_swap_at(State& state, std::size_t at) const;
+  struct Leaving;
+  struct Round;
+  struct Scratch;
+  class Ranking;
+  Swap best_swap(State& state) const;
+  Swap best_swap_at(State& state, const Round& round, std::size_t at, Scratch& scratch) const;
+  void replace(State& state, std::size_t at, std::size_t joining) const;
 
   const CoverProblem& problem_;
-  std::size_t patience_;
   std::stop_token stop_;
   std::vector<std::size_t> free_;
-  ColumnIndex columns_;
+  std::optional<ColumnIndex> columns_;  // made when first needed
 };
 
 }  // namespace vantage

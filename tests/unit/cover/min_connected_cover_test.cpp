@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Against all networks there are, on problems small enough to try them.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <bit>
 #include <cmath>
@@ -182,80 +181,6 @@ TEST(ImproveWeakestLink, IsNeverWorse) {
     stronger += better.link > first.link;
   }
   EXPECT_GT(stronger, 0u);
-}
-
-TEST(ImproveWeakestLink, GoesNoFurtherThanIsEnough) {
-  std::size_t further = 0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    SCOPED_TRACE(seed);
-    const RandomSite site = random_site(40, seed);
-    const CoverProblem problem = site.problem(0.8, 0.3, 40);
-    const CoverSolution first = min_connected_cover(problem).best;
-    EXPECT_EQ(improve_weakest_link(problem, first, first.link).chosen, first.chosen) << "it is enough already";
-    const CoverSolution some = improve_weakest_link(problem, first, first.link + 0.01),
-                        most = improve_weakest_link(problem, first);
-    EXPECT_GE(some.link, first.link);
-    EXPECT_EQ(some.chosen.size(), first.chosen.size());
-    further += most.link > some.link;
-  }
-  EXPECT_GT(further, 0u);
-}
-
-// A site of so many elements that networks are chosen on some of them first. They are in clusters of hundreds, of which
-// one in a step tells little.
-TEST(MinConnectedCover, HoldsOnAllElementsThoughSomeChooseFirst) {
-  for (unsigned seed = 1; seed <= 4; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937 random(seed);
-    const auto number = [&] { return static_cast<double>(random()) / 4294967296.0; };
-    constexpr std::size_t kElements = 12'000, kCandidates = 60;
-    std::vector<Vec3> at(kCandidates), elements(kElements);
-    for (Vec3& p : at) p = {20 * number(), 20 * number(), 0};
-    for (Vec3& p : elements) p = {20 * number(), 20 * number(), 0};
-    const auto apart = [](const Vec3& a, const Vec3& b) { return std::sqrt(dot(a - b, a - b)); };
-    CoverageMatrix matrix(std::vector<std::uint32_t>(kElements, 1), 5);
-    for (const Vec3& p : at) {
-      std::vector<std::uint32_t> amounts;
-      for (const Vec3& e : elements) amounts.push_back(apart(p, e) < 5 ? 1 + random() % 6 : 0);
-      matrix.add(amounts);
-    }
-    StationGraph graph(matrix, kCandidates);
-    graph.exclude_nearer(at, 1);
-    const CoverProblem problem{.matrix = matrix, .graph = &graph, .existing = {5}, .coverage = 0.85, .link = 0.2};
-    const ConnectedCover found = min_connected_cover(problem);
-    ASSERT_EQ(found.best.violation, 0);
-    EXPECT_EQ(found.best.chosen.front(), 5u);
-    EXPECT_GE(coverage_by_definition(matrix, found.best.chosen), 0.85);
-    EXPECT_TRUE(connected_by_definition(graph, found.best.chosen, 0.2));
-    for (const std::size_t a : found.best.chosen)
-      for (const std::size_t b : found.best.chosen) EXPECT_FALSE(graph.excluded(a, b));
-    const CoverSolution again = evaluate_cover(problem, found.best.chosen);
-    EXPECT_EQ(again.coverage, found.best.coverage);
-    EXPECT_EQ(again.link, found.best.link);
-    ASSERT_TRUE(found.one_fewer);
-    EXPECT_EQ(found.one_fewer->chosen.size() + 1, found.best.chosen.size());
-    EXPECT_EQ(found.one_fewer->violation, evaluate_cover(problem, found.one_fewer->chosen).violation);
-    EXPECT_GT(found.one_fewer->violation, 0);
-    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(min_connected_cover(problem).best.chosen, found.best.chosen) << "the same by any number of threads";
-  }
-}
-
-// Two groups without a link, of which one covers most: the other is left out, since a missing link is worth more.
-TEST(MinConnectedCover, LeavesOutWhatNoLinkLeadsTo) {
-  CoverageMatrix matrix(std::vector<std::uint32_t>(100, 1), 1);
-  StationGraph graph(20);
-  for (std::size_t k = 0; k < 20; ++k) {
-    std::vector<std::uint32_t> amounts(100, 0);
-    for (std::size_t e = 5 * k; e < 5 * k + 5; ++e) amounts[e] = 1;
-    matrix.add(amounts);
-    if (k > 0 && k != 17) graph.set_overlap(k - 1, k, 1);
-  }
-  const CoverProblem problem{.matrix = matrix, .graph = &graph, .coverage = 0.9, .link = 0.5};
-  const CoverSolution best = min_connected_cover(problem).best;
-  EXPECT_EQ(best.chosen.size(), 17u);
-  EXPECT_NEAR(best.violation, 0.05 / 0.9, 1e-12) << "no link is missing, but coverage";
-  EXPECT_EQ(best.link, 1);
 }
 
 // Nothing leads to the first component; a path between the others is found all the same.

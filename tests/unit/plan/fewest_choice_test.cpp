@@ -134,30 +134,6 @@ TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(test::apart_m(stations[i].position, stations[j].position), 1);
 }
 
-TEST(Strengthen, GoesAsFarAsTheLinkAskedAndTheMarginOfItsError) {
-  FewestChoice choice = chosen(floor_problem(0.7), 12);
-  const std::vector<std::size_t> network = choice.network.chosen;
-  ASSERT_GT(choice.network.link, 0);
-  double before = 0;
-  for (const double share : {0.1, 0.3, 0.5}) {
-    const double error = choice.table.overlap_error(network, share);
-    EXPECT_GT(error, before) << "a share of a half is known worst";
-    EXPECT_LE(choice.table.overlap_error(std::span(network).first(1), share), error) << "by the one that sees least";
-    before = error;
-  }
-  // What is asked is there already, with the margin: nothing is swapped.
-  choice.link_errors = kMostLinkErrors;  // the table has taken the margin off
-  choice.asked.link = choice.network.link;
-  strengthen(choice, {});
-  EXPECT_EQ(choice.network.chosen, network);
-  // More is asked than is there.
-  choice.asked.link = choice.network.link + 0.02;
-  strengthen(choice, {});
-  EXPECT_GE(choice.network.link, choice.asked.link);
-  EXPECT_EQ(choice.network.violation, 0);
-  EXPECT_EQ(choice.network.chosen.size(), network.size());
-}
-
 TEST(Choose, TakesAsManyAsThereIsTimeFor) {
   const std::size_t without_limit = chosen(floor_problem(0.8), 12).placed();
   ASSERT_GT(without_limit, 3u);
