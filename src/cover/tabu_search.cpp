@@ -233,6 +233,7 @@ std::vector<std::size_t> TabuSearch::run(std::vector<std::size_t> start, double 
     if (swap.violation == std::numeric_limits<double>::infinity()) break;
     const std::size_t leaving = state.chosen[swap.at];
     replace(state, swap.at, swap.in);
+    ++swaps_of_this_thread;
     state.tabu_until[leaving] = state.swap + kTabu + 1, state.tabu_until[swap.in] = state.swap + kTabu / 2 + 1;
     if (!swap.better_than(state.best)) continue;
     if (swap.violation < state.best.violation) idle = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "cover/partial_cover.hpp"
 
 namespace vantage {
+
+// Swaps that all searches of the calling thread have made: a measure of their work.
+std::uint64_t swaps_made() noexcept;
 
 class TabuSearch {
  public:

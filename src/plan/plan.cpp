@@ -6,6 +6,7 @@
 
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
+#include "cover/tabu_search.hpp"
 #include "plan/check_problem.hpp"
 #include "plan/complete_front.hpp"
 #include "plan/drop_networks.hpp"
@@ -151,6 +152,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   Simulator& simulator = site.simulator();
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   const Work before = site.work();
+  const std::uint64_t swaps = swaps_made();
   SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
@@ -183,7 +185,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   if (result.stop_reason == StopReason::cancelled && time.search_ended()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
   complete_front(result, context, site, {.report = {}, .stop = watch.abort});
-  result.work = result.work + (site.work() - before);
+  result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;
 }
 

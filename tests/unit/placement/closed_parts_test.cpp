@@ -79,7 +79,9 @@ Builder rooms_with_opening(double width, double sill, double head) {
 }
 
 TEST(ClosedParts, OneStoopsUnderALowHeadAndIsTold) {
-  const Scene scene = rooms_with_opening(0.9, 0, 1.6).scene();
+  Builder b = rooms_with_opening(0.9, 0, 1.6);
+  slab(b, -8, -4, 0, 10, 0);  // one comes from outside
+  const Scene scene = b.scene();
   const SearchArea area = SearchArea::build(scene);
   EXPECT_TRUE(holds(area, 3, 3, 0));
   EXPECT_TRUE(holds(area, 9, 3, 0));
@@ -144,6 +146,7 @@ TEST(ClosedParts, WhatHasNoOpeningIsNoRoom) {
 TEST(ClosedParts, APlatformIsEnteredOverItsStepAndGoodsAreNot) {
   Builder b;
   slab(b, 0, 0, 30, 20, 0);
+  slab(b, -10, 0, 0, 20, 0);  // one comes from outside
   b.box({-0.2, -0.2, 5}, {30.2, 20.2, 5.2});
   b.box({-0.2, -0.2, 0}, {30.2, 0, 5}).box({-0.2, 20, 0}, {30.2, 20.2, 5}).box({30, 0, 0}, {30.2, 20, 5});
   b.box({-0.2, 0, 0}, {0, 8, 5}).box({-0.2, 12, 0}, {0, 20, 5}).box({-0.2, 8, 3}, {0, 12, 5});

@@ -68,8 +68,8 @@ TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
   EXPECT_GT(entered.not_entered()[0].area_m2, 1000);
 }
 
-// Open yards, each a step above the last that nobody takes, with walls around them: no plane is laid below. Blocks of
-// the same heights are no yards.
+// Open yards, each a step above the last that nobody takes, are ground with walls around them and without: no plane is
+// laid below.
 TEST(Walkable, FloorsWithWallsAroundAreAGround) {
   for (const double walls : {3.0, 0.0}) {
     test::Builder builder;
@@ -79,7 +79,7 @@ TEST(Walkable, FloorsWithWallsAroundAreAGround) {
       if (walls > 0) builder.box({x, -0.2, -0.2}, {x + 10, 0, z + walls}).box({x, 10, -0.2}, {x + 10, 10.2, z + walls});
     }
     if (walls > 0) builder.box({-0.2, 0, -0.2}, {0, 10, walls}).box({40, 0, -0.2}, {40.2, 10, 1.8 + walls});
-    EXPECT_EQ(SearchArea::build(builder.scene()).on_plane(), walls == 0);
+    EXPECT_FALSE(SearchArea::build(builder.scene()).on_plane());
   }
 }
 

@@ -227,7 +227,7 @@ TEST(SharedMeshes, DistancesToScaledMeshesAreTheSame) {
       near += a.within(p, 0.3);
     }
   }
-  EXPECT_GT(near, 20u);
+  EXPECT_GT(near, 10u) << "points near a mesh, and far from all";
 }
 
 TEST(SharedMeshes, AGroundIsTheSame) {
