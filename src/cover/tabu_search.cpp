@@ -10,6 +10,13 @@
 #include "core/parallel.hpp"
 
 namespace vantage {
+namespace {
+
+thread_local std::uint64_t swaps_of_this_thread = 0;
+
+}  // namespace
+
+std::uint64_t swaps_made() noexcept { return swaps_of_this_thread; }
 
 struct TabuSearch::Swap {
   double violation = std::numeric_limits<double>::infinity(), coverage = -1;
