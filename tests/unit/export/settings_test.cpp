@@ -189,7 +189,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }},
     // Targets are of the answer, and decide nothing in its search.
     {"targets", [](SurveyProblem& p) { p.targets = 4; }, false},
-    {"existing_names", [](SurveyProblem& p) { p.existing_names = {"A"}; }, false},
+    {"existing_names", [](SurveyProblem& p) { p.existing_names = {"A"}; }, false, false},
     {"existing_targets",
      [](SurveyProblem& p) {
        p.existing_targets = {{.name = "C1", .centre = {1, 2, 3}, .control_m = 0.002}};
