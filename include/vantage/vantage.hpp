@@ -32,4 +32,3 @@
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"
 #include "vantage/work.hpp"
-#include "vantage/write_plan.hpp"

@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "core/json_text.hpp"
 #include "core/options_json.hpp"
 #include "core/text.hpp"
 #include "vantage/error.hpp"
@@ -124,7 +123,7 @@ std::string next_json(const Day& day, const Site& found) {
                   {"seed", found.simulator_config().seed},
                   {"options", options_json(all)},
                   {"version", version()}};
-  return json_text(text, 2) + "\n";
+  return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 void write_next(const std::filesystem::path& folder, const Day& day, Site& found) {
