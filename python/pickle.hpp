@@ -33,10 +33,14 @@ inline auto members(Visit& v) {
                   v.unconnected);
 }
 inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
+inline auto members(Work& w) {
+  return std::tie(w.networks, w.rays, w.sampled_networks, w.sampled_voxels, w.sampled_rays, w.planes, w.choice_steps,
+                  w.uploaded_bytes);
+}
 inline auto members(Evaluation& e) {
-  return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.field, e.values, e.attainable,
-                  e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.link_overlap, e.link, e.registration,
-                  e.visit, e.moves, e.violation);
+  return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.work, e.field, e.values,
+                  e.attainable, e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.link_overlap, e.link,
+                  e.registration, e.visit, e.moves, e.violation);
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {
