@@ -81,7 +81,7 @@ struct RegistrationSums {
   /// Surface seen by k stations counts 1/k for each.
   std::vector<double> surface;
   /// The same sums for each of G interleaved groups of a sample, for standard errors; empty if all voxels were summed.
-  /// Of more than 64 stations they hold only the pairs whose sums are not 0.
+  /// Networks of more than 64 stations leave out the pairs whose sums are 0.
   std::vector<RegistrationSums> groups;
 };
 

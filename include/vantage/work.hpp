@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a computation cost, in numbers that neither the machine nor its load changes.
+/// The cost of a computation, in numbers that neither the machine nor its load changes.
 #pragma once
 
 #include <cstdint>

@@ -170,7 +170,6 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
 // Every voxel's count under the network that is shown; empty where it was stopped.
 std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program,
                                       std::stop_token abort) {
-  if (!entry.field.count.empty()) return entry.field;
   ProgressLine line(program.console, "mapping what is captured");
   VoxelField field;
   const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
@@ -245,13 +244,16 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
                    const PlanResult& result, Program& program, const Deadline& map_by, const Deadline& all_by) {
   const PlanEntry& chosen = result.front[answer(result)];
-  const auto field = cartography(site.simulator(), chosen, program, map_by.stop());
+  // The evaluation that counted the answer mostly kept its points.
+  const bool kept = !chosen.field.count.empty();
+  const auto counted = kept ? std::nullopt : cartography(site.simulator(), chosen, program, map_by.stop());
+  const VoxelField* const field = kept ? &chosen.field : counted ? &*counted : nullptr;
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   remove_earlier(folder,
                  {"missed.csv", "missed.ply", "missed.png", "rooms.csv", "report.html", "report.pdf", "bound.json"});
   const auto begun = std::chrono::steady_clock::now();
-  const std::vector<std::string> not_drawn = write_plan(folder, result, site, field ? &*field : nullptr, all_by.stop());
+  const std::vector<std::string> not_drawn = write_plan(folder, result, site, field, all_by.stop());
   if (!not_drawn.empty())
     spdlog::warn(
         "not drawn, since the time was over: {}; vantage evaluate SITE --stations {} --picture plan.png draws all "
@@ -272,8 +274,8 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
                  (folder / "front.json").string());
   else if (!options.no_report && why_no_report().empty())
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, site,
-                  options.report_head.with({.field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}),
-                  program, all_by.stop());
+                  options.report_head.with({.field = field, .missed = judged ? &*judged : nullptr}), program,
+                  all_by.stop());
   if (options.prove)
     prove(folder / "bound.json", site, chosen.stations, result.problem.existing.size(), result.attainable.has_value(),
           program);

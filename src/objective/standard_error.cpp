@@ -19,8 +19,8 @@ namespace {
 constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
 constexpr double least_unbiased = 0.5;  // of a sample's registration error, that remains after subtracting its bias
 
-// Whether a function looks at the sums of registration. Of hundreds of stations these are by far the most, and they may
-// be of a sample where every voxel was counted.
+// The sums that a function looks at. Those of registration are by far the most with hundreds of stations, and they may
+// be of a sample although every voxel was counted.
 enum class Sums : std::uint8_t { none, registration };
 
 double unsampled_share(const NetworkCounts& counts, std::uint64_t population, Sums sums = Sums::none) {
@@ -90,7 +90,7 @@ std::vector<Value> replicates(const NetworkCounts& counts, Sums sums,
     const std::size_t g = groups[k];
     NetworkCounts rest = all;
     if (registered) take_off(rest.registration, parts[g]);
-    // Where every voxel was counted, the sums alone are of a sample.
+    // The counts have no groups if every voxel was counted and only the sums are of a sample.
     if (g < counts.groups.size()) take_off(rest, counts.groups[g]);
     found[k] = of(rest);
   });

@@ -27,8 +27,8 @@ constexpr std::size_t kRepairs = 6, kNewChoices = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 6000, kFewerStations = 500;
 
-// Time of the stages after the first round of refinement, in times of those until then: measured on the sites of
-// docs/examples.md. Timing the stages themselves would take longer than some of them.
+// Time of the stages after the first round of refinement, in times of those until then: a guess from one plan of the
+// office. Timing the stages themselves would take longer than some of them.
 constexpr double kRestOfPlan = 3;
 
 // Largest networks of a trade-off that are measured together.
