@@ -6,6 +6,7 @@
 #   ./setup.sh --tests    the same, with the tests, the benchmarks and the examples
 #   ./setup.sh --packages what the packages and the Python module are built with; nothing is built
 #   ./setup.sh --ifc      what reading IFC takes: node, and web-ifc by npm
+#   ./setup.sh --laz      what reading LAZ takes: node, and laz-perf by npm
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -14,8 +15,8 @@ readonly packages=(
   g++ cmake ninja-build pkgconf git ca-certificates
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
-  libpng-dev libturbojpeg0-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
-  libassimp-dev libdraco-dev libdxflib-dev libexpat1-dev libgeos-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
+  libpng-dev libseccomp-dev libturbojpeg0-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
+  libassimp-dev libdraco-dev libexpat1-dev libgeos-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin poppler-utils gdal-bin dpkg-dev file mmdebstrap
   pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib python3-jsonschema libopenmpi-dev openmpi-bin)
@@ -27,7 +28,8 @@ case "${1-}" in
   --tests) mode=tests ;;
   --packages) mode=packages ;;
   --ifc) mode=ifc ;;
-  *) echo "usage: $0 [--tests | --packages | --ifc]" >&2; exit 2 ;;
+  --laz) mode=laz ;;
+  *) echo "usage: $0 [--tests | --packages | --ifc | --laz]" >&2; exit 2 ;;
 esac
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -59,7 +61,7 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
 fi
 
 wanted=()
-[ "$mode" = ifc ] || wanted+=("${packages[@]}")
+[ "$mode" = ifc ] || [ "$mode" = laz ] || wanted+=("${packages[@]}")
 # Whoever has these from elsewhere keeps those.
 if [ "$mode" != program ]; then
   command -v node >/dev/null || wanted+=(nodejs)
@@ -78,7 +80,7 @@ builder_needed=no
 if { [ "$mode" = tests ] || [ "$mode" = packages ]; } && ! installed "$builder"; then builder_needed=yes; fi
 mesa=$(version_of mesa-vulkan-drivers)
 mesa_needed=no
-if [ "$mode" = ifc ]; then
+if [ "$mode" = ifc ] || [ "$mode" = laz ]; then
   mesa_needed=no
 elif ! installed mesa-vulkan-drivers || dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then mesa_needed=yes; fi
 
@@ -143,6 +145,8 @@ case "$mode" in
     cmake --build --preset release
     npm_ci tests/clients "the programs that read back what vantage writes"
     npm_ci src/import/ifc "the reader of IFC"
+    npm_ci src/import/laz "the reader of LAZ"
     ;;
   ifc) npm_ci src/import/ifc "the reader of IFC" ;;
+  laz) npm_ci src/import/laz "the reader of LAZ" ;;
 esac

@@ -17,6 +17,7 @@ find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
+pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp) # what importers may do
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
 pkg_check_modules(proj REQUIRED IMPORTED_TARGET "proj>=7")

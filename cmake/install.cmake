@@ -20,6 +20,7 @@ if(TARGET vantage-cli)
     install(TARGETS ${importer} RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR} COMPONENT program)
   endforeach()
   vantage_install_ifc(${VANTAGE_IMPORTERS_DIR} COMPONENT program)
+  vantage_install_laz(${VANTAGE_IMPORTERS_DIR} COMPONENT program)
 endif()
 # The presets are part of the library; the file is an example of their form.
 install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage COMPONENT program)

@@ -9,6 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=${1:-build/packages}
 ./setup.sh --packages
 [ -d src/import/ifc/node_modules ] || ./setup.sh --ifc
+[ -d src/import/laz/node_modules ] || ./setup.sh --laz
 name=${DEBFULLNAME:-$(git config user.name || echo vantage)}
 email=${DEBEMAIL:-$(git config user.email || echo root@localhost)}
 cmake --preset release -B "$folder" -DCMAKE_INSTALL_PREFIX=/usr -DCPACK_PACKAGE_CONTACT="$name <$email>" \

@@ -6,16 +6,44 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "core/atomic_file.hpp"
+#include "vantage/objective.hpp"
+#include "vantage/planner.hpp"
+#include "vantage/scanner.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage::cli {
 namespace {
+
+// Values that an option's text is one of; none: they are no list.
+std::vector<std::string> words_of(const std::string& option) {
+  const auto all = [](std::span<const std::string> names) {
+    return std::vector<std::string>(names.begin(), names.end());
+  };
+  if (option == "engine") return {"auto", "ray_query", "compute_bvh", "embree"};
+  if (option == "objectives") return all(objective_names());
+  if (option == "problem") {
+    std::vector<std::string> names = all(problem_names());
+    names.insert(names.begin(), "survey");
+    return names;
+  }
+  std::vector<std::string> keys;
+  if (option == "scanner")
+    for (const ScannerPreset& preset : list_scanners()) keys.push_back(preset.key);
+  return keys;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
 
 // What a shell completes a value with. The units that options are listed with say it.
 enum class Value { none, text, file, folder };
@@ -34,6 +62,7 @@ struct Row {
   std::string unit, help;
   Value value = Value::none;
   bool repeated = false;
+  std::vector<std::string> words = {};
 };
 
 struct Group {
@@ -49,6 +78,7 @@ Row row_of(const CLI::Option& option) {
   if (row.names.empty()) row.names.push_back(option.get_name());
   if (row.value == Value::none) row.unit.clear();
   row.repeated = option.get_items_expected_max() > 1;
+  if (!option.get_lnames().empty()) row.words = words_of(option.get_lnames().front());
   return row;
 }
 
@@ -159,7 +189,7 @@ std::string main_page(const CLI::App& app) {
 }
 
 std::string bash_of(const CLI::App& app) {
-  std::string commands, options, files, folders, others;
+  std::string commands, options, files, folders, others, chosen, choices;
   for (const CLI::App* command : commands_of(app)) {
     commands += " " + command->get_name();
     options += "    " + command->get_name() + ") options='";
@@ -170,6 +200,12 @@ std::string bash_of(const CLI::App& app) {
           std::string& list = row.value == Value::file ? files : row.value == Value::folder ? folders : others;
           // An option means the same in all commands, but for -o: what completes files completes folders, too.
           const std::string each = name + "|";
+          if (!row.words.empty()) {
+            if (("|" + chosen).find("|" + each) == std::string::npos)
+              chosen += each, choices += "    " + name + ") COMPREPLY=($(compgen -W '" + joined(row.words) +
+                                         "' -- \"$cur\")); return ;;\n";
+            continue;
+          }
           const auto listed = [&](const std::string& in) { return ("|" + in).find("|" + each) != std::string::npos; };
           if (row.value != Value::none && !listed(files) && !listed(folders) && !listed(others)) list += each;
         }
@@ -190,7 +226,7 @@ std::string bash_of(const CLI::App& app) {
          "  fi\n"
          "  compopt -o filenames 2>/dev/null\n"
          "  case $prev in\n" +
-         cases(files, "COMPREPLY=($(compgen -f -- \"$cur\")); ") +
+         choices + cases(files, "COMPREPLY=($(compgen -f -- \"$cur\")); ") +
          cases(folders, "COMPREPLY=($(compgen -d -- \"$cur\")); ") + cases(others, "") +
          "  esac\n"
          "  case $command in\n" +
@@ -235,7 +271,10 @@ std::string zsh_of(const CLI::App& app) {
         std::string others;
         for (const std::string& name : row.names) others += (others.empty() ? "" : " ") + name;
         const std::string before = row.repeated ? "*" : "(" + others + ")";
-        const std::string action = row.value == Value::file ? "_files" : row.value == Value::folder ? "_files -/" : " ";
+        const std::string action = !row.words.empty()           ? "(" + joined(row.words) + ")"
+                                   : row.value == Value::file   ? "_files"
+                                   : row.value == Value::folder ? "_files -/"
+                                                                : " ";
         for (const std::string& name : row.names)
           text += "            '" + before + name + "[" + zsh(row.help) + "]" +
                   (row.value == Value::none ? "" : ":" + zsh(row.unit) + ":" + action) + "' \\\n";

@@ -10,6 +10,7 @@ folder=${1:-build/wheel}
 python=${PYTHON:-/usr/bin/python3}
 ./setup.sh --packages
 [ -d src/import/ifc/node_modules ] || ./setup.sh --ifc
+[ -d src/import/laz/node_modules ] || ./setup.sh --laz
 plain=$(mktemp -d)
 trap 'rm -rf "$plain"' EXIT
 "$python" -m pip wheel . --quiet --no-deps --no-build-isolation --wheel-dir "$plain"

@@ -198,6 +198,20 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
   });
 }
 
+std::vector<std::string> write_folder(const Plan& plan, const std::filesystem::path& folder,
+                                      const std::optional<std::string>& title, bool reports,
+                                      std::optional<double> max_seconds, py::object progress) {
+  const auto lock = plan.site->taken();
+  LongCall call(std::move(progress));
+  return call.run([&] {
+    return write_plan(folder, plan.result, plan.site->site,
+                      {.report = {.title = title.value_or("")}, .reports = reports, .max_seconds = max_seconds},
+                      {.report = [&](const FolderProgress& now) { call.report([&] { return now.whole; }); },
+                       .stop = call.stop()})
+        .left_out;
+  });
+}
+
 void add_results(py::module_& m) {
   py::class_<Plan, std::shared_ptr<Plan>> type(m, "PlanResult", "Result of a search.");
   type.def_property_readonly(
@@ -255,15 +269,13 @@ void add_results(py::module_& m) {
           },
           "Content of front.json: the front, every parameter, engine, seed and version. Entries count from 1.")
       .def(
-          "write",
-          [](const Plan& plan, const std::filesystem::path& folder) {
-            const auto lock = plan.site->taken();
-            const py::gil_scoped_release unlocked;
-            write_plan(folder, plan.result, plan.site->site);
-          },
-          py::arg("folder"),
-          "Writes the result folder: front.csv, front.json, stations.csv, the pictures, and maps if the site has a "
-          "coordinate\nsystem (docs/files.md). Raises Error: io, invalid_argument.")
+          "write", &write_folder, py::arg("folder"), py::kw_only(), py::arg("title") = py::none(),
+          py::arg("reports") = true, py::arg("max_seconds") = py::none(), py::arg("progress") = py::none(),
+          "Writes the result folder, all that `vantage plan` writes of a plan: tables, drawings, pictures, captured "
+          "and "
+          "missed\nsurface, reports (docs/files.md). Counts the answer with every ray once. Returns the names of files "
+          "that were left out\nsince `max_seconds` were over, or progress returned False. title: of the reports; None: "
+          "the site's name. Raises\nError: io, invalid_argument.")
       .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = py::none(),
            py::arg("progress") = py::none(),
            "Writes report.html or report.pdf by the file's extension, with the surfaces that the answer captures and "

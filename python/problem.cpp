@@ -187,6 +187,8 @@ Options<SurveyProblem> problem_options() {
       .add<py::iterable>("existing_setups", tuple_of(&SurveyProblem::existing_setups),
                          from_list(&SurveyProblem::existing_setups),
                          "Their StationSetups, one each; none: upright, with the first scanner.")
+      .add<py::iterable>("existing_names", tuple_of(&SurveyProblem::existing_names),
+                         from_list(&SurveyProblem::existing_names), "Their names, one each, or none.")
       .add<py::iterable>(
           "scanners", tuple_of(&SurveyProblem::scanners), from_list(&SurveyProblem::scanners),
           "Indices into `Simulator.scanners` that each station chooses from, in their order; none: the first.")

@@ -29,6 +29,7 @@ Options<SceneOptions> scene_options() {
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
       .add("up", &SceneOptions::up, "'x', 'y' or 'z'; None: recognised.")
+      .add("beside", &SceneOptions::beside, "Further files of the same site, read with it as one scene.")
       .add("wall_layers", &SceneOptions::wall_layers, "Patterns of the layers of a floor plan's walls; []: recognised.")
       .add("wall_height_m", &SceneOptions::wall_height_m, "Height of a floor plan's walls, metres; None: 2.7.")
       .add("shared_meshes", &SceneOptions::shared_meshes,

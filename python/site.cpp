@@ -59,11 +59,10 @@ std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
   std::vector<PlacedStation> placed = stations_of(stations);
   for (PlacedStation& station : placed) {
     if (station.ground != station.position || station.status == StationStatus::hole) continue;
+    if (!active(station)) continue;  // it may be out of reach, as a hole is
     const StationSetup setup = station.setup;
-    const bool skipped = !active(station);
     station = site.place_head(station.position).station;
     station.setup = setup;
-    if (skipped) station.status = StationStatus::clash;
   }
   return placed;
 }

@@ -3,7 +3,7 @@
 # tests/nightly.sh [part...]
 # What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
 #
-#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked;
+#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked; random drawings and clouds;
 #              the sweep of docs/sweep.md
 #   faults     every n of the faults of device, disk and process, and every number for every option
 #   address, undefined, thread
@@ -13,6 +13,7 @@
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
 #   readers    point clouds in PLY as the Point Cloud Library reads them (needs pcl-tools)
+#   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; 200 random files of meshes
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -32,6 +33,9 @@ sites() {
   VANTAGE_WHOLE_SITES=1 run "$tests/stress/stress_test" --gtest_brief=1
   VANTAGE_WHOLE_SITES=1 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='*Plans*'
   VANTAGE_SEEDS=1..200 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='RandomSites.*'
+  VANTAGE_SEEDS=1..400 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='FloorPlanRandomTest.*'
+  VANTAGE_SEEDS=1..200 run node --test tests/unit/import/ifc/random_test.mjs
+  VANTAGE_SEEDS=1..200 run "$tests/unit/import/cloud/cloud_test" --gtest_brief=1 --gtest_filter='RandomClouds.*'
   run build/release/vantage-bench sweep office house street plant 1..40 -o build/sweep --by-hand tests/sites/by_hand --step 0.4 --user-size 0.3 --spacing 0.1
   VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'
 }
@@ -69,6 +73,11 @@ readers() {
   command -v pcl_ply2pcd >/dev/null || { echo "nightly: pcl_ply2pcd is not installed (Debian: pcl-tools)"; return 1; }
   run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
 }
+writers() {
+  npm ci --prefix tests/writers >/dev/null
+  run node --no-warnings tests/writers/meshes.mjs "$PWD/build/release/vantage"
+  VANTAGE_SEEDS=1..200 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='RandomMeshTest.*'
+}
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
   cmake -G Ninja -S . -B build/mutation -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON -DCMAKE_LINK_DEPENDS_NO_SHARED=ON \
@@ -78,10 +87,10 @@ mutation() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers fuzz mutation)
+[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers writers fuzz mutation)
 for part in "${parts[@]}"; do
   case $part in
-    sites | faults | address | undefined | thread | machine | packages | docs | readers | fuzz | mutation) "$part" ;;
+    sites | faults | address | undefined | thread | machine | packages | docs | readers | writers | fuzz | mutation) "$part" ;;
     *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
   esac
 done

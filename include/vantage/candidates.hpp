@@ -107,6 +107,8 @@ class Candidates {
   const Estimate& attainable() const noexcept { return attainable_; }
   /// Relative change of it by the last doubling; 1 if there was none.
   double change() const noexcept { return change_; }
+  /// Error of what is attainable from the positions that were not tried: the last change, 0 if there are none.
+  double growth() const noexcept { return ended_ == "all" ? 0 : change_; }
   /// Why growth ended: "enough" (the change is below the wanted one), "all" (there is no further allowed position),
   /// "most", "time", "cancelled".
   const std::string& ended() const noexcept { return ended_; }

@@ -194,9 +194,10 @@ struct ConnectedCover {
 ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token stop = {},
                                    std::optional<CoverSolution> start = {});
 
-/// Swaps at the same number of candidates, first until nothing is violated, then while the weakest link grows. The
-/// result is never worse than `from`. Deterministic unless stopped.
-CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, std::stop_token stop = {});
+/// Swaps at the same number of candidates, first until nothing is violated, then while the weakest link grows and is
+/// below `enough`. The result is never worse than `from`. Deterministic unless stopped.
+CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, double enough = 1,
+                                   std::stop_token stop = {});
 
 /// Settings of bounds.
 struct BoundConfig {

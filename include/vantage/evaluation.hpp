@@ -135,6 +135,7 @@ struct EvaluationOptions {
   TargetOptions target = {};
   /// Measures `capture` too. The evaluated stations raise these counts where one alone sees more. Null: not.
   const AttainableCounts* attainable = nullptr;
+  std::optional<double> attainable_growth = std::nullopt;           ///< As in `Evaluation`, of these counts.
   double link_overlap = default_link_overlap, link = default_link;  ///< As in `Evaluation`.
   std::vector<std::string> names = {};                              ///< The stations' names, one each, or none.
 };

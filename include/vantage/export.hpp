@@ -25,8 +25,9 @@
 namespace vantage {
 
 /// Returns the well-known text (version 1, OGC 01-009, as LAS 1.4 requires) of a coordinate system. `text`:
-/// "EPSG:25832" and the like, the name of a .prj or .wkt file, or well-known text. Throws Error: io, invalid_argument
-/// (an unknown code, angles, a unit other than metres, version 2).
+/// "EPSG:25832" and the like, "EPSG:26918+5703" with heights, the name of a .prj or .wkt file, or well-known text of
+/// either version. Throws Error: io, invalid_argument (an unknown code, angles, a unit other than metres, heights
+/// included, axes other than east and north).
 std::string coordinate_system(const std::string& text);
 
 /// Description of one station in a file that keeps stations apart (E57).
@@ -154,20 +155,6 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   const std::string& title, std::span<const std::string> names = {},
                                                   std::span<const StationError> errors = {},
                                                   std::span<const Target> targets = {});
-
-/// Writes a whole result folder and makes it if needed; the files of an earlier plan there are removed or replaced.
-/// Files:
-/// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
-/// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply (if `field`, its voxel field, is given),
-/// stations.dxf, and stations.geojson and stations.kml if the site has a coordinate system by which stations can be put
-/// on WGS 84 (else `SiteOptions::warn` is told why), and targets.csv if it has targets;
-/// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
-/// floors also plan-level-1.png and so on;
-/// - if the registration error is known, ellipses in the plan and, with `field`, registration.ply, .png and .svg.
-/// Returns the names of the pictures of the plan, without plan.png, that were not begun when `late` was requested.
-/// These are left out, since pictures of a large site take seconds each.
-std::vector<std::string> write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                                    const VoxelField* field = nullptr, const std::stop_token& late = {});
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);

@@ -101,6 +101,8 @@ struct RegistrationOptions {
 };
 
 Settings settings(const RegistrationOptions& options);
+/// One row for each setting, and its bounds.
+const SettingTable<RegistrationOptions>& registration_settings();
 /// Throws Error invalid_argument with the member and its value.
 void check(const RegistrationOptions& options);
 

@@ -27,6 +27,8 @@ struct OnSiteOptions {
 };
 
 Settings settings(const OnSiteOptions& options);
+/// One row for each setting that users give, and its bounds.
+const SettingTable<OnSiteOptions>& on_site_settings();
 
 /// One round: in at the entrance, to every station, and back out.
 struct Visit {
@@ -45,11 +47,12 @@ struct Visit {
 /// read from any thread; copies share storage.
 class OnSite {
  public:
-  /// Metres from one ground point to another along the search area; empty if it does not connect them.
+  /// Metres from one ground point to another along the search area; empty if it does not connect them. Throws Error
+  /// invalid_argument for a point that is not within 1000 km of the scene.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
-  /// to three stations elsewhere (Or-opt), until neither helps. Throws std::out_of_range for a scanner that does not
-  /// exist.
+  /// to three stations elsewhere (Or-opt), until neither helps. Throws Error invalid_argument for a station that is not
+  /// within 1000 km of the scene, and std::out_of_range for a scanner that does not exist.
   Visit visit(std::span<const PlacedStation> stations) const;
   /// `Scanner::rays()` / `Scanner::points_per_second`, in minutes. Throws std::out_of_range.
   double minutes_per_scan(std::uint32_t scanner = 0) const;
@@ -58,7 +61,7 @@ class OnSite {
  private:
   friend class Site;
   OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
-         const OnSiteOptions& options);
+         const OnSiteOptions& options, const Vec3& origin);
 
   struct Impl;
   std::shared_ptr<const Impl> impl_;

@@ -38,6 +38,7 @@ struct SurveyProblem {
   std::vector<Vec3> existing = {};  ///< Heads of existing stations: the first of every network, not counted above.
   /// Their setups, one each; empty: upright, with the first scanner.
   std::vector<StationSetup> existing_setups = {};
+  std::vector<std::string> existing_names = {};  ///< The user's names of them, one each, or none.
   /// Indices into `Simulator::scanners()` that each station chooses from, in their order, e.g. one model with finer and
   /// finer steps. Empty: the first scanner.
   std::vector<std::uint32_t> scanners = {};
@@ -115,8 +116,9 @@ struct PlanConfig {
   /// number of stations is searched, the first N heads make a first member for each N up to their number.
   std::vector<Vec3> start = {};
   std::size_t redraws = 8;  ///< Attempts to redraw stations of a new network that are in holes or clashes.
-  /// Time limit of the whole call, in seconds; 0: none. Looking, choosing and searching end after eight tenths of it;
-  /// then the results are traced with every ray. Entries not reached in time have `exact` false.
+  /// Time limit of the whole call, in seconds; 0: none. Looking, choosing and searching end early enough for tracing
+  /// the results with every ray, the answer first: after eight tenths of it, or as it is measured. Entries not reached
+  /// in time have `exact` false.
   double max_seconds = 0;
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
@@ -212,6 +214,8 @@ struct PlanProgress {
   /// Given once for the fewest stations, when their number is about known: estimated time of all the rest, from the
   /// parts done so far.
   std::optional<double> whole_seconds_left = std::nullopt;
+  /// Share of the phase that is done, where it is known better than by `iteration`: a network is confirmed ray by ray.
+  std::optional<double> done = std::nullopt;
 };
 
 /// As `Progress`, for a search.
@@ -219,6 +223,10 @@ struct PlanWatch {
   std::function<void(const PlanProgress&)> report = {};  ///< Called between evaluations, on the calling thread.
   std::stop_token stop = {};                             ///< Ends the search; its results are still confirmed.
   std::stop_token abort = {};  ///< Ends the confirmation too: entries not reached have `exact` false.
+  /// Tells how many seconds of `PlanConfig::max_seconds` to leave for what the caller does with the result, such as
+  /// `write_plan()`. Asked at the beginning, with zeros, and again whenever it is measured how long a station takes
+  /// with every ray, with the number of stations of the network at hand. Empty: none.
+  std::function<double(std::size_t stations, double seconds_a_station)> seconds_after = {};
 };
 
 /// Plans a survey of a site. The problem decides what `config` leaves open: sample, iterations, seed. The same site,

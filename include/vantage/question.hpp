@@ -30,6 +30,7 @@ struct SurveyQuestion {
   std::optional<std::array<std::size_t, 2>> stations = {};  ///< Least and largest number; one number twice.
   std::vector<Vec3> existing = {};                          ///< As `SurveyProblem::existing`.
   std::vector<StationSetup> existing_setups = {};           ///< One each, or none.
+  std::vector<std::string> existing_names = {};             ///< One each, or none.
   /// Steps that each station chooses from: degrees ("0.1"), or settings of the site's preset ("6mm").
   std::vector<std::string> search_steps = {};
   std::optional<std::array<double, 2>> heights_m = {};  ///< Searched per station.
@@ -47,9 +48,6 @@ struct SurveyQuestion {
 
 /// One row for each setting. `existing` and `existing_targets` have none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
-const SettingTable<RegistrationOptions>& registration_settings();
-const SettingTable<OnSiteOptions>& on_site_settings();
-const SettingTable<TargetOptions>& target_settings();
 /// One row for each setting of a search, except `start` and `checkpoint`.
 const SettingTable<PlanConfig>& plan_settings();
 

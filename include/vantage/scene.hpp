@@ -91,6 +91,9 @@ SharedMeshes shared_meshes_from_string(const std::string& text);
 /// letters other than `*` and `?` wins; among equals, the last in the order below.
 /// Meshes without a role are surveyed; once any mesh is marked surveyed, they are blocking.
 struct SceneOptions {
+  /// Further files or folders of the same site, in the format of the file itself, read with it as one scene: IFC models
+  /// of several disciplines, scans, floor plans.
+  std::vector<std::string> beside = {};
   std::vector<std::string> surveyed = {};  ///< Surveyed nodes.
   std::vector<std::string> blocking = {};  ///< Nodes that only block.
   std::vector<std::string> search = {};    ///< Nodes of the search area.

@@ -35,6 +35,9 @@ struct SettingRow {
   /// Reads a value, or adds one if the setting is repeated. Throws Error invalid_argument; the message begins with
   /// `what`.
   std::function<void(Options&, const std::string& text, const std::string& what)> set;
+  /// Throws Error invalid_argument, as `set` does, if the options hold a value that `set` does not read. Empty: it
+  /// reads every value of the type.
+  std::function<void(const Options&, const std::string& what)> check = {};
   std::function<bool(const Options&)> given;  ///< Whether the user gave it a value. Empty: it always has one.
   bool repeated = false;                      ///< Takes any number of values, each given on its own.
   bool by_scene = false;                      ///< A scene may carry a default for it.
@@ -43,6 +46,13 @@ struct SettingRow {
 };
 template <class Options>
 using SettingTable = std::vector<SettingRow<Options>>;
+
+/// Throws Error invalid_argument with the first setting that is out of its range, and its value.
+template <class Options>
+void check_settings(const SettingTable<Options>& table, const Options& options) {
+  for (const SettingRow<Options>& row : table)
+    if (row.check) row.check(options, row.name);
+}
 
 /// A sample of voxels: a number of them or a share.
 struct SampleSize {

@@ -56,6 +56,8 @@ struct TargetOptions {
 /// Largest root mean square error that `wanted` and `largest_rms_m` allow.
 double allowed_rms_m(const TargetOptions& options);
 Settings settings(const TargetOptions& options);
+/// One row for each setting that users give, and its bounds.
+const SettingTable<TargetOptions>& target_settings();
 /// Throws Error invalid_argument with the member and its value.
 void check(const TargetOptions& options);
 

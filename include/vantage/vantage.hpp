@@ -32,3 +32,4 @@
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"
 #include "vantage/work.hpp"
+#include "vantage/write_plan.hpp"

@@ -79,6 +79,7 @@ class Scene:
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
         up: Optional[Literal["x", "y", "z"]] = None,
+        beside: Sequence[str] = [],
         wall_layers: Sequence[str] = [],
         wall_height_m: Optional[float] = None,
         shared_meshes: Literal["auto", "always", "never"] = "auto",
@@ -168,6 +169,7 @@ def load_gltf(
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
     up: Optional[Literal["x", "y", "z"]] = None,
+    beside: Sequence[str] = [],
     wall_layers: Sequence[str] = [],
     wall_height_m: Optional[float] = None,
     shared_meshes: Literal["auto", "always", "never"] = "auto",
@@ -1104,6 +1106,7 @@ class SurveyProblem:
         stations_max: int = 4,
         existing: Iterable[Sequence[float]] = (),
         existing_setups: Iterable[StationSetup] = (),
+        existing_names: Iterable[str] = (),
         scanners: Iterable[int] = (),
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
@@ -1121,6 +1124,7 @@ class SurveyProblem:
     stations_max: int
     existing: Tuple[Vec3, ...]
     existing_setups: Tuple[StationSetup, ...]
+    existing_names: Tuple[str, ...]
     scanners: Tuple[int, ...]
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
@@ -1240,7 +1244,15 @@ class PlanResult:
     @property
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
-    def write(self, folder: Path) -> None: ...
+    def write(
+        self,
+        folder: Path,
+        *,
+        title: Optional[str] = None,
+        reports: bool = True,
+        max_seconds: Optional[float] = None,
+        progress: Optional[Progress] = None,
+    ) -> List[str]: ...
     def write_report(
         self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None
     ) -> None: ...

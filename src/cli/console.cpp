@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/json_text.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
@@ -90,9 +91,7 @@ void Console::print(const std::string& what) {
   throw Error(Errc::io, "cannot write to standard output: " + std::generic_category().message(errno));
 }
 
-void Console::print(const nlohmann::json& object) {
-  print(object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-}
+void Console::print(const nlohmann::json& object) { print(json_text(object, 2) + "\n"); }
 
 std::string duration_text(double seconds) {
   char text[32];

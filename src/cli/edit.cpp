@@ -15,6 +15,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/json_text.hpp"
 #include "core/read_json.hpp"
 #include "edit/scan_watcher.hpp"
 #include "edit/server.hpp"
@@ -63,7 +64,7 @@ struct Keeper {
       rows.push_back(to_json({.placed = station.placed, .has_uv = true}, station.name, scanners));
       rows.back()["locked"] = station.locked;
     }
-    write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
+    write_text(file, json_text(nlohmann::json{{"scene", scene}, {"stations", rows}, {"version", version()}}, 2) + "\n");
   }
 
   // Empty if the scene differs.
@@ -153,9 +154,11 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
     const std::string where = "saved in " + std::filesystem::absolute(folder).string() + ": stations.csv";
     const auto judged = judge_missed(site, exact.field, program);
     if (progress.stopped()) return where + "; stopped before the reports";
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, site,
-                  {.missed = judged ? &*judged : nullptr}, program, progress.stop);
-    const std::string told = where + ", report.html, report.pdf";
+    std::string told = where;
+    for (const std::filesystem::path& file :
+         write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, site,
+                       {.missed = judged ? &*judged : nullptr}, program, progress.stop))
+      told += ", " + file.filename().string();
     spdlog::info("{}", told);
     return told;
   };

@@ -348,11 +348,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     candidates = attainable_by(
         site, std::min(chosen.sample_voxels.value_or(CandidateConfig().sample_voxels), simulator.voxel_count()),
         program);
-    chosen.attainable = &candidates.attainable_counts();
+    chosen.attainable = &candidates.attainable_counts(), chosen.attainable_growth = candidates.growth();
   }
   Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
   if (found.counts.cancelled) throw Stopped{};
-  if (options.attainable) found.attainable_growth = candidates.ended() == "all" ? 0 : candidates.change();
 
   std::optional<MissedVoxels> judged;
   if (!options.missed.files.empty() || options.rooms || (!options.reports.empty() && !options.sampled())) {

@@ -30,11 +30,7 @@ void MissedFiles::check() const {
       throw Error(Errc::invalid_argument, "--missed: " + file + " is none of .csv, .ply, .png and .svg");
 }
 
-std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program) {
-  ProgressLine line(program.console, "finding why surface is missed");
-  MissedVoxels judged =
-      missed_voxels(site, field, {}, {.report = [&](double done) { line.update(done); }, .stop = program.abort});
-  if (judged.shares.empty()) return std::nullopt;
+void tell_missed(const MissedVoxels& judged) {
   const MissedShare& all = judged.shares.front();
   const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
   spdlog::info(
@@ -43,6 +39,14 @@ std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Pr
       "for so dark a surface ({:.1f} %) or too sparsely ({:.1f} %)",
       percent(WhyMissed::captured), percent(WhyMissed::not_chosen), judged.candidates, percent(WhyMissed::hidden),
       percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::dark), percent(WhyMissed::sparse));
+}
+
+std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program) {
+  ProgressLine line(program.console, "finding why surface is missed");
+  MissedVoxels judged =
+      missed_voxels(site, field, {}, {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  if (judged.shares.empty()) return std::nullopt;
+  tell_missed(judged);
   return judged;
 }
 

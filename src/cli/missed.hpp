@@ -23,6 +23,9 @@ struct MissedFiles {
   void check() const;
 };
 
+// Logs what is captured, and why the rest is not.
+void tell_missed(const MissedVoxels& judged);
+
 // `missed_voxels()` with progress and a line of results. Empty if stopped, or if nothing is surveyed.
 std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program);
 

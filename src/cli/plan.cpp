@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 
 #include "cli/command.hpp"
@@ -21,7 +20,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
-#include "core/seconds_since.hpp"
+#include "core/json_text.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage::cli {
@@ -29,11 +28,8 @@ namespace {
 
 // A first network is chosen by no more voxels than this.
 constexpr std::uint64_t kStartSample = 20'000;
-
-// Shares of the time limit: the plan itself ends by the first, the map of what is captured by the second.
-constexpr double kPlanShare = 0.9, kMapShare = 0.95;
-// Pictures that took longer than this tell that the report takes as long.
-constexpr double kLongToDraw_s = 2;
+// The search has so much of the time left at least.
+constexpr double kStartTimeShare = 0.5;
 
 struct PlanOptions {
   SiteArguments site;
@@ -110,12 +106,6 @@ void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
 }
 
-// Existing stations keep the names that the user gave them.
-void name_existing(PlanResult& result, const std::vector<std::string>& names) {
-  if (names.empty()) return;
-  for (PlanEntry& entry : result.front) entry.names = names, entry.names.resize(entry.stations.size());
-}
-
 // Voxels that a start is chosen by.
 std::uint64_t start_sample(const PlanConfig& config) {
   return config.exact ? every_voxel : std::min<std::uint64_t>(config.sample_voxels, kStartSample);
@@ -167,17 +157,6 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
   return heads;
 }
 
-// Every voxel's count under the network that is shown; empty where it was stopped.
-std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program,
-                                      std::stop_token abort) {
-  ProgressLine line(program.console, "mapping what is captured");
-  VoxelField field;
-  const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
-                                                  {.report = [&](double done) { line.update(done); }, .stop = abort});
-  if (counts.cancelled) return std::nullopt;
-  return field;
-}
-
 // Returns what a phase does, in words.
 const char* doing(const std::string& phase) {
   if (phase == "look") return "looking at what can be captured";
@@ -194,7 +173,7 @@ std::string told(const PlanProgress& now, const SurveyProblem& problem) {
   return text;
 }
 
-PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, Program& program,
+PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config, Program& program,
                     const Deadline& all_by) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
@@ -218,17 +197,23 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
       spdlog::info("{}: about {} left", doing(phase), duration_text(now.seconds_left));
     }
     if (now.iterations > 0)
-      line.update(static_cast<double>(now.iteration) / static_cast<double>(now.iterations), told(now, problem),
-                  now.seconds_left);
+      line.update(now.done.value_or(static_cast<double>(now.iteration) / static_cast<double>(now.iterations)),
+                  told(now, problem), now.seconds_left);
     else
       line.update(std::nullopt, told(now, problem), now.seconds_left);
   };
-  return plan(site, problem, config, {.report = report, .stop = program.stop, .abort = program.abort});
+  PlanWatch watch{.report = report, .stop = program.stop, .abort = program.abort};
+  if (config.max_seconds > 0) {
+    constexpr double kMoment_s = 1e-3;  // 0 would be no limit
+    if (!all_by.passed()) watch.seconds_after = seconds_to_write(site);
+    config.max_seconds = std::max(kMoment_s, all_by.seconds_left());
+  }
+  return plan(site, problem, config, watch);
 }
 
 // Where the search starts, if not anywhere.
 void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem, PlanConfig& config, Program& program,
-                  const Deadline& plan_by) {
+                  const Deadline& start_by) {
   if (options.seed_with.empty()) return;
   if (!options.start.empty())
     throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
@@ -237,48 +222,46 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
                 "--seed-with: the question for the fewest stations starts from its own "
                 "choice; give --stations and --objectives, or another --problem");
   config.start = options.seed_with == "greedy"
-                     ? greedy_start(site, problem, config, program, plan_by.stop())
-                     : exact_start(site, problem, config, options.seed_seconds, program, plan_by.stop());
+                     ? greedy_start(site, problem, config, program, start_by.stop())
+                     : exact_start(site, problem, config, options.seed_seconds, program, start_by.stop());
+}
+
+// Returns what is at work on the folder, in words.
+const char* writing(const std::string& part) {
+  if (part == "map") return "mapping what is captured";
+  if (part == "missed") return "finding why surface is missed";
+  if (part == "report") return "writing the report";
+  return "drawing";
 }
 
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
-                   const PlanResult& result, Program& program, const Deadline& map_by, const Deadline& all_by) {
-  const PlanEntry& chosen = result.front[answer(result)];
-  // The evaluation that counted the answer mostly kept its points.
-  const bool kept = !chosen.field.count.empty();
-  const auto counted = kept ? std::nullopt : cartography(site.simulator(), chosen, program, map_by.stop());
-  const VoxelField* const field = kept ? &chosen.field : counted ? &*counted : nullptr;
-  if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
+                   const PlanResult& result, Program& program, const Deadline& all_by) {
   spdlog::info("writing {}", folder.string());
-  remove_earlier(folder,
-                 {"missed.csv", "missed.ply", "missed.png", "rooms.csv", "report.html", "report.pdf", "bound.json"});
-  const auto begun = std::chrono::steady_clock::now();
-  const std::vector<std::string> not_drawn = write_plan(folder, result, site, field, all_by.stop());
-  if (!not_drawn.empty())
-    spdlog::warn(
-        "not drawn, since the time was over: {}; vantage evaluate SITE --stations {} --picture plan.png draws all "
-        "levels",
-        fmt::join(not_drawn, ", "), (folder / "front.json").string());
-  const bool late = all_by.passed() && seconds_since(begun) > kLongToDraw_s;
-  std::optional<MissedVoxels> judged;
-  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, *field, program);
-  if (judged)
-    write_missed(
-        std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
-        *judged, site, chosen.stations);
-  if (judged && !judged->rooms.empty())
-    write_rooms_csv(folder / "rooms.csv", site.scene().rooms(), judged->rooms, chosen.stations, chosen.names);
+  remove_earlier(folder, {"bound.json"});
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
-  if (!options.no_report && late)
-    spdlog::warn("no report: the time was over; vantage evaluate SITE --stations {} --report report.html makes one",
-                 (folder / "front.json").string());
-  else if (!options.no_report && why_no_report().empty())
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, site,
-                  options.report_head.with({.field = field, .missed = judged ? &*judged : nullptr}), program,
-                  all_by.stop());
-  if (options.prove)
+  FolderOptions wanted{.report = options.report_head.with({.command = program.command}), .reports = !options.no_report};
+  if (options.config.max_seconds > 0) wanted.max_seconds = all_by.seconds_left();
+  WrittenFolder written;
+  {
+    ProgressLine line(program.console, writing("map"));
+    const auto report = [&](const FolderProgress& now) {
+      line.set_label(writing(now.part));
+      line.update(now.done);
+    };
+    written = write_plan(folder, result, site, wanted, {.report = report, .stop = program.abort});
+  }
+  if (written.missed) tell_missed(*written.missed);
+  if (!written.left_out.empty())
+    spdlog::warn(
+        "not written, since the {}: {}; vantage evaluate SITE --stations {} makes them, with --report report.html and "
+        "the like",
+        program.abort.stop_requested() ? "command was stopped" : "time was over", fmt::join(written.left_out, ", "),
+        (folder / "front.json").string());
+  if (options.prove) {
+    const PlanEntry& chosen = result.front[answer(result)];
     prove(folder / "bound.json", site, chosen.stations, result.problem.existing.size(), result.attainable.has_value(),
           program);
+  }
 }
 
 // Makes a locked folder this run's, unless it holds the results of another one. Throws Error invalid_argument.
@@ -290,7 +273,7 @@ EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::js
     throw Error(Errc::invalid_argument, "plan: " + folder.string() +
                                             " holds the results of another run; give another folder with -o, --resume "
                                             "to go on with it, or --force to overwrite it");
-  if (!config.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (!config.resume) write_text(folder / "config.json", json_text(as_given, 2) + "\n");
   if (config.resume) {
     if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
       spdlog::info("resuming from {}", config.checkpoint.string());
@@ -303,8 +286,7 @@ EarlierResults take_over(const std::filesystem::path& folder, const nlohmann::js
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   options.report_head.check();
   const double limit = options.config.max_seconds;
-  const Deadline plan_by(kPlanShare * limit, program.stop), map_by(kMapShare * limit, program.abort),
-      all_by(limit, program.abort);
+  const Deadline start_by(kStartTimeShare * limit, program.stop), all_by(limit, program.abort);
   Site site = open_site(command, options.site);
   const std::filesystem::path folder = options.output ? *options.output : site.name() + "-plan";
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))
@@ -313,8 +295,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     std::ranges::copy(stations_of_scans(site, *options.keep_from, program), std::back_inserter(options.keep));
   keep(options.question, heads_of(site, options.keep, options.keep_from ? "--keep, --keep-from" : "--keep"));
   if (options.targets_from) options.question.existing_targets = read_targets_csv(*options.targets_from);
-  std::vector<std::string> names;
-  for (const StationText& station : options.keep) names.push_back(station.name);
+  for (const StationText& station : options.keep) options.question.existing_names.push_back(station.name);
   const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
   site.area();  // an error now, not behind the voxels
 
@@ -327,18 +308,15 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_grid(simulator);
   PlanConfig config = settled(options.config, problem, simulator.voxel_count(), site.simulator_config().seed);
   config.checkpoint = folder / "checkpoint.bin";
-  choose_start(site, options, problem, config, program, plan_by);
+  choose_start(site, options, problem, config, program, start_by);
 
-  nlohmann::json as_given = plan_options(site, options.question, problem, config, names);
+  nlohmann::json as_given = plan_options(site, options.question, problem, config);
   if (options.targets_from) as_given["plan"]["targets-from"] = *options.targets_from;
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   const FolderLock lock(folder);
   const EarlierResults before = take_over(folder, as_given, config, options.force);
-  constexpr double kMoment_s = 1e-3;  // 0 would be no limit
-  if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
   PlanResult result = run_plan(site, problem, config, program, all_by);
   result.config.max_seconds = limit;
-  name_existing(result, names);
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
@@ -358,8 +336,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     }
   }
   make_folder(folder);  // it may have been removed meanwhile
-  write_text(folder / "config.json", as_given.dump(2) + "\n");
-  write_results(folder, site, options, result, program, map_by, all_by);
+  write_text(folder / "config.json", json_text(as_given, 2) + "\n");
+  write_results(folder, site, options, result, program, all_by);
   return show();
 }
 

@@ -10,7 +10,7 @@
 #include "cli/options.hpp"
 #include "core/options_json.hpp"
 #include "core/read_json.hpp"
-#include "export/setup_json.hpp"
+#include "export/station_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -51,7 +51,8 @@ void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
 }  // namespace
 
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
-                            const PlanConfig& config, std::span<const std::string> names) {
+                            const PlanConfig& config) {
+  const std::vector<std::string>& names = problem.existing_names;
   nlohmann::json options = options_json(settings(problem));
   const bool named = std::ranges::any_of(names, [](const std::string& name) { return !name.empty(); });
   if (!problem.existing_setups.empty() || named) {

@@ -5,16 +5,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 
 #include "cli/site.hpp"
 
 namespace vantage::cli {
 
-// All settings of a plan, as options for --config. `names`: the user's, of existing stations; empty ones are left out.
+// All settings of a plan, as options for --config.
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
-                            const PlanConfig& config, std::span<const std::string> names);
+                            const PlanConfig& config);
 
 // Existing results in a folder.
 struct EarlierResults {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kStationsShown = 50;
 
 // A value of a network, or a dash where it was not computed.
-std::string cell(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4f}", value); }
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
 
 // Its violations, and missing links.
 std::string remarks(const PlanEntry& entry, const PlanResult& result) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/console.hpp"
@@ -43,19 +44,24 @@ struct ReportHead {
 };
 
 // Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation. Tells which file a
-// stop left out.
+// stop left out, and returns those that are written.
 template <class Shown>
-void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Site& site, ReportOptions options,
-                   Program& program, std::stop_token stop) {
+std::vector<std::filesystem::path> write_reports(std::span<const std::filesystem::path> files, const Shown& shown,
+                                                 Site& site, ReportOptions options, Program& program,
+                                                 std::stop_token stop) {
   options.command = program.command;
   ProgressLine line(program.console, "writing the report");
+  std::vector<std::filesystem::path> written;
   for (const std::filesystem::path& file : files) {
-    if (write_report(file, shown, site, options, {.report = [&](double done) { line.update(done); }, .stop = stop}))
+    if (write_report(file, shown, site, options, {.report = [&](double done) { line.update(done); }, .stop = stop})) {
+      written.push_back(file);
       continue;
+    }
     std::error_code ignored;
     std::filesystem::remove(file, ignored);  // that of an earlier run is not this one's
     spdlog::warn("stopped: {} is not written", file.string());
   }
+  return written;
 }
 
 }  // namespace vantage::cli

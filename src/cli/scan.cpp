@@ -170,7 +170,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
                                                       station.placed.uv.u, station.placed.uv.v));
     else if (station.placed.status != StationStatus::ok)
       spdlog::warn("the station at {:.6g},{:.6g},{:.6g} {}", station.placed.position.x, station.placed.position.y,
-                   station.placed.position.z, fault_text(site, station.placed));
+                   station.placed.position.z, fault_text(site, station.placed, "it is scanned all the same"));
 
   Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);

@@ -12,14 +12,21 @@ namespace vantage::cli {
 
 void SiteArguments::add(CLI::App& command) {
   command
-      .add_option("scene", scene,
-                  "The site: glTF, IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or points: E57, LAS, PLY, XYZ, "
-                  "PTS, PTX or PCD; or a folder of scans")
+      .add_option_function<std::vector<std::string>>(
+          "scene", [this](const std::vector<std::string>& files) { take_files(files, scene, given.scene); },
+          "The site: glTF, IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF; or points: E57, LAS, PLY, XYZ, PTS, PTX "
+          "or "
+          "PCD; or a folder or several files of scans, IFC models or floor plans")
       ->type_name("SCENE");
   add_settings(command, site_settings(), given);
   add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",
            config_file)
       ->group("Run");
+}
+
+void take_files(const std::vector<std::string>& files, std::string& first, SceneOptions& scene) {
+  first = files.front();
+  scene.beside.insert(scene.beside.begin(), files.begin() + 1, files.end());
 }
 
 Site open_site(CLI::App& command, SiteArguments& arguments) {

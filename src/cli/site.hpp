@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/parse.hpp"
 #include "vantage/vantage.hpp"
@@ -21,6 +22,9 @@ struct SiteArguments {
 
   void add(CLI::App& command);
 };
+
+// The file of a site, and those beside it.
+void take_files(const std::vector<std::string>& files, std::string& first, SceneOptions& scene);
 
 // Applies the layers below the command line to all options of `command`, and opens the site.
 Site open_site(CLI::App& command, SiteArguments& arguments);

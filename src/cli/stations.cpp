@@ -8,7 +8,7 @@
 #include "cli/options.hpp"
 #include "cli/station_scanners.hpp"
 #include "core/read_json.hpp"
-#include "export/setup_json.hpp"
+#include "export/station_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -162,15 +162,8 @@ Network to_network(const std::vector<SiteStation>& stations) {
 
 nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners) {
   const PlacedStation& placed = station.placed;
-  nlohmann::json json{{"name", name},
-                      {"position", nullptr},
-                      {"ground", nullptr},
-                      {"uv", nullptr},
-                      {"status", to_string(placed.status)}};
-  const auto list = [](const Vec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
-  if (placed.status != StationStatus::hole)
-    json["position"] = list(placed.position), json["ground"] = list(placed.ground);
-  if (station.has_uv) json["uv"] = {placed.uv.u, placed.uv.v};
+  nlohmann::json json = station_json<nlohmann::json>(placed, name);
+  if (!station.has_uv) json["uv"] = nullptr;
   if (placed.setup != StationSetup()) add_setup(json, placed.setup, scanners);
   return json;
 }
@@ -211,8 +204,8 @@ std::vector<std::string> names_of(const std::vector<SiteStation>& stations) {
   return station_names(placed_of(stations), given);
 }
 
-std::string fault_text(Site& site, const PlacedStation& placed) {
-  std::string text = explain(placed.status) + (active(placed) ? "" : "; it is left out");
+std::string fault_text(Site& site, const PlacedStation& placed, const std::string& consequence) {
+  std::string text = explain(placed.status) + (active(placed) ? "" : "; " + consequence);
   if (placed.status == StationStatus::ok || placed.status == StationStatus::hole || !site.has_area()) return text;
   return text + "; " + move_text(placed.position, {.to = site.nearest_place(placed.position)});
 }

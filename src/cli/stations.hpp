@@ -39,14 +39,14 @@ Network to_network(const std::vector<SiteStation>& stations);
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);
 // The same names as in all tables and pictures.
 std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
-// {name, position, ground, uv, status}; null for missing values. For a station with an unusual setup also {heading,
+// `station_json()`; null for missing values. For a station with an unusual setup also {heading,
 // tilt, scanner, step} and what else its scanner has of its own. `scanners`: the site's.
 nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners);
 // The inverse. Throws nlohmann::json::exception for another type.
 StationText station_of_json(const nlohmann::json& json);
 // A warning for each unusable station.
 void warn_of_unusable(Site& site, const std::vector<SiteStation>& stations);
-// `explain` of a new station's status, whether it is left out, and where it may stand instead.
-std::string fault_text(Site& site, const PlacedStation& placed);
+// `explain` of a new station's status, what follows if it is unusable, and where it may stand instead.
+std::string fault_text(Site& site, const PlacedStation& placed, const std::string& consequence = "it is left out");
 
 }  // namespace vantage::cli

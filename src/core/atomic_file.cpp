@@ -61,14 +61,14 @@ void remove_temporaries(const std::filesystem::path& folder, const std::string& 
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path file) : file_(std::move(file)) {
+AtomicFile::AtomicFile(std::filesystem::path file, unsigned mode) : file_(std::move(file)) {
   std::error_code unknown;
   if (!file_.has_filename() || std::filesystem::is_directory(file_, unknown))
     throw Error(Errc::io, "cannot write " + file_.string() + ": it names a folder; give a file name");
   static std::atomic<unsigned> serial{0};
   const std::string name = temporary_prefix(file_) + std::to_string(getpid()) + "-" + std::to_string(serial++);
   temporary_ = file_.parent_path() / (name + std::string(kSuffix));
-  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (descriptor_ < 0)
     throw Error(Errc::io,
                 "cannot write " + file_.string() + ": " + reason(errno) + " (does its folder exist, is it writable?)");

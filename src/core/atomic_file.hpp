@@ -12,8 +12,9 @@ namespace vantage {
 
 class AtomicFile {
  public:
-  // Opens a temporary in the folder of `file`, so that the rename stays on one file system. Throws Error io.
-  explicit AtomicFile(std::filesystem::path file);
+  // Opens a temporary in the folder of `file`, so that the rename stays on one file system. `mode`: its permissions,
+  // less the process's mask. Throws Error io.
+  explicit AtomicFile(std::filesystem::path file, unsigned mode = 0666);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile();  // Without commit() nothing remains.

@@ -20,13 +20,28 @@ Deadline::Deadline(double seconds, std::stop_token stop)
 }
 
 double Deadline::seconds_left() const {
+  const std::scoped_lock lock(mutex_);
   if (end_ == Clock::time_point::max()) return std::numeric_limits<double>::infinity();
   return std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count());
 }
 
+void Deadline::move(double seconds) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (end_ == Clock::time_point::max() || stop_.stop_requested()) return;
+    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                              std::chrono::duration<double>(std::clamp(seconds, 0.0, kNoLimit_s)));
+  }
+  moved_.notify_all();
+}
+
 void Deadline::wait(const std::stop_token& ended) {
   std::unique_lock lock(mutex_);
-  never_.wait_until(lock, ended, end_, [] { return false; });
+  while (!ended.stop_requested() && Clock::now() < end_) {
+    const Clock::time_point end = end_;
+    moved_.wait_until(lock, ended, end, [&] { return end_ != end; });
+  }
+  lock.unlock();
   if (ended.stop_requested()) return;
   if (!stop_.stop_requested()) passed_ = true;
   stop_.request_stop();

@@ -24,17 +24,19 @@ class Deadline {
   bool passed() const { return passed_; }
   // Infinite without a limit.
   double seconds_left() const;
+  // Ends `seconds` from now instead. Of no effect without a limit, or once it has ended.
+  void move(double seconds);
 
  private:
   using Clock = std::chrono::steady_clock;
   void wait(const std::stop_token& ended);
 
-  Clock::time_point end_;  // max(): none
+  Clock::time_point end_;  // max(): none; behind `mutex_`
   std::atomic<bool> passed_ = false;
   std::stop_source stop_;
   std::stop_callback<std::function<void()>> follow_;
-  std::mutex mutex_;
-  std::condition_variable_any never_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any moved_;
   std::jthread clock_;
 };
 

@@ -47,6 +47,22 @@ std::string describe(const Interval& interval) {
 
 }  // namespace
 
+namespace {
+
+double checked(double value, std::string_view text, const std::string& what, const Interval& interval) {
+  if (!std::isfinite(value)) refuse(what, text, "is not a finite number");
+  const bool above = interval.low_included ? value >= interval.low : value > interval.low;
+  const bool below = interval.high_included ? value <= interval.high : value < interval.high;
+  if (!above || !below) refuse(what, text, "must be " + describe(interval));
+  return value;
+}
+
+}  // namespace
+
+void check_number(double value, const std::string& what, const Interval& interval) {
+  checked(value, number_text(value), what, interval);
+}
+
 double parse_number(std::string_view text, const std::string& what, const Interval& interval) {
   const std::string_view digits = without_plus(trimmed_text(text));
   double value = 0;
@@ -54,11 +70,7 @@ double parse_number(std::string_view text, const std::string& what, const Interv
   if (error == std::errc::result_out_of_range) refuse(what, text, "is too large or too small for a number");
   if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty())
     refuse(what, text, "is not a number");
-  if (!std::isfinite(value)) refuse(what, text, "is not a finite number");
-  const bool above = interval.low_included ? value >= interval.low : value > interval.low;
-  const bool below = interval.high_included ? value <= interval.high : value < interval.high;
-  if (!above || !below) refuse(what, text, "must be " + describe(interval));
-  return value;
+  return checked(value, text, what, interval);
 }
 
 std::uint64_t parse_count(std::string_view text, const std::string& what, std::uint64_t low, std::uint64_t high) {
@@ -121,14 +133,14 @@ std::uint64_t SampleSize::of(std::uint64_t population) const {
 }
 
 SampleSize parse_sample(std::string_view text, const std::string& what) {
-  constexpr Interval share{.low = 0, .high = 1, .low_included = false};
+  constexpr Interval some_share{.low = 0, .high = 1, .low_included = false};
   if (text.ends_with('%'))
     return {
         .voxels = std::nullopt,
         .share =
             parse_number(text.substr(0, text.size() - 1), what, {.low = 0, .high = 100, .low_included = false}) / 100};
   if (text.find('.') != std::string_view::npos)
-    return {.voxels = std::nullopt, .share = parse_number(text, what, share)};
+    return {.voxels = std::nullopt, .share = parse_number(text, what, some_share)};
   return {.voxels = parse_count(text, what, 1), .share = std::nullopt};
 }
 
@@ -162,9 +174,12 @@ double parse_duration(std::string_view text, const std::string& what) {
     number.remove_suffix(suffix.size());
     break;
   }
-  constexpr double kLongest_s = 1e9;  // thirty years; clocks count in 64 bits of nanoseconds
-  const double seconds = unit * parse_number(number, what, positive);
-  if (seconds > kLongest_s) refuse(what, text, "must be at most " + number_text(kLongest_s) + " seconds");
+  const std::string_view digits = without_plus(trimmed_text(number));
+  double parsed = 0;
+  if (digits.empty() || std::from_chars(digits.begin(), digits.end(), parsed).ptr != digits.end())
+    refuse(what, text, "is no time; write a number and s, min or h: 90s, 15min or 2h");
+  const double seconds = unit * parse_number(number, what, {.low = 1e-6});
+  if (seconds > any_seconds.high) refuse(what, text, "must be at most " + number_text(any_seconds.high) + " seconds");
   return seconds;
 }
 

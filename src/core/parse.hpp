@@ -22,6 +22,15 @@ struct Interval {
 inline constexpr Interval any_number{};
 inline constexpr Interval positive{.low = 0, .low_included = false};
 inline constexpr Interval not_negative{.low = 0};
+inline constexpr Interval any_share{.low = 0, .high = 1};
+// Lengths, steps and rates that must not be 0, in any of their units. Smaller and larger ones overflow what is computed
+// of them.
+inline constexpr Interval measurable{.low = 1e-6, .high = 1e9};
+// Limits of time in seconds, 0 where there is none: thirty years, since clocks count in 64 bits of nanoseconds.
+inline constexpr Interval any_seconds{.low = 0, .high = 1e9};
+
+// Throws unless the number is finite and in the interval.
+void check_number(double value, const std::string& what, const Interval& interval = any_number);
 
 // Messages begin with `what`, the name of the setting.
 double parse_number(std::string_view text, const std::string& what, const Interval& interval = any_number);

@@ -44,16 +44,23 @@ void RegularFile::fail(const char* action) const {
   throw Error(Errc::io, prefix_ + name_ + " cannot be " + action + ": " + std::generic_category().message(errno));
 }
 
+std::size_t RegularFile::read_next(void* bytes, std::size_t most) {
+  ssize_t n = 0;
+  do {
+    n = ::read(descriptor_.number, bytes, most);
+  } while (n < 0 && errno == EINTR);
+  if (n < 0) fail("read");
+  return static_cast<std::size_t>(n);
+}
+
 void RegularFile::read(void* bytes) {
   auto* at = static_cast<char*>(bytes);
   for (std::uint64_t done = 0; done < size_;) {
-    const ssize_t n = ::read(descriptor_.number, at + done, size_ - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail("read");
+    const std::size_t n = read_next(at + done, size_ - done);
     if (n == 0)
       throw Error(Errc::io, prefix_ + name_ + " could be read only up to byte " + std::to_string(done) + " of " +
                                 std::to_string(size_));
-    done += static_cast<std::uint64_t>(n);
+    done += n;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/json_text.hpp"
 #include "vantage/settings.hpp"
 #include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
@@ -22,7 +23,7 @@ class SettingList {
   };
   template <class Value>
   SettingList& add(std::string name, const Value& value, Traits traits) {
-    list_.push_back({std::move(name), to_json(value).dump(), std::move(traits.option), traits.decides});
+    list_.push_back({std::move(name), json_text(to_json(value)), std::move(traits.option), traits.decides});
     return *this;
   }
   template <class Value>

@@ -2,7 +2,9 @@
 // Makes a table of settings, one call per row.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -15,6 +17,12 @@
 #include "vantage/types.hpp"
 
 namespace vantage {
+
+// Degrees without the rounding of radians, so that 360 is not above 360.
+inline double whole_degrees(Angle angle) {
+  const double degrees = angle.in_degrees();
+  return std::abs(degrees) < 1e3 ? std::round(degrees * 1e12) / 1e12 : degrees;
+}
 
 // The help of a setting with its default.
 inline std::string otherwise(const std::string& help, double usual) {
@@ -38,6 +46,9 @@ class SettingRows {
   // These change the last row.
   SettingRows& by_scene() { return last().by_scene = true, *this; }
   SettingRows& by_preset() { return last().by_preset = true, *this; }
+  SettingRows& checked(std::function<void(const Options&, const std::string& what)> check) {
+    return last().check = std::move(check), *this;
+  }
   SettingRows& excludes(std::vector<std::string> names) { return last().excludes = std::move(names), *this; }
 
   template <class Set>
@@ -50,35 +61,63 @@ class SettingRows {
     return *this;
   }
   SettingRows& number(std::string name, std::string unit, std::string help, Member<double> member, Interval interval) {
-    return optional(
+    optional(
         std::move(name), std::move(unit), std::move(help), member,
         [interval](const std::string& text, const std::string& what) { return parse_number(text, what, interval); });
+    return checked([member, interval](const Options& options, const std::string& what) {
+      if (options.*member) check_number(*(options.*member), what, interval);
+    });
   }
   // A number that is never empty; the help tells its default.
   SettingRows& number(std::string name, std::string unit, const std::string& help, double Options::*member,
                       Interval interval) {
-    return custom(std::move(name), std::move(unit), otherwise(help, Options().*member),
-                  [member, interval](Options& options, const std::string& text, const std::string& what) {
-                    options.*member = parse_number(text, what, interval);
-                  });
+    const auto value = [member](Options& options) -> double& { return options.*member; };
+    return number_in(std::move(name), std::move(unit), otherwise(help, Options().*member), value, interval);
+  }
+  // `value` returns the options' number by reference.
+  template <class Value>
+  SettingRows& number_in(std::string name, std::string unit, std::string help, Value value, Interval interval) {
+    custom(std::move(name), std::move(unit), std::move(help),
+           [value, interval](Options& options, const std::string& text, const std::string& what) {
+             value(options) = parse_number(text, what, interval);
+           });
+    return checked([value, interval](const Options& options, const std::string& what) {
+      check_number(value(const_cast<Options&>(options)), what, interval);
+    });
+  }
+  SettingRows& degrees(std::string name, std::string help, Angle Options::*member, Interval interval) {
+    custom(std::move(name), "DEG", std::move(help),
+           [member, interval](Options& options, const std::string& text, const std::string& what) {
+             options.*member = Angle::degrees(parse_number(text, what, interval));
+           });
+    return checked([member, interval](const Options& options, const std::string& what) {
+      check_number(whole_degrees(options.*member), what, interval);
+    });
   }
   SettingRows& degrees(std::string name, std::string help, Member<Angle> member, Interval interval) {
-    return optional(std::move(name), "DEG", std::move(help), member,
-                    [interval](const std::string& text, const std::string& what) {
-                      return Angle::degrees(parse_number(text, what, interval));
-                    });
+    optional(std::move(name), "DEG", std::move(help), member,
+             [interval](const std::string& text, const std::string& what) {
+               return Angle::degrees(parse_number(text, what, interval));
+             });
+    return checked([member, interval](const Options& options, const std::string& what) {
+      if (options.*member) check_number(whole_degrees(*(options.*member)), what, interval);
+    });
   }
   // At least `fewest` numbers; the last one is repeated for those missing.
   template <std::size_t N>
   SettingRows& numbers(std::string name, std::string unit, std::string help, Member<std::array<double, N>> member,
                        std::size_t fewest, Interval interval) {
-    return optional(std::move(name), std::move(unit), std::move(help), member,
-                    [fewest, interval](const std::string& text, const std::string& what) {
-                      const auto values = parse_numbers(text, what, fewest, N, interval);
-                      std::array<double, N> all{};
-                      for (std::size_t k = 0; k < N; ++k) all[k] = values[std::min(k, values.size() - 1)];
-                      return all;
-                    });
+    optional(std::move(name), std::move(unit), std::move(help), member,
+             [fewest, interval](const std::string& text, const std::string& what) {
+               const auto values = parse_numbers(text, what, fewest, N, interval);
+               std::array<double, N> all{};
+               for (std::size_t k = 0; k < N; ++k) all[k] = values[std::min(k, values.size() - 1)];
+               return all;
+             });
+    return checked([member, interval](const Options& options, const std::string& what) {
+      if (options.*member)
+        for (const double value : *(options.*member)) check_number(value, what, interval);
+    });
   }
   SettingRows& text(std::string name, std::string unit, std::string help, Member<std::string> member) {
     return optional(std::move(name), std::move(unit), std::move(help), member,
@@ -96,10 +135,14 @@ class SettingRows {
   template <class Integer>
   SettingRows& count(std::string name, std::string unit, std::string help, Integer Options::*member, std::uint64_t low,
                      std::uint64_t high) {
-    return custom(std::move(name), std::move(unit), std::move(help),
-                  [member, low, high](Options& options, const std::string& text, const std::string& what) {
-                    options.*member = static_cast<Integer>(parse_count(text, what, low, high));
-                  });
+    custom(std::move(name), std::move(unit), std::move(help),
+           [member, low, high](Options& options, const std::string& text, const std::string& what) {
+             options.*member = static_cast<Integer>(parse_count(text, what, low, high));
+           });
+    // A default may lie outside: 0 for a number that is chosen.
+    return checked([member, low, high](const Options& options, const std::string& what) {
+      if (options.*member != Options().*member) parse_count(std::to_string(options.*member), what, low, high);
+    });
   }
   SettingRows& flag(std::string name, std::string help, bool Options::*member) {
     return custom(std::move(name), "", std::move(help),
@@ -137,6 +180,10 @@ class SettingRows {
             inner(options.*part, text, what);
           },
           std::move(given));
+      if (row.check)
+        last().check = [part, inner = row.check](const Options& options, const std::string& what) {
+          inner(options.*part, what);
+        };
       last().group = row.group, last().repeated = row.repeated, last().excludes = row.excludes;
     }
     return *this;

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/parse.hpp"
 #include "cover/partial_cover.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/error.hpp"
@@ -11,9 +12,9 @@
 namespace vantage {
 
 CoverageMatrix::CoverageMatrix(std::vector<std::uint32_t> weights, double goal)
-    : weights_(std::move(weights)),
-      total_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)),
-      goal_(goal) {}
+    : weights_(std::move(weights)), total_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)), goal_(goal) {
+  check_number(goal, "coverage matrix: the goal", positive);
+}
 
 void CoverageMatrix::set_goals(std::span<const double> goals) {
   if (goals.size() != elements() || !std::ranges::all_of(goals, [](double goal) { return goal >= 0; }))

@@ -83,7 +83,7 @@ Settings settings(const BoundConfig& config) {
 }
 
 CoverSolution max_cover(const CoverProblem& asked, const BoundConfig& config, const Progress& progress) {
-  check(asked);
+  check(asked), check(config);
   const std::size_t candidates = asked.matrix.candidates();
   if (candidates == 0) throw Error(Errc::invalid_argument, "cover: there are no candidates");
   if (asked.most < 1 || asked.most == std::numeric_limits<std::size_t>::max())

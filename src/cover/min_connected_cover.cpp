@@ -96,7 +96,8 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
   return found;
 }
 
-CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, std::stop_token stop) {
+CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, double enough,
+                                   std::stop_token stop) {
   check(problem);
   TabuSearch tabu(problem, stop);
   CoverSolution best = std::move(from);
@@ -104,8 +105,9 @@ CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution fr
     CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, problem.link));
     if (found.violation < best.violation) best = std::move(found);
   }
-  while (problem.graph && best.violation == 0 && best.chosen.size() > 1 && !stop.stop_requested()) {
-    CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, best.link + kLinkStep));
+  while (problem.graph && best.violation == 0 && best.link < enough && best.chosen.size() > 1 &&
+         !stop.stop_requested()) {
+    CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, std::min(best.link + kLinkStep, enough)));
     if (found.violation > 0 || found.link <= best.link) break;
     best = std::move(found);
   }

@@ -17,7 +17,7 @@ constexpr double kWhole = 1e-6;
 }  // namespace
 
 StationsBound min_cover(const CoverProblem& asked, const BoundConfig& config, const Progress& progress) {
-  check(asked);
+  check(asked), check(config);
   const CoverageMatrix& matrix = asked.matrix;
   if (matrix.candidates() == 0) throw Error(Errc::invalid_argument, "cover: there are no candidates");
   if (!(asked.coverage > 0 && asked.coverage <= 1))

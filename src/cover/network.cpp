@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/parse.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -67,8 +68,15 @@ void check(const CoverProblem& problem) {
   if (problem.graph && problem.graph->size() != candidates)
     throw Error(Errc::invalid_argument, "cover: a graph of " + std::to_string(problem.graph->size()) +
                                             " stations for " + std::to_string(candidates) + " candidates");
+  check_number(problem.link, "cover: the least overlap of a link", not_negative);
   if (problem.link > 0 && !problem.graph)
     throw Error(Errc::invalid_argument, "cover: a connected network is asked for, but no graph of overlaps is given");
+}
+
+void check(const BoundConfig& config) {
+  check_number(config.tolerance, "cover: the tolerance", {.low = 0, .high = 1, .low_included = false});
+  check_number(config.max_seconds, "cover: the time limit", any_seconds);
+  check_number(config.exact_seconds, "cover: the time for branch and bound", any_seconds);
 }
 
 std::vector<std::size_t> free_candidates(const CoverProblem& problem) {

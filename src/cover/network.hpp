@@ -15,6 +15,8 @@ namespace vantage {
 // Throws Error invalid_argument if a candidate of the problem does not exist, or the graph and the matrix differ in
 // size.
 void check(const CoverProblem& problem);
+// Throws Error invalid_argument for a value that is out of its range.
+void check(const BoundConfig& config);
 
 // Candidates that may be chosen: all but the existing ones, rising.
 std::vector<std::size_t> free_candidates(const CoverProblem& problem);

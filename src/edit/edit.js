@@ -116,22 +116,22 @@
     figures(at('figures'), network);
     tellCaptured(network.values);
     const { registration } = network.values;
-    if (registration && !state.exact && registration.error > registration.value / 2)
+    if (registration && !state.exact && registration.standard_error > registration.value / 2)
       at('figures').querySelectorAll('div').forEach((tile) => {
         if (tile.querySelector('dt').textContent === 'Registered')
-          tile.querySelector('small').textContent = `± ${registration.error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
+          tile.querySelector('small').textContent = `± ${registration.standard_error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
       });
     if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
-    if (network.seconds_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
+    if (network.minutes_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
     words(at('words'), network, null);
-    stationTable(at('stations'), network, pick, [...network.stations.keys()]);  // rows that stay in their places
+    stationTable(at('stations'), network, pickInTable, [...network.stations.keys()]);  // rows that stay in their places
     linkTable(at('links'), at('links-words'), network);
     card();
     legend();
     at('undo').disabled = !state.undo || Boolean(state.busy);
     at('redo').disabled = !state.redo || Boolean(state.busy);
     at('exact').disabled = state.exact || !state.ids.length || Boolean(state.busy);
-    at('improve').disabled = !state.ids.length || Boolean(state.busy);
+    at('improve').disabled = state.locked.every(Boolean) || Boolean(state.busy);
     at('add').disabled = Boolean(state.busy);
     at('save').textContent = state.busy ? 'Stop' : 'Save';
     if (state.busy) tell(`${capital(state.busy.what)}${state.busy.done > 0 ? `, ${Math.round(100 * state.busy.done)} %` : ' …'}`);
@@ -142,7 +142,7 @@
   // The first tile says how well its figures are known.
   function tellCaptured({ coverage, capture }) {
     const sampled = (name, { value, error }) => `${name} ${value.toFixed(4)}${state.exact ? '' : ` ± ${error.toFixed(4)}`}`;
-    const share = capture && capture.value !== null ? `${capture.error > 0 ? `± ${percent(capture.error)} ` : ''}of what is attainable; ` : '';
+    const share = capture && capture.value !== null ? `${capture.standard_error > 0 ? `± ${percent(capture.standard_error)} ` : ''}of what is attainable; ` : '';
     at('figures').querySelector('dd small').textContent = `${share}${sampled('coverage', coverage)}, ${state.exact ? 'by every ray' : 'from a sample'}`;
   }
   const unknownTile = (name, why) => element('div', {}, element('dt', {}, name), element('dd', {}, 'Not known', element('small', {}, why)));
@@ -165,9 +165,16 @@
 
   function pick(k) {
     if (drag && drag.moved) return;
+    pickedInTable = false;
     selected = k === selected ? null : k;
     view.select(selected);
     card();
+  }
+  // The table is made anew with every answer, which takes the focus from the button that was pressed.
+  let pickedInTable = false;
+  function pickInTable(k) {
+    pick(k);
+    pickedInTable = selected !== null;
   }
   function card() {
     if (at('station').contains(document.activeElement) && document.activeElement.tagName === 'INPUT') return;  // a name is being typed
@@ -365,6 +372,8 @@
     at('at').hidden = true;
   });
   document.addEventListener('keydown', (event) => {
+    const free = document.activeElement === document.body || at('stations').contains(document.activeElement);
+    if (pickedInTable && selected !== null && free && !event.ctrlKey && !event.metaKey && !event.altKey) labelKey(event, selected);
     if (event.key === 'Escape' && mode) {
       setMode(null);
       tell('');

@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "core/json_text.hpp"
 #include "edit/edit_files.hpp"
 #include "edit/local_server.hpp"
 #include "report/page.hpp"
@@ -25,9 +26,7 @@ std::string random_token() {
   return token;
 }
 
-std::string text_of(const ordered_json& value) {
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
+std::string text_of(const ordered_json& value) { return json_text(value); }
 
 HttpResponse json_response(const ordered_json& value, int status = 200) {
   return {status, "application/json", text_of(value)};

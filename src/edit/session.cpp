@@ -57,6 +57,18 @@ bool flag_of(const json& request, const char* key) {
   return at != request.end() && at->is_boolean() && at->get<bool>();
 }
 
+// Adds to each link by a sample its standard error, and the number of voxels of the smaller scan, which it is a share
+// of.
+void add_errors(ordered_json& links, const NetworkCounts& around) {
+  for (ordered_json& link : links) {
+    const std::uint64_t of =
+        std::min(around.seen.at(link.at("a").get<std::size_t>()), around.seen.at(link.at("b").get<std::size_t>()));
+    const double share = link.at("value");
+    link["voxels"] = of;
+    link["error"] = of > 0 ? std::sqrt(std::max(share * (1 - share), 0.0) / static_cast<double>(of)) : 0.0;
+  }
+}
+
 }  // namespace
 
 EditSession::EditSession(Site& site, const std::vector<EditStation>& stations, const EditOptions& options, Keep keep,
@@ -113,6 +125,7 @@ ordered_json EditSession::state() const {
   }
   ordered_json network = network_json(evaluation_);
   network["dominated"] = false;
+  if (!evaluation_.exact && network.contains("links")) add_errors(network["links"], around_.counts());
   ordered_json json = {{"version", version_.load()},
                        {"network", std::move(network)},
                        {"ids", std::move(ids)},
@@ -144,7 +157,8 @@ void EditSession::change(const json& request) {
   message_.clear();
   if (what == "exact")
     return start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
-  if (what == "improve") return start("improving the others", [this](const Progress& progress) { improve(progress); });
+  if (what == "improve")
+    return start("improving unlocked stations", [this](const Progress& progress) { improve(progress); });
   if (what == "save") {
     keep_(stations_);
     return start("saving", [this](const Progress& progress) {

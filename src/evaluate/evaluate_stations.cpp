@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "core/parse.hpp"
+#include "core/site_reach.hpp"
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
 #include "objective/registered_sample.hpp"
@@ -53,6 +56,21 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("attainable coverage is measured by rays without a width; choose either it or a beam with a width");
   if (options.field && options.sample_voxels)
     refuse("a sample has no points of every voxel; choose either the field or a sample");
+  check_number(options.link, "evaluate: link", any_share);
+  check_number(options.link_overlap, "evaluate: link-overlap", any_share);
+  if (options.registration) check_settings(registration_settings(), *options.registration);
+  check_settings(target_settings(), options.target);
+  for (const Requirement& requirement : options.requirements)
+    check_number(requirement.limit, "evaluate: the limit of " + requirement.objective.name);
+}
+
+// Positions of inactive stations are not traced, but shown and moved; a hole has none.
+void check_positions(const Vec3& origin, std::span<const PlacedStation> stations) {
+  for (std::size_t k = 0; k < stations.size(); ++k)
+    if (active(stations[k]))
+      require_in_reach(stations[k].position, origin, "station " + std::to_string(k + 1) + " stands");
+    else if (const Vec3& at = stations[k].position; !std::isfinite(at.x + at.y + at.z))
+      refuse_position(at, "station " + std::to_string(k + 1) + " stands");
 }
 
 // The prediction whose error is to be known.
@@ -94,7 +112,10 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
   if (options.field && stations.size() != 1)
     throw Error(Errc::invalid_argument, "evaluate: the points of every voxel are kept of one network at a time");
   std::vector<Network> networks;
-  for (const auto& one : stations) networks.push_back(to_network(one));
+  for (const auto& one : stations) {
+    check_positions(site.simulator.origin(), one);
+    networks.push_back(to_network(one));
+  }
 
   // Shares of the time: surveyed voxels, then surroundings and what is attainable.
   const bool counts_around = site.surroundings && options.overlap;
@@ -172,7 +193,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     one.names = options.names, one.visit = std::move(visit);
     if (site.area && site.clash)
       one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
-    if (options.attainable) one.attainable = attainable.coverage();
+    if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);
   }

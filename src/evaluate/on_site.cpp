@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/parse.hpp"
 #include "core/setting_list.hpp"
+#include "core/site_reach.hpp"
 #include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
 
@@ -19,18 +21,10 @@ namespace {
 // Heights over the ground at which nothing may be in a person's way.
 constexpr double kHip_m = 1.0, kKnee_m = 0.4;
 
-void check(const OnSiteOptions& options) {
-  const auto refuse = [](const char* what, double value, const char* wanted) {
-    throw Error(Errc::invalid_argument,
-                std::string("on site: ") + what + " must be " + wanted + ", not " + std::to_string(value));
-  };
-  if (!(options.set_up_min >= 0 && std::isfinite(options.set_up_min)))
-    refuse("set_up_min", options.set_up_min, "0 or more");
-  if (!(options.photos_min >= 0 && std::isfinite(options.photos_min)))
-    refuse("photos_min", options.photos_min, "0 or more");
-  if (!(options.walking_m_per_s > 0 && std::isfinite(options.walking_m_per_s)))
-    refuse("walking_m_per_s", options.walking_m_per_s, "above 0");
-  if (!(options.detour >= 1 && std::isfinite(options.detour))) refuse("detour", options.detour, "1 or more");
+void check(const OnSiteOptions& options, const Vec3& origin) {
+  check_settings(on_site_settings(), options);
+  check_number(options.detour, "detour", {.low = 1, .high = 1000});
+  if (options.entrance) require_in_reach(*options.entrance, origin, "the entrance is");
 }
 
 // A closed round over the points of a matrix, beginning at point 0.
@@ -56,8 +50,11 @@ class Round {
   }
 
  private:
-  // A smaller gain is rounding, and the search would not end.
-  static constexpr double kGain_m = 1e-9;
+  // Whether a change gains more than rounding: else the search would not end.
+  static bool shorter(double then, double now) {
+    constexpr double kGain_m = 1e-9, kGain = 1e-12;
+    return then + kGain_m + kGain * now < now;
+  }
 
   double leg(std::size_t at) const { return metres_[order_[at % order_.size()]][order_[(at + 1) % order_.size()]]; }
 
@@ -67,7 +64,7 @@ class Round {
       for (std::size_t j = i + 2; j < n; ++j) {
         const double now = leg(i) + leg(j);
         const double then = metres_[order_[i]][order_[j]] + metres_[order_[i + 1]][order_[(j + 1) % n]];
-        if (then + kGain_m >= now) continue;
+        if (!shorter(then, now)) continue;
         std::reverse(order_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                      order_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
         return true;
@@ -87,10 +84,10 @@ class Round {
         };
         const std::size_t before = order_[from - 1], first = order_[from], last = order_[from + count - 1],
                           after = order_[(from + count) % n];
-        const double taken = metres_[before][first] + metres_[last][after] - metres_[before][after];
+        const double taken = metres_[before][first] + metres_[last][after];
         for (std::size_t to = 1; to <= left; ++to) {
           const std::size_t a = rest(to - 1), b = rest(to);
-          if (metres_[a][first] + metres_[last][b] - metres_[a][b] + kGain_m >= taken) continue;
+          if (!shorter(metres_[a][first] + metres_[last][b] + metres_[before][after], taken + metres_[a][b])) continue;
           const auto begin = order_.begin();
           const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
           if (to < from)
@@ -111,27 +108,35 @@ class Round {
 }  // namespace
 
 struct OnSite::Impl {
-  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans)
-      : options(o), scan_min(std::move(scans)), ways(area.mesh(), [clash](const Vec3& a, const Vec3& b) {
+  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans,
+       const Vec3& centre)
+      : options(o),
+        origin(centre),
+        scan_min(std::move(scans)),
+        ways(area.mesh(), [clash](const Vec3& a, const Vec3& b) {
           const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}
   OnSiteOptions options;
+  Vec3 origin;                   // of the scene
   std::vector<double> scan_min;  // by scanner
   Ways ways;
 };
 
 OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
-               const OnSiteOptions& options) {
-  check(options);
+               const OnSiteOptions& options, const Vec3& origin) {
+  check(options, origin);
   if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
   std::vector<double> scan_min;
   for (const Scanner& scanner : scanners)
     scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
-  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min));
+  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin);
 }
 
-std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const { return impl_->ways.between(from, to); }
+std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
+  for (const Vec3& end : {from, to}) require_in_reach(end, impl_->origin, "the end of a way is");
+  return impl_->ways.between(from, to);
+}
 double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
 const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
 
@@ -143,6 +148,7 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   if (options.entrance) stops.push_back(*options.entrance);
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!active(stations[i])) continue;
+    require_in_reach(stations[i].ground, impl_->origin, "station " + std::to_string(i + 1) + " stands");
     stops.push_back(stations[i].ground);
     station_of.push_back(i);
   }

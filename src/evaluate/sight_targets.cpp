@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/parse.hpp"
 #include "core/require_above_zero.hpp"
 #include "core/setting_list.hpp"
+#include "core/site_reach.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "scan/noise_model.hpp"
 #include "vantage/error.hpp"
@@ -84,9 +86,7 @@ Settings settings(const TargetOptions& options) {
 }
 
 void check(const TargetOptions& options) {
-  require_above_zero("targets", "diameter_m", options.diameter_m);
-  require_above_zero("targets", "height_m", options.height_m);
-  require_above_zero("targets", "sigma_m", options.sigma_m);
+  check_settings(target_settings(), options);
   if (options.largest_rms_m) require_above_zero("targets", "largest_rms_m", *options.largest_rms_m);
 }
 
@@ -107,9 +107,8 @@ std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const 
   check(options);
   std::vector<RegistrationTarget> sighted;
   for (Target& target : targets) {
-    const auto finite = std::isfinite(target.centre.x + target.centre.y + target.centre.z);
-    if (!finite || !(target.control_m >= 0 && std::isfinite(target.control_m)))
-      throw Error(Errc::invalid_argument, "targets: " + target.name + " has a coordinate or sigma that is no number");
+    require_in_reach(target.centre, simulator.origin(), "target \"" + target.name + "\" is");
+    check_number(target.control_m, "targets: the sigma of " + target.name, any_share);
     RegistrationTarget one{.centre = target.centre - simulator.origin(), .control_m = target.control_m};
     target.stations.clear();
     for (std::size_t k = 0; k < stations.size(); ++k) {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "core/coordinate_reference.hpp"
 #include "core/read_file.hpp"
 #include "core/text.hpp"
-#include "export/geodetic.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -61,38 +61,77 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+// Refuses a system whose coordinates are not metres east, north and up.
+void check(const CoordinateReference& system, const std::string& source) {
+  using Kind = CoordinateReference::Kind;
+  const std::string which = source + ": " + (system.name.empty() ? "" : system.name + ": ");
+  if (system.kind == Kind::geographic)
+    refuse(which + "longitude and latitude are angles; vantage's points are in metres: give a projected system");
+  if (system.kind == Kind::geocentric)
+    refuse(which +
+           "its axes begin in the middle of the earth, and vantage's point east, north and up: give a projected "
+           "system");
+  if (!system.has_lengths()) refuse(which + "it is no projected system; give one, as EPSG:25832");
+  if (!system.has_usual_axes())
+    refuse(which + "its axes point " + system.first.direction + " and " + system.second.direction +
+           ", and vantage's east and north: turn the site, and give the system of these axes (of Krovak's that is "
+           "EPSG:5514)");
+  for (const auto* axis : {&system.first, &system.second})
+    if (std::abs(axis->factor - 1) > 1e-9)
+      refuse(which + "its unit is " + number(axis->factor) + " m; vantage's points are in metres");
+  if (system.height && std::abs(system.height->factor - 1) > 1e-9)
+    refuse(which + "the unit of its heights is " + number(system.height->factor) +
+           " m; vantage's points are in metres: give the system in plan alone, or one with heights in metres, as "
+           "EPSG:26918+5703");
+  if (system.height && system.height->direction == "down")
+    refuse(which + "it counts depths, and vantage's points have heights: give the system in plan alone");
+}
+
 std::string checked(const std::string& written, const std::string& source) {
   const std::string text = one_line(written);
   const auto begins = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* word) { return text.starts_with(word); });
   };
-  if (begins({"GEOGCS", "GEOGCRS", "GEODCRS"}))
+  const bool first_version = begins({"PROJCS[", "COMPD_CS[", "LOCAL_CS["});
+  const auto system = read_coordinate_reference(text);
+  if (system) check(*system, source);
+  if (!system && begins({"GEOGCS", "GEOGCRS", "GEODCRS"}))
     refuse(source + ": longitude and latitude are angles; vantage's points are in metres: give a projected system");
-  if (begins({"PROJCRS", "PROJECTEDCRS", "COMPOUNDCRS", "ENGCRS", "BOUNDCRS"}))
-    refuse(source +
-           ": is well-known text of version 2; LAS 1.4 needs version 1 (OGC 01-009), which begins with PROJCS");
-  if (!begins({"PROJCS[", "COMPD_CS[", "LOCAL_CS[", "GEOCCS["}))
-    refuse(source + ": is no well-known text of a coordinate system; that begins with PROJCS[, COMPD_CS[, LOCAL_CS[ " +
-           "or GEOCCS[");
+  if (!system && !first_version)
+    refuse(source + ": is no well-known text of a coordinate system that PROJ understands; that begins with PROJCS[, " +
+           "PROJCRS[, COMPD_CS[, COMPOUNDCRS[ or LOCAL_CS[");
   if (std::count(text.begin(), text.end(), '[') != std::count(text.begin(), text.end(), ']') || text.back() != ']')
     refuse(source + ": the well-known text does not end: its brackets do not match");
-  if (text.size() > 65'534) refuse(source + ": the well-known text is longer than LAS can hold");
-  const auto unit = unit_of(text);
+  // LAS 1.4 needs version 1 (OGC 01-009).
+  const std::string result = first_version ? text : system->text;
+  if (result.empty())
+    refuse(source +
+           ": its well-known text cannot be told in version 1 (OGC 01-009), which LAS 1.4 needs; give a system "
+           "that begins with PROJCS");
+  if (result.size() > 65'534) refuse(source + ": the well-known text is longer than LAS can hold");
+  const auto unit = system ? std::nullopt : unit_of(result);
   if (unit && std::abs(*unit - 1) > 1e-9)
     refuse(source + ": its unit is " + number(*unit) + " m; vantage's points are in metres");
-  return text;
+  return result;
 }
 
-std::string of_code(std::string_view digits, const std::string& asked) {
-  int code = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
-  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-    refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
-  const std::string text = epsg_text(code);
-  if (text.empty())
+// `codes`: of a system, or of one in plan and one of heights, as 26918+5703.
+std::string of_code(std::string_view codes, const std::string& asked) {
+  const std::size_t plus = codes.find('+');
+  for (const std::string_view part : {codes.substr(0, plus), plus < codes.size() ? codes.substr(plus + 1) : "0"}) {
+    int code = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), code);
+    if (part.empty() || error != std::errc() || end != part.data() + part.size())
+      refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
+  }
+  const auto system = read_coordinate_reference("EPSG:" + std::string(codes));
+  if (!system)
     refuse("PROJ knows no coordinate system " + asked +
            " (its registry comes with proj-data); give another code, or a file of well-known text, as SITE.prj");
-  return checked(text, asked);
+  check(*system, asked);
+  if (system->text.empty())
+    refuse(asked + ": it cannot be told as well-known text of version 1, which LAS 1.4 needs; give another system");
+  return system->text;
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Transforms from the survey frame to WGS 84 by PROJ (PROJ contributors: PROJ coordinate transformation software
 // library, 2022).
-#include "export/geodetic.hpp"
-
 #include <proj.h>
 
 #include <cmath>
@@ -31,15 +29,6 @@ Context make_context() {
 }
 
 }  // namespace
-
-std::string epsg_text(int code) {
-  const Context context = make_context();
-  const Operation system(
-      proj_create_from_database(context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
-  constexpr const char* options[] = {"MULTILINE=NO", nullptr};
-  const char* text = system ? proj_as_wkt(context.get(), system.get(), PJ_WKT1_GDAL, options) : nullptr;
-  return text ? text : "";
-}
 
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points) {
   if (crs.empty())

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/json_text.hpp"
 #include "core/options_json.hpp"
 #include "core/text.hpp"
 #include "vantage/error.hpp"
@@ -123,7 +124,7 @@ std::string next_json(const Day& day, const Site& found) {
                   {"seed", found.simulator_config().seed},
                   {"options", options_json(all)},
                   {"version", version()}};
-  return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(text, 2) + "\n";
 }
 
 void write_next(const std::filesystem::path& folder, const Day& day, Site& found) {

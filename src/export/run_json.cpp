@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <numeric>
 
-#include "export/setup_json.hpp"
+#include "core/json_text.hpp"
 #include "export/station_cells.hpp"
+#include "export/station_json.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"
@@ -136,14 +137,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   const auto names = station_names(entry.stations, entry.names);
   const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
-    const PlacedStation& s = entry.stations[i];
-    ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
-                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"existing", s.existing}};
-    if (s.status != StationStatus::hole) {
-      station["position"] = to_json(s.position);
-      station["ground"] = to_json(s.ground);
-    }
-    if (setups) add_setup(station, s.setup, scanners);
+    ordered_json station = station_json<ordered_json>(entry.stations[i], names[i]);
+    if (setups) add_setup(station, entry.stations[i].setup, scanners);
     if (entry.exact && i < entry.counts.points_on_surveyed.size())
       station["points_on_surveyed"] = entry.counts.points_on_surveyed[i];
     stations.push_back(std::move(station));
@@ -231,7 +226,7 @@ ordered_json run_parameters(const Simulator& simulator, const PlanResult* result
 }
 
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result) {
-  return run_parameters(simulator, result).dump(2);
+  return json_text(run_parameters(simulator, result), 2);
 }
 
 ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations) {
@@ -288,7 +283,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
   if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
   if (!evaluation.counts.mixed.empty()) json["mixed"] = sum_json(evaluation.counts.mixed);
-  return json.dump();
+  return json_text(json);
 }
 
 std::string front_json(const PlanResult& result, const Simulator& simulator) {
@@ -326,7 +321,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   json["seed"] = result.config.seed.value_or(1);
   json["version"] = version();
   json["parameters"] = run_parameters(simulator, &result);
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace vantage

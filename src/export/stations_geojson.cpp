@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.hpp"
+#include "core/json_text.hpp"
 #include "export/station_grounds.hpp"
 
 namespace vantage {
@@ -57,7 +58,7 @@ void write_stations_geojson(const std::filesystem::path& file, const NamedStatio
            {"z", target.centre.z}}}});
   }
   const ordered_json collection{{"type", "FeatureCollection"}, {"features", std::move(features)}};
-  write_atomically(file, collection.dump(2) + "\n");
+  write_atomically(file, json_text(collection, 2) + "\n");
 }
 
 }  // namespace vantage

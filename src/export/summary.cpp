@@ -196,7 +196,8 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
                              std::accumulate(counts.points.begin(), counts.points.end(), std::uint64_t{0}))});
   if (links) lines.push_back({"linked", links_text(*links, names)});
   const auto registered = evaluation.values.find("registration");
-  if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
+  const bool several = std::ranges::count_if(evaluation.stations, active) > 1;  // one scan is registered to nothing
+  if (several && registered != evaluation.values.end() && std::isfinite(registered->second.value))
     lines.push_back({"registered", registered_text(evaluation, registered->second, names)});
   if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
   const auto to_do = [&](const std::vector<std::string>& advice) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/atomic_file.hpp"
+#include "core/json_text.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::built_in {
@@ -118,7 +119,7 @@ void write_glb(const Model& model, const std::filesystem::path& file) {
                       {"accessors", buffer.accessors_},
                       {"bufferViews", buffer.views_},
                       {"buffers", {{{"byteLength", buffer.bytes_.size()}}}}};
-  std::string text = document.dump();
+  std::string text = json_text(document);
   while (text.size() % 4 != 0) text += ' ';
   const std::size_t total = 12 + 8 + text.size() + 8 + buffer.bytes_.size();
   if (total > std::numeric_limits<std::uint32_t>::max())

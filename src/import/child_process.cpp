@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,7 +15,9 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -25,6 +28,28 @@ namespace vantage::importers {
 namespace {
 
 constexpr std::size_t kMostErrors = 4096;
+// Open files, of which a pipe holds 64 KiB of the kernel's memory, and threads.
+constexpr std::uint64_t kMostFiles = 256, kMostThreads = 256;
+
+// The limit of RLIMIT_NPROC, which counts all processes and threads of a user: there are no more now than the system
+// has.
+std::uint64_t most_tasks() {
+  std::ifstream load("/proc/loadavg");
+  std::string word;
+  for (int k = 0; k < 4; ++k) load >> word;  // the fourth: running/all
+  std::uint64_t all = 0;
+  const std::size_t slash = word.find('/');
+  if (slash == std::string::npos ||
+      std::from_chars(word.data() + slash + 1, word.data() + word.size(), all).ec != std::errc())
+    return RLIM_INFINITY;
+  return all + kMostThreads;
+}
+
+// Ends a process and whatever it started.
+void end(pid_t process) {
+  kill(-process, SIGKILL);
+  kill(process, SIGKILL);  // it may not have its group yet
+}
 
 class Descriptor {
  public:
@@ -67,9 +92,10 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
 
 // Runs after the fork, where only system calls are safe. Allocation is limited by RLIMIT_DATA: unlike RLIMIT_AS it does
 // not count the address space that node reserves and never uses.
-[[noreturn]] void become(char* const* words, const Sandbox& sandbox, const Limits& limits, int nothing, int out,
-                         int err) noexcept {
+[[noreturn]] void become(char* const* words, char* const* environment, Sandbox& sandbox, const Limits& limits,
+                         std::uint64_t tasks, int nothing, int out, int err) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);
   if (dup2(nothing, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(kCannotStart);
   sigset_t none;
   sigemptyset(&none);
@@ -79,8 +105,14 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
   limit(RLIMIT_FSIZE, 0, 0);
   limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1);
   if (limits.memory > 0) limit(RLIMIT_DATA, limits.memory, limits.memory);
+  limit(RLIMIT_NOFILE, kMostFiles, kMostFiles);
+  limit(RLIMIT_NPROC, tasks, tasks);
+#ifdef SYS_close_range
+  constexpr unsigned kCloseOnExec = 4;
+  syscall(SYS_close_range, 3, ~0U, kCloseOnExec);
+#endif
   sandbox.enter();
-  execv(words[0], words);
+  execve(words[0], words, environment);
   _exit(kCannotStart);
 }
 
@@ -167,7 +199,7 @@ int wait_for(pid_t process, unsigned seconds, bool& timed_out) {
     const pid_t ended = waitpid(process, &status, killed ? 0 : WNOHANG);
     if (ended == process || (ended < 0 && errno != EINTR)) return status;
     if (!killed && Clock::now() > deadline) {
-      kill(process, SIGKILL);
+      end(process);
       killed = timed_out = true;
     }
     if (!killed) usleep(1000);
@@ -176,18 +208,27 @@ int wait_for(pid_t process, unsigned seconds, bool& timed_out) {
 
 }  // namespace
 
-Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
-                  const Limits& limits, const Progress& progress) {
+Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& programs,
+                  const std::vector<std::filesystem::path>& readable, const Limits& limits, const Progress& progress) {
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
   for (std::string& word : copies) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const Sandbox sandbox(readable);
+  std::vector<std::string> variables;
+  if (limits.spawns)
+    for (const char* name : {"PATH", "VANTAGE_IMPORTERS"})
+      if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
+  Sandbox sandbox(programs, readable, limits.spawns);
+  const std::uint64_t tasks = most_tasks();
   Pipe out, err;
   const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
   const pid_t process = fork();
   if (process < 0) throw Error(Errc::io, words.front() + " cannot be started: " + std::string(std::strerror(errno)));
-  if (process == 0) become(argv.data(), sandbox, limits, nothing.get(), out.to.get(), err.to.get());
+  if (process == 0)
+    become(argv.data(), environment.data(), sandbox, limits, tasks, nothing.get(), out.to.get(), err.to.get());
   out.to.reset();
   err.to.reset();
   Ended ended;
@@ -195,11 +236,11 @@ Ended run_limited(const std::vector<std::string>& words, const std::vector<std::
   try {
     listen(out, err, limits, progress, ended);
   } catch (...) {  // not enough memory for its output, or thrown by a report
-    kill(process, SIGKILL);
+    end(process);
     waitpid(process, &status, 0);
     throw;
   }
-  if (ended.timed_out || ended.too_large || ended.stopped) kill(process, SIGKILL);
+  if (ended.timed_out || ended.too_large || ended.stopped) end(process);
   status = wait_for(process, 10, ended.timed_out);  // a process that closed its output has nothing left to do
   if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);

@@ -15,6 +15,9 @@ struct Limits {
   std::uint64_t memory = 0;  // that it may allocate; 0: any
   unsigned cpu_s = 15 * 60, wall_s = 60 * 60;
   std::uint64_t output = std::uint64_t{1} << 32;  // bytes
+  // It starts a program of its own by posix_spawn(), in the same sandbox and with the same limits each. Both have the
+  // variables PATH and VANTAGE_IMPORTERS.
+  bool spawns = false;
 };
 
 // Exit code of a program that cannot be started, or whose libraries cannot be loaded.
@@ -29,10 +32,12 @@ struct Ended {
   bool timed_out = false, too_large = false, stopped = false;
 };
 
-// Runs a program with these words, `words[0]` its path, and waits. It can write no file, open no socket and dump no
-// core. If the kernel has Landlock, it reads nothing outside the system's folders and `readable`. Lines "progress
-// SHARE" of its standard error are reported. Throws Error io if it cannot be started.
-Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
-                  const Limits& limits, const Progress& progress = {});
+// Runs a program with these words, `words[0]` its path, in a sandbox (sandbox.hpp), and waits. It has no environment
+// unless it `spawns`, and dumps no core. If the kernel has Landlock, it reads nothing outside the system's folders,
+// `programs` and `readable`. Lines "progress SHARE" of its standard error are reported. Throws Error io if it cannot be
+// started.
+Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& programs,
+                  const std::vector<std::filesystem::path>& readable, const Limits& limits,
+                  const Progress& progress = {});
 
 }  // namespace vantage::importers

@@ -6,9 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "vantage/error.hpp"
@@ -22,15 +20,16 @@ constexpr const char* kMesh = "vantage-import-mesh";
 constexpr const char* kCloud = "vantage-import-cloud";
 constexpr Format kGltf{"glTF", ".glb .gltf .b3dm ", nullptr};
 constexpr Format kPacked{"compressed glTF", ".gltf .gz ", "vantage-import-gltf"};
-constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc"};
+constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc", "unit", true};
 constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
 // A PLY holds either; its name alone means faces.
-constexpr const char* kCell = "cell";
-constexpr Format kE57{"E57", ".e57 ", kCloud, kCell, true}, kLas{"LAS", ".las .laz ", kCloud, kCell, true},
-    kPlyPoints{"PLY of points", ".ply ", kCloud, kCell, true},
-    kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud, kCell, true}, kPcd{"PCD", ".pcd ", kCloud, kCell, true};
+constexpr const char* kOfClouds = "cell unit up";
+constexpr Format kE57{"E57", ".e57 ", kCloud, kOfClouds, true}, kLas{"LAS", ".las .laz ", kCloud, kOfClouds, true},
+    kPlyPoints{"PLY of points", ".ply ", kCloud, kOfClouds, true},
+    kText{"XYZ", ".xyz .pts .ptx .asc ", kCloud, "cell unit up columns", true},
+    kPcd{"PCD", ".pcd ", kCloud, kOfClouds, true};
 constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "unit wall-layer wall-height", true};
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
                               &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
@@ -62,6 +61,9 @@ constexpr std::array kMistaken{
     Mistaken{"OFF\n"sv, "an OFF model; export OBJ or PLY"},
     Mistaken{"#VRML"sv, "a VRML file; export X3D (as XML) or glTF"},
 };
+
+// Bytes of a file that its format is told by.
+constexpr std::uint64_t kMostRecognised = std::uint64_t{1} << 30;
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -112,17 +114,21 @@ bool holds_obj(std::string_view text) {
   return vertices && known > 20 * others;
 }
 
-// Whether most of the first lines begin with three numbers, behind titles and counts.
+// Whether most of the first lines have three numbers and no more other words, behind titles and counts.
 bool holds_numbers(std::string_view text) {
   constexpr std::size_t kLines = 40;
   const auto three_numbers = [](std::string_view line) {
-    std::string words(line);
-    std::ranges::replace_if(
-        words, [](char c) { return c == ',' || c == ';'; }, ' ');
-    std::istringstream stream(words);
-    stream.imbue(std::locale::classic());
-    double value = 0;
-    return bool{stream >> value >> value >> value};
+    constexpr std::string_view kBetween = " \t,;";
+    std::size_t numbers = 0, others = 0;
+    for (std::size_t at = line.find_first_not_of(kBetween); at < line.size();) {
+      const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
+      const std::string_view word = line.substr(at, end - at);
+      const bool number = word.find_first_of("0123456789") < word.size() &&
+                          word.find_first_not_of("0123456789+-.'eE") == std::string_view::npos;
+      ++(number ? numbers : others);
+      at = line.find_first_not_of(kBetween, end);
+    }
+    return numbers >= 3 && numbers >= others;
   };
   std::size_t points = 0, others = 0;
   for (const std::string_view line : first_lines(text, kLines))
@@ -179,6 +185,8 @@ std::string mistaken_for_a_model(const Head& head) {
   const std::string_view text = without_blanks(head.bytes);
   for (const Mistaken& other : kMistaken)
     if (std::string_view(head.bytes).starts_with(other.begins) || text.starts_with(other.begins)) return other.is;
+  if (text.starts_with("{") && text.find("ifcx") != std::string::npos && text.find("\"asset\"") == std::string::npos)
+    return "IFC 5 (ifcx), a draft that no importer reads; export IFC 4.3 or IFC 4 as STEP text (.ifc)";
   if (text.starts_with("<")) {
     const std::string root = root_element(text);
     if (root == "html" || lower(text.substr(0, 14)) == "<!doctype html")
@@ -259,21 +267,25 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
   const std::uint64_t json =
       glb ? 20 + std::uint64_t{little_endian_32(std::string_view(head.bytes).substr(12))} : head.size;
   std::ifstream stream(file, std::ios::binary);
-  return mentions(stream, json, kWords);
+  return mentions(stream, std::min(json, kMostRecognised), kWords);
 }
 
 // Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
 bool is_drawing(const std::filesystem::path& file) {
-  constexpr std::array kLines{"LINE"sv,  "LWPOLYLINE"sv, "ARC"sv,    "CIRCLE"sv,
-                              "HATCH"sv, "SOLID"sv,      "INSERT"sv, "POLYLINE"sv};
-  constexpr int kMeshes = 16 | 64;  // bits of a POLYLINE's group 70: a mesh of polygons, of faces
+  constexpr std::array kLines{"LINE"sv,   "LWPOLYLINE"sv, "ARC"sv,   "CIRCLE"sv,  "HATCH"sv, "SOLID"sv,
+                              "INSERT"sv, "POLYLINE"sv,   "MLINE"sv, "ELLIPSE"sv, "TRACE"sv, "SPLINE"sv};
+  // Bits of group 70: a POLYLINE that is a mesh of polygons or of faces, a VERTEX that is a place and no face.
+  constexpr int kPolygons = 16, kFaces = 64, kPlace = 64;
   std::ifstream stream(file, std::ios::binary);
+  auto left = static_cast<std::streamsize>(kMostRecognised);
   const auto next = [&](std::string& line) {
     std::array<char, 64> text{};  // longer lines are texts
     stream.getline(text.data(), text.size());
+    left -= stream.gcount();
     if (stream.fail() && !stream.eof() && stream.gcount() > 0) {
       stream.clear();
-      stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      stream.ignore(left, '\n');
+      left -= stream.gcount();
     }
     line = without_blanks(text.data());
     while (!line.empty() && is_space(line.back())) line.pop_back();
@@ -281,51 +293,91 @@ bool is_drawing(const std::filesystem::path& file) {
   };
   bool lines = false;
   std::string code, value, entity;
-  double lowest = 0, highest = 0;
+  double lowest = 0, highest = 0, height = 0;
+  int flags = 0, mesh = 0;  // of the entity; of the polyline that its vertices follow
   bool any = false;
-  while (next(code) && next(value)) {
+  const auto reach = [&](double z) {
+    lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
+  };
+  while (left > 0 && next(code) && next(value)) {
     if (code == "0") {
-      if (entity == "3DFACE" && any && highest - lowest > 1e-6) return false;
-      entity = value, any = false;
+      if (entity == "POLYLINE") mesh = flags & (kPolygons | kFaces), any = false;
+      if (entity == "VERTEX" && ((mesh & kPolygons) != 0 || (mesh != 0 && (flags & kPlace) != 0))) reach(height);
+      if (any && highest - lowest > 1e-6) return false;
+      if (value != "VERTEX") any = false;
+      entity = value, flags = 0, height = 0;
       lines = lines || std::ranges::find(kLines, entity) != kLines.end();
-    } else if (entity == "POLYLINE" && code == "70" && (std::atoi(value.c_str()) & kMeshes) != 0) {
-      return false;
+    } else if (code == "70") {
+      flags = std::atoi(value.c_str());
     } else if (entity == "3DFACE" && (code == "30" || code == "31" || code == "32" || code == "33")) {
-      const double z = std::atof(value.c_str());
-      lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
+      reach(std::atof(value.c_str()));
+    } else if (entity == "VERTEX" && code == "30") {
+      height = std::atof(value.c_str());
     }
   }
   return lines;
 }
 
+// Throws Error io for what is called as a model in a folder and is no file.
+void require_file(const std::filesystem::directory_entry& entry) {
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  const fs::file_status status = entry.status(failure);
+  if (fs::is_regular_file(status)) return;
+  std::string is = fs::is_directory(status)                                     ? "a folder"
+                   : fs::is_character_file(status) || fs::is_block_file(status) ? "a device"
+                   : fs::is_fifo(status)                                        ? "a pipe"
+                   : fs::is_socket(status)                                      ? "a socket"
+                                                                                : "nothing that can be read";
+  if (entry.is_symlink(failure)) {
+    const fs::path target = fs::read_symlink(entry.path(), failure);
+    is = "a link to " + target.string() + ", " + (fs::exists(status) ? "which is " + is : "where there is nothing");
+  }
+  throw Error(Errc::io, entry.path().string() + ": this is " + is + "; take it out of the folder, or give a file");
+}
+
 }  // namespace
 
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
+namespace {
+
+std::vector<std::filesystem::path> files_at(const std::filesystem::path& file) {
   std::error_code failure;
   if (!std::filesystem::is_directory(file, failure)) return {file};
-  constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan};
+  constexpr std::array kSeveral{&kE57, &kLas, &kText, &kPcd, &kPlyPoints, &kPlan, &kIfc};
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(file, failure))
-    if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); }))
+    if (std::ranges::any_of(kSeveral, [&](const Format* format) { return is_named_as(entry.path(), *format); })) {
+      require_file(entry);
       files.push_back(entry.path());
+    }
   if (failure) throw Error(Errc::io, file.string() + ": the folder cannot be read: " + failure.message());
   if (files.empty())
     throw Error(Errc::malformed_file,
                 file.string() +
-                    ": a folder is a site if it holds scans (E57, PTX, LAS, PLY, XYZ, PCD), or floor plans "
-                    "in DXF, a file for each storey; this one holds neither");
+                    ": a folder is a site if it holds scans (E57, PTX, LAS, PLY, XYZ, PCD), IFC models, or floor plans "
+                    "in DXF, a file for each storey; this one holds none of them");
   std::ranges::sort(files);
   return files;
 }
 
-Recognised recognise(const std::filesystem::path& file) {
-  if (const std::vector<std::filesystem::path> files = files_of(file); files.front() != file) {
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const std::vector<std::string>& beside) {
+  std::vector<std::filesystem::path> files = files_at(file);
+  for (const std::string& other : beside)
+    for (std::filesystem::path& one : files_at(other)) files.push_back(std::move(one));
+  return files;
+}
+
+Recognised recognise(const std::filesystem::path& file, const std::vector<std::string>& beside) {
+  if (const auto files = files_of(file, beside); files.size() > 1 || files.front() != file) {
     const Recognised first = recognise(files.front());
     for (const std::filesystem::path& other : files) {
       const Format* const format = recognise(other).format;
       if (!format->several)
         throw Error(Errc::malformed_file, other.string() + ": this is " + format->name +
-                                              ", and a folder is a site of scans, or of floor plans, alone");
+                                              ", and several files are one site if they are IFC models, scans or "
+                                              "floor plans");
       if (format != first.format)
         throw Error(Errc::malformed_file, other.string() + ": this is " + format->name + ", and " +
                                               files.front().filename().string() + " is " + first.format->name +
@@ -337,12 +389,12 @@ Recognised recognise(const std::filesystem::path& file) {
   if (!head) return {&kGltf};
   if (is_packed(file, *head)) return {&kPacked};
   const Format* by_extension = format_by_extension(file);
+  if (const std::string other = mistaken_for_a_model(*head); !other.empty())
+    throw Error(Errc::malformed_file, file.string() + ": this is " + other);
   if (const Format* format = format_by_content(*head); format && format->importer == nullptr) {
     if (!by_extension || by_extension == format) return {format};
     return {format, std::string("it is named as ") + by_extension->name + ", but holds glTF, and is read as that"};
   }
-  if (const std::string other = mistaken_for_a_model(*head); !other.empty())
-    throw Error(Errc::malformed_file, file.string() + ": this is " + other);
   const Format* format = format_by_content(*head);
   if (!format) format = by_extension;
   if (!format) {

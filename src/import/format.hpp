@@ -22,12 +22,15 @@ struct Recognised {
 };
 
 // The files of a site: a file is its own; those of a folder are the ones that are named as a format of which several
-// are one site, by their names. Throws Error: io (a folder cannot be read), malformed_file (it holds no such file).
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& file);
+// are one site, by their names; those `beside` follow. Throws Error: io (a folder cannot be read), malformed_file (it
+// holds no such file).
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file,
+                                            const std::vector<std::string>& beside = {});
 
 // Recognises the format of a model by its content, else by its extension. Missing or unreadable files are left to the
 // loader's own errors. Throws Error malformed_file, which names the kind of file, for files without surfaces (a zip
-// archive, a page, a picture, …), and for a folder whose files are of several formats.
-Recognised recognise(const std::filesystem::path& file);
+// archive, a page, a picture, …), and for several files that are of several formats, or of one whose files are sites of
+// their own.
+Recognised recognise(const std::filesystem::path& file, const std::vector<std::string>& beside = {});
 
 }  // namespace vantage::importers

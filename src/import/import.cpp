@@ -2,16 +2,19 @@
 #include "import/import.hpp"
 
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 
 #include "core/atomic_file.hpp"
+#include "core/crc32c.hpp"
 #include "core/free_memory.hpp"
 #include "core/hash.hpp"
 #include "core/read_file.hpp"
@@ -36,47 +39,140 @@ bool is_glb(std::span<const std::uint8_t> bytes) {
   return length == bytes.size();
 }
 
-void add_file(Hash& hash, const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::vector<char> block(std::size_t{1} << 20);
-  while (stream) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hash.add_bytes(block.data(), static_cast<std::size_t>(stream.gcount()));
+// Content that is read for a key, of all files together. What is beyond it counts by what its folder says of it: a key
+// must not take longer than the import.
+constexpr std::uint64_t kMostRead = std::uint64_t{1} << 30;
+
+// Names of material tables in an OBJ that is given in blocks: of these formats, only OBJ names files that matter.
+class TableNames {
+ public:
+  void add(std::string_view block) {
+    while (!block.empty()) {
+      const std::size_t end = block.find('\n');
+      const std::string_view part = block.substr(0, end);
+      other_ = other_ || (line_.empty() && part.size() >= kWord.size() && !part.starts_with(kWord)) ||
+               line_.size() + part.size() > kLongest;
+      if (!other_) line_ += part;
+      if (end == std::string_view::npos) return;
+      end_line();
+      block.remove_prefix(end + 1);
+    }
   }
-  if (!stream.eof()) throw Error(Errc::io, file.string() + ": the model cannot be read");
+  const std::set<std::string>& finish() {
+    end_line();
+    return names_;
+  }
+
+ private:
+  static constexpr std::string_view kWord = "mtllib";
+  static constexpr std::size_t kLongest = 4096;  // a path
+  static constexpr std::size_t kMost = 1000;
+
+  void end_line() {
+    if (!other_ && line_.starts_with(kWord) && names_.size() < kMost) {
+      line_.erase(0, std::min(line_.find_first_not_of(" \t", kWord.size()), line_.size()));
+      while (!line_.empty() && (line_.back() == '\r' || line_.back() == ' ')) line_.pop_back();
+      names_.insert(line_);
+    }
+    line_.clear(), other_ = false;
+  }
+
+  std::set<std::string> names_;
+  std::string line_;    // the beginning of the open line
+  bool other_ = false;  // it names no table
+};
+
+// Whether a file is below a folder, links followed.
+bool is_below(const fs::path& file, const fs::path& folder) {
+  std::error_code failure;
+  const fs::path inner = fs::canonical(file, failure);
+  if (failure) return false;
+  const fs::path outer = fs::canonical(folder, failure);
+  if (failure) return false;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
-// Adds other files that an importer reads: of these formats, only OBJ names some that matter, its material tables.
-void add_material_tables(Hash& hash, const fs::path& file) {
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.starts_with("mtllib")) continue;
-    line.erase(0, std::min(line.find_first_not_of(" \t", 6), line.size()));
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    std::error_code failure;
-    const fs::path table = file.parent_path() / line;
-    if (fs::is_regular_file(table, failure)) add_file(hash, table);
-  }
-}
+struct Stopped {};
 
-// Changes with the model, the importer, what it is told, and this program.
-std::string cache_key(const std::vector<fs::path>& files, const Format& format, const Importer& importer,
-                      const std::vector<std::string>& settings) {
-  Hash hash;
-  const std::string_view version = vantage::version(), name = format.name;
-  hash.add_bytes(version.data(), version.size());
-  hash.add_bytes(name.data(), name.size());
-  for (const std::string& setting : settings) hash.add_bytes(setting.c_str(), setting.size() + 1);
+// Hashes what an importer reads. Throws Error io for what is no regular file or cannot be read, and Stopped.
+class KeyReader {
+ public:
+  explicit KeyReader(const Progress& progress) : progress_(progress) {}
+
+  void add(std::string_view text) { hash_.add_bytes(text.data(), text.size()); }
+  template <class Number>
+  void add_number(Number number) {
+    hash_.add(number);
+  }
+  void add_model(const fs::path& file, bool names_tables) {
+    TableNames tables;
+    read(file, names_tables ? &tables : nullptr);
+    for (const std::string& name : tables.finish()) {
+      if (progress_.stopped()) throw Stopped{};
+      std::error_code failure;
+      const fs::path table = file.parent_path() / name;
+      if (!fs::is_regular_file(table, failure) || !is_below(table, file.parent_path())) continue;
+      read(table, nullptr);
+      tables_.push_back(table);
+    }
+  }
+  const std::vector<fs::path>& tables() const { return tables_; }
+  std::string text() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_.value()));
+    return text;
+  }
+
+ private:
+  void read(const fs::path& path, TableNames* tables) {
+    RegularFile file(path, "the model cannot be read");
+    hash_.add(file.size());
+    if (file.size() > kMostRead - read_) {
+      std::error_code failure;
+      add(path.string());
+      hash_.add(fs::last_write_time(path, failure).time_since_epoch().count());
+      if (!tables) return;
+    }
+    while (read_ < kMostRead) {
+      if (progress_.stopped()) throw Stopped{};
+      const std::size_t got = file.read_next(block_.data(), std::min<std::uint64_t>(block_.size(), kMostRead - read_));
+      if (got == 0) return;
+      read_ += got;
+      hash_.add_bytes(block_.data(), got);
+      if (tables) tables->add({block_.data(), got});
+    }
+  }
+
+  const Progress& progress_;
+  Hash hash_;
+  std::vector<fs::path> tables_;
+  std::uint64_t read_ = 0;
+  std::vector<char> block_ = std::vector<char>(std::size_t{1} << 20);
+};
+
+struct Key {
+  std::string text;
+  std::vector<fs::path> tables;  // files that the model names, as far as its importer may read them
+};
+
+// Changes with the model, the importer, what it is told, and this program. Throws as KeyReader.
+Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const Format& format, const Importer& importer,
+              const std::vector<std::string>& settings, const Progress& progress) {
+  KeyReader key(progress);
+  const std::string_view name = format.name;
+  key.add(vantage::version());
+  key.add(name);
+  for (const std::string& setting : settings) key.add(setting);
   std::error_code failure;  // then both are -1
-  hash.add(fs::file_size(importer.program, failure));
-  hash.add(fs::last_write_time(importer.program, failure).time_since_epoch().count());
+  key.add_number(fs::file_size(importer.program, failure));
+  key.add_number(fs::last_write_time(importer.program, failure).time_since_epoch().count());
+  // Storeys and scans of several files are called as these.
+  const bool named = files.size() > 1 || fs::is_directory(model, failure);
   for (const fs::path& file : files) {
-    add_file(hash, file);
-    if (name == "OBJ") add_material_tables(hash, file);
+    if (named) key.add(file.filename().string());
+    key.add_model(file, name == "OBJ");
   }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash.value()));
-  return text;
+  return {key.text(), key.tables()};
 }
 
 // Empty if the user has none.
@@ -87,23 +183,44 @@ fs::path cache_folder() {
   return home && *home == '/' ? fs::path(home) / ".cache/vantage/imports" : fs::path();
 }
 
+// Behind the GLB of an entry: what it is an entry for, and its checksum.
+struct Seal {
+  std::array<char, 16> key{};
+  std::uint32_t checksum = 0;
+
+  Seal() = default;
+  Seal(const fs::path& entry, std::span<const std::uint8_t> glb) : checksum(crc32c(glb.data(), glb.size())) {
+    const std::string name = entry.stem().string();
+    std::copy_n(name.begin(), std::min(name.size(), key.size()), key.begin());
+  }
+  friend bool operator==(const Seal&, const Seal&) = default;
+};
+
+// Empty if there is no entry, or if it is not as it was written.
 std::optional<std::vector<std::uint8_t>> cached(const fs::path& entry, const Limits& limits) {
   try {
     RegularFile file(entry);
-    if (file.size() > limits.output) return {};
+    if (file.size() < sizeof(Seal) || file.size() - sizeof(Seal) > limits.output) return {};
     std::vector<std::uint8_t> glb(file.size());
     file.read(glb.data());
-    if (is_glb(glb)) return glb;
+    Seal seal;
+    std::memcpy(&seal, glb.data() + glb.size() - sizeof seal, sizeof seal);
+    glb.resize(glb.size() - sizeof seal);
+    if (is_glb(glb) && seal == Seal(entry, glb)) return glb;
   } catch (const Error&) {  // treated as absent
   }
   return {};
 }
 
-// A cache that cannot be written only costs time.
+// For its user alone: a model may be confidential. A cache that cannot be written only costs time.
 void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
   try {
     fs::create_directories(entry.parent_path());
-    write_atomically(entry, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+    AtomicFile file(entry, 0600);
+    const Seal seal(entry, glb);
+    file.write(glb.data(), glb.size());
+    file.write(&seal, sizeof seal);
+    file.commit();
   } catch (const Error&) {
   } catch (const fs::filesystem_error&) {
   }
@@ -145,6 +262,11 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
                                           " that are free; close other programs, or export parts of the model");
   if (ended.signal == SIGINT || ended.signal == SIGTERM || ended.signal == SIGHUP)
     return Error(Errc::io, who + " was stopped (signal " + std::to_string(ended.signal) + ")");
+  rlimit space{};
+  if (said.empty() && getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY)
+    return Error(Errc::out_of_memory,
+                 who + " ended early, perhaps since this process is limited to an address space of " +
+                     bytes_text(space.rlim_cur) + " (ulimit -v): raise that limit; or the file is damaged");
   const std::string how = ended.signal > 0       ? "crashed (signal " + std::to_string(ended.signal) + ")"
                           : ended.exit_code != 0 ? "failed (exit code " + std::to_string(ended.exit_code) + ")"
                                                  : "gave no GLB";
@@ -155,10 +277,11 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 }  // namespace
 
 std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits,
-                                 const std::vector<std::string>& settings, const Progress& progress) {
+                                 const std::vector<std::string>& settings, const Progress& progress,
+                                 const std::vector<std::string>& beside) {
   limits.memory = memory_limit(limits.memory);
   limits.memory -= std::min(limits.memory / 8, kCode);
-  std::vector<fs::path> files = files_of(file);
+  std::vector<fs::path> files = files_of(file, beside);
   for (fs::path& one : files) one = fs::absolute(one);
   limits.cpu_s = std::min(limits.cpu_s, seconds_for(files));
   limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors
@@ -170,22 +293,29 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  // The buffers of a textual glTF are other files, which the key does not cover.
+  // The buffers of a textual glTF are other files below its folder, which the key does not cover.
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();
-  const fs::path entry = folder / (cache_key(files, format, importer, settings) + ".glb");
+  fs::path entry;
+  std::vector<fs::path> readable = files;
+  if (whole) {
+    try {
+      const Key key = cache_key(file, files, format, importer, settings, progress);
+      entry = folder / (key.text + ".glb");
+      readable.insert(readable.end(), key.tables.begin(), key.tables.end());
+    } catch (const Stopped&) {
+      return {};
+    }
+  } else {
+    readable.push_back(files.front().parent_path());
+  }
   if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);
   importer.words.insert(importer.words.end(), settings.begin(), settings.end());
-  for (const fs::path& one : files) {
-    importer.words.push_back(one.string());
-    importer.readable.push_back(one.parent_path());
-    std::error_code failure;
-    if (const fs::path target = fs::canonical(one, failure); !failure)
-      importer.readable.push_back(target.parent_path());
-  }
-  Ended ended = run_limited(importer.words, importer.readable, limits, progress);
+  for (const fs::path& one : files) importer.words.push_back(one.string());
+  limits.spawns = importer.spawns;
+  Ended ended = run_limited(importer.words, importer.readable, readable, limits, progress);
   if (ended.stopped) return {};
   if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))
     throw failure_of(ended, file.string(), format, limits);

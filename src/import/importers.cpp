@@ -57,16 +57,29 @@ std::string missing(const Format& format, const std::string& why, const std::str
          remedy + ", or export glTF";
 }
 
+// What the importer of clouds reads besides: node with the script that uncompresses LAZ, and the registry of PROJ.
+void add_helpers(Importer& importer, const Format& format) {
+  std::error_code failure;
+  const fs::path script = fs::canonical(importer.program.parent_path() / "vantage-import-laz", failure);
+  const fs::path node = failure ? fs::path() : fs::canonical(in_path("node"), failure);
+  if (!failure) {
+    importer.readable.insert(importer.readable.end(), {script, node.parent_path().parent_path()});
+    importer.spawns = std::string_view(format.name) == "LAS";
+  }
+  for (const char* name : {"PROJ_DATA", "PROJ_LIB"})
+    if (const char* folder = std::getenv(name); folder && *folder) importer.readable.emplace_back(folder);
+}
+
 // Advice where an importer is missing. REQUIRES: that of a format.
 std::string remedy_for(std::string_view importer) {
   if (importer == "vantage-import-ifc") return "install node and web-ifc with setup.sh --ifc";
   struct Needs {
     std::string_view importer, packages;
   };
-  constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev"},
+  constexpr std::array kNeeds{Needs{"vantage-import-mesh", "libassimp-dev and libexpat1-dev"},
                               Needs{"vantage-import-gltf", "libdraco-dev and libmeshoptimizer-dev"},
                               Needs{"vantage-import-cloud", "libexpat1-dev"},
-                              Needs{"vantage-import-plan", "libdxflib-dev and libgeos-dev"}};
+                              Needs{"vantage-import-plan", "libgeos-dev"}};
   const auto needs = std::ranges::find(kNeeds, importer, &Needs::importer);
   return "install " + std::string(needs->packages) + " and build vantage again (setup.sh does both)";
 }
@@ -87,6 +100,7 @@ Importer find_importer(const Format& format) {
     if (!script) {
       const std::string_view extensions = format.extensions;
       found.words.emplace_back(extensions.substr(1, extensions.find(' ') - 1));
+      if (std::string_view(format.importer) == "vantage-import-cloud") add_helpers(found, format);
       return found;
     }
     const fs::path node = fs::canonical(in_path("node"), failure);

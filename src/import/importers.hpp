@@ -14,6 +14,7 @@ struct Importer {
   std::filesystem::path program;   // its file, links followed
   std::vector<std::string> words;  // the model's path follows them
   std::vector<std::filesystem::path> readable;
+  bool spawns = false;  // it starts a program of its own (Limits::spawns)
 };
 
 // Looks only in the folder named by the environment variable VANTAGE_IMPORTERS, if set. Otherwise it looks beside the

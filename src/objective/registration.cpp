@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/require_above_zero.hpp"
 #include "core/setting_list.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "objective/whole_counts.hpp"
@@ -26,13 +25,7 @@ Settings settings(const RegistrationOptions& options) {
       .take();
 }
 
-void check(const RegistrationOptions& options) {
-  require_above_zero("registration", "rho_m", options.model.rho_m);
-  require_above_zero("registration", "patch_m", options.model.patch_m);
-  require_above_zero("registration", "position_m", options.position_m);
-  require_above_zero("registration", "heading", options.heading.in_degrees());
-  require_above_zero("registration", "tilt", options.tilt.in_degrees(), true);
-}
+void check(const RegistrationOptions& options) { check_settings(registration_settings(), options); }
 
 double RegistrationError::at(std::size_t station, const Vec3& local) const {
   const Eigen::Vector3d q(local.x - centre.x, local.y - centre.y, local.z - centre.z);

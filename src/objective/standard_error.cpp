@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "objective/number_of.hpp"
 #include "objective/whole_counts.hpp"
 #include "trace/registration_sums.hpp"
 #include "vantage/objective.hpp"
@@ -187,7 +188,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   require_whole(measured.counts, objective.name.c_str());
   if (measured.surroundings) require_whole(*measured.surroundings, objective.name.c_str());
-  Estimate estimate{objective.value(measured), 0};
+  Estimate estimate{number_of(objective, measured), 0};
   const double scale = objective.scale.width();
   const NetworkCounts& counts = measured.counts;
   double variance = 0;

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/site_reach.hpp"
+#include "core/text.hpp"
 #include "placement/mesh_tree.hpp"
 #include "placement/place_head.hpp"
 #include "scene/scene_data.hpp"
@@ -22,14 +24,20 @@ struct ClashChecker::Impl {
   SecurityVolume volume;
   MeshTree tree;
   std::optional<MeshTree> opaque;  // set if some meshes are of glass
+
+  // In the local frame. Embree ends the process for positions that are not in reach.
+  glm::dvec3 local(const Vec3& point) const {
+    require_in_reach(point, origin, "the checked position is");
+    return to_glm(point - origin);
+  }
 };
 
 ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
   for (const auto& [name, value] :
        {std::pair{"lower_m", volume.lower_m}, {"upper_m", volume.upper_m}, {"radius_m", volume.radius_m}})
-    if (!(value >= 0) || !std::isfinite(value)) {
+    if (!(value >= 0 && value <= kSiteReach_m)) {
       std::ostringstream what;
-      what << "the security volume's " << name << " must be finite and not negative; it is " << value;
+      what << "the security volume's " << name << " must be 0 to 1e6 m; it is " << value;
       throw Error(Errc::invalid_argument, what.str());
     }
   if (volume.radius_m > 0 && volume.radius_m >= volume.lower_m) {
@@ -48,18 +56,19 @@ ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
 
 bool ClashChecker::clashes(const Vec3& ground) const {
   const SecurityVolume& v = impl_->volume;
+  const glm::dvec3 local = impl_->local(ground);
   if (v.radius_m == 0) return false;
-  const glm::dvec3 local = to_glm(ground - impl_->origin);
   return impl_->tree.within(local + glm::dvec3{0, 0, v.lower_m}, v.radius_m) ||
          impl_->tree.within(local + glm::dvec3{0, 0, v.upper_m}, v.radius_m);
 }
 
 bool ClashChecker::clashes(const Vec3& ground, double height_m) const {
   const SecurityVolume& v = impl_->volume;
-  if (v.radius_m == 0) return false;
+  impl_->local(ground + Vec3{0, 0, height_m});
   if (clashes(ground)) return true;
+  if (v.radius_m == 0) return false;
   const double head_radius = head_share * v.radius_m, mast_radius = mast_share * v.radius_m;
-  const glm::dvec3 local = to_glm(ground - impl_->origin);
+  const glm::dvec3 local = impl_->local(ground);
   const auto up = [&](double height) { return local + glm::dvec3{0, 0, height}; };
   if (impl_->tree.within(up(height_m), head_radius)) return true;
   // Parts of the mast well within a sphere need no test.
@@ -73,27 +82,30 @@ bool ClashChecker::clashes(const Vec3& ground, double height_m) const {
   return height_m > from && impl_->tree.within_of_segment(up(from), up(height_m), mast_radius);
 }
 
-bool ClashChecker::inside(const Vec3& point) const { return impl_->tree.inside_solid(to_glm(point - impl_->origin)); }
+bool ClashChecker::inside(const Vec3& point) const { return impl_->tree.inside_solid(impl_->local(point)); }
 
 std::optional<Vec3> ClashChecker::ground_below(const Vec3& point, double limit_m) const {
-  const auto drop = impl_->tree.drop(to_glm(point - impl_->origin));
+  const auto drop = impl_->tree.drop(impl_->local(point));
   if (!drop || *drop > limit_m) return std::nullopt;
   return point - Vec3{0, 0, *drop};
 }
 
 bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
-  return !impl_->tree.between(to_glm(a - impl_->origin), to_glm(b - impl_->origin));
+  return !impl_->tree.between(impl_->local(a), impl_->local(b));
 }
 
 bool ClashChecker::ray_passes(const Vec3& a, const Vec3& b) const {
   const MeshTree& tree = impl_->opaque ? *impl_->opaque : impl_->tree;
-  return !tree.between(to_glm(a - impl_->origin), to_glm(b - impl_->origin));
+  return !tree.between(impl_->local(a), impl_->local(b));
 }
 
 const SecurityVolume& ClashChecker::volume() const noexcept { return impl_->volume; }
 
 double ClashChecker::distance(const Vec3& point, double limit_m) const {
-  return impl_->tree.distance(to_glm(point - impl_->origin), limit_m);
+  if (!(limit_m >= 0))
+    throw Error(Errc::invalid_argument,
+                "clash checker: the limit of a distance is " + number(limit_m) + " m, but must be 0 or more");
+  return impl_->tree.distance(impl_->local(point), limit_m);
 }
 
 }  // namespace vantage

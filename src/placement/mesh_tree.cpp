@@ -19,61 +19,117 @@ struct Triangles {
   const SceneTree* tree;
   std::uint32_t number(unsigned instance, unsigned primitive) const { return tree->number(instance, primitive); }
   std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const { return corners_of(scene, triangle); }
-  std::uint32_t number(const RTCPointQueryFunctionArguments& found) const {
-    return number(found.context->instStackSize > 0 ? found.context->instID[0] : RTC_INVALID_GEOMETRY_ID, found.primID);
-  }
 };
 
-struct Query {
+// A search in a ball around a point, in which triangles are found one after the other. Embree 3.13 leaves the ball's
+// radius as it is when it enters an instance that is scaled, so the boxes of shared meshes are a geometry of their own,
+// and their meshes are searched from here, each with a ball in its own frame.
+struct Search {
   Triangles triangles;
-  glm::dvec3 point;
+  glm::dvec3 centre;
+  double radius;                                  // what remains of it
+  bool (*take)(Search&, std::uint32_t triangle);  // returns whether it made the radius smaller
+
+  unsigned instance = RTC_INVALID_GEOMETRY_ID;  // the mesh that is being searched
+  glm::dvec3 centre_in_mesh{};
+  double mesh_per_local = 1;  // largest factor of lengths
+
+  // Covers the rounding of centre and radius to float, and of the corners of shared meshes.
+  double local_radius() const {
+    const double reach = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
+    return (radius + (triangles.scene.shares() ? 32 : 4) * reach * 0x1p-23) * (1 + 0x1p-20);
+  }
+  // The ball in the frame that is being searched; empty once nothing nearer matters.
+  RTCPointQuery ball() const {
+    const bool own = instance == RTC_INVALID_GEOMETRY_ID;
+    const glm::dvec3& at = own ? centre : centre_in_mesh;
+    const double reach = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+    RTCPointQuery ball{};
+    ball.x = static_cast<float>(at.x);
+    ball.y = static_cast<float>(at.y);
+    ball.z = static_cast<float>(at.z);
+    if (radius > 0)
+      ball.radius = static_cast<float>(own ? local_radius()
+                                           : (local_radius() * mesh_per_local + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
+    return ball;
+  }
+
+  void run(RTCScene scene);
+  bool enter(unsigned number);
+};
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  Search& search = *static_cast<Search*>(arguments->userPtr);
+  const bool box = search.instance == RTC_INVALID_GEOMETRY_ID && search.triangles.tree->is_box(arguments->geomID);
+  if (!(box ? search.enter(arguments->primID)
+            : search.take(search, search.triangles.number(search.instance, arguments->primID))))
+    return false;
+  arguments->query->radius = search.ball().radius;
+  return true;
+}
+
+void Search::run(RTCScene scene) {
+  RTCPointQuery query = ball();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, visit, this);
+}
+
+// Searches the shared mesh of an instance; returns whether the radius is smaller then.
+bool Search::enter(unsigned number) {
+  const SceneData& scene = triangles.scene;
+  const MeshPlace& place = scene.places[scene.instances[number].place];
+  const glm::dmat3 local_from_mesh(to_glm(place.x), to_glm(place.y), to_glm(place.z));
+  const glm::dmat3 inverse = glm::inverse(local_from_mesh);
+  // The norm of the inverse, exact where the columns are at right angles; not finite if the place flattens space.
+  const auto right = [&](int i, int j) {
+    const glm::dvec3 &a = local_from_mesh[i], &b = local_from_mesh[j];
+    return std::abs(dot(a, b)) <= 1e-9 * length(a) * length(b);
+  };
+  const double shortest =
+      std::min({length(local_from_mesh[0]), length(local_from_mesh[1]), length(local_from_mesh[2])});
+  const double norm =
+      right(0, 1) && right(1, 2) && right(2, 0)
+          ? 1 / shortest
+          : std::sqrt(dot(inverse[0], inverse[0]) + dot(inverse[1], inverse[1]) + dot(inverse[2], inverse[2]));
+  const double before = radius;
+  instance = number;
+  mesh_per_local = std::isfinite(norm) ? norm : std::numeric_limits<double>::infinity();
+  centre_in_mesh = std::isfinite(norm) ? inverse * (centre + to_glm(scene.origin - place.origin)) : glm::dvec3(0);
+  run(triangles.tree->mesh(number));
+  instance = RTC_INVALID_GEOMETRY_ID;
+  return radius < before;
+}
+
+struct Query : Search {
   double best;                 // nearest so far
   double good_enough;          // a hit this near ends the search
   std::uint32_t triangle = 0;  // that of `best`
 };
 
-// A radius for Embree's boxes that covers the rounding of point and radius to float, and of the point in the frame of a
-// shared mesh.
-float query_radius(const glm::dvec3& point, double radius, bool shared) {
-  const double reach = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
-  return static_cast<float>((radius + (shared ? 32 : 4) * reach * 0x1p-23) * (1 + 0x1p-20));
-}
-
-RTCPointQuery ball_of(const glm::dvec3& point, double radius, bool shared) {
-  RTCPointQuery ball{};
-  ball.x = static_cast<float>(point.x);
-  ball.y = static_cast<float>(point.y);
-  ball.z = static_cast<float>(point.z);
-  ball.radius = query_radius(point, radius, shared);
-  return ball;
-}
-
-bool visit(RTCPointQueryFunctionArguments* arguments) {
-  Query& query = *static_cast<Query*>(arguments->userPtr);
-  const std::uint32_t number = query.triangles.number(*arguments);
+bool take_nearest(Search& search, std::uint32_t number) {
+  Query& query = static_cast<Query&>(search);
   const auto [a, b, c] = query.triangles.corners(number);
-  const double distance = distance_to_triangle(query.point, a, b, c);
+  const double distance = distance_to_triangle(query.centre, a, b, c);
   if (!(distance < query.best)) return false;
   query.best = distance;
   query.triangle = number;
-  arguments->query->radius =
-      distance < query.good_enough ? 0 : query_radius(query.point, query.best, query.triangles.scene.shares());
+  query.radius = distance < query.good_enough ? 0 : distance;
   return true;
 }
 
-struct SegmentQuery {
-  Triangles triangles;
+struct SegmentQuery : Search {
   glm::dvec3 a, b;
-  double radius;
+  double limit;
   bool found = false;
 };
 
-bool visit_segment(RTCPointQueryFunctionArguments* arguments) {
-  SegmentQuery& query = *static_cast<SegmentQuery*>(arguments->userPtr);
-  const auto [a, b, c] = query.triangles.corners(query.triangles.number(*arguments));
-  if (query.found || !(distance_to_triangle(query.a, query.b, a, b, c) < query.radius)) return false;
+bool take_near_segment(Search& search, std::uint32_t number) {
+  SegmentQuery& query = static_cast<SegmentQuery&>(search);
+  const auto [a, b, c] = query.triangles.corners(number);
+  if (query.found || !(distance_to_triangle(query.a, query.b, a, b, c) < query.limit)) return false;
   query.found = true;
-  arguments->query->radius = 0;
+  query.radius = 0;
   return true;
 }
 
@@ -193,11 +249,8 @@ struct MeshTree::Impl {
   bool occluded(RTCRay ray) const;
 
   Query nearest(const glm::dvec3& point, double limit, double good_enough) const {
-    Query query{.triangles = triangles, .point = point, .best = limit, .good_enough = good_enough};
-    RTCPointQuery ball = ball_of(point, limit, scene.shares());
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(tree.get(), &ball, &context, visit, &query);
+    Query query{{triangles, point, limit, take_nearest}, limit, good_enough};
+    query.run(tree.for_points());
     return query;
   }
 };
@@ -244,11 +297,8 @@ bool MeshTree::within(const glm::dvec3& point, double radius) const {
 }
 
 bool MeshTree::within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const {
-  SegmentQuery query{impl_->triangles, a, b, radius};
-  RTCPointQuery ball = ball_of((a + b) * 0.5, radius + 0.5 * length(b - a), impl_->scene.shares());
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl_->tree.get(), &ball, &context, visit_segment, &query);
+  SegmentQuery query{{impl_->triangles, (a + b) * 0.5, radius + 0.5 * length(b - a), take_near_segment}, a, b, radius};
+  query.run(impl_->tree.for_points());
   return query.found;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "plan/answer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,16 +40,19 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
 
 }  // namespace
 
-std::size_t answer(const PlanResult& result) {
-  if (result.front.empty()) throw Error(Errc::invalid_argument, "answer: the front is empty");
-  const SurveyProblem& problem = result.problem;
+std::size_t answer(std::span<const PlanEntry> front, const SurveyProblem& problem) {
   const bool required = !problem.requirements.empty();
   const bool links = !required && looks_at_pairs(problem);
   const auto rank = [&](const PlanEntry& entry) {
     const std::size_t stations = problem.fewest && entry.violation == 0 ? entry.stations.size() : 0;
     return std::tuple{entry.violation, stations, links && !hangs_together(entry, problem), distance(entry, problem)};
   };
-  return static_cast<std::size_t>(std::ranges::min_element(result.front, {}, rank) - result.front.begin());
+  return static_cast<std::size_t>(std::ranges::min_element(front, {}, rank) - front.begin());
+}
+
+std::size_t answer(const PlanResult& result) {
+  if (result.front.empty()) throw Error(Errc::invalid_argument, "answer: the front is empty");
+  return answer(result.front, result.problem);
 }
 
 bool met(const PlanResult& result) {

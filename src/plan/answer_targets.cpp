@@ -30,8 +30,6 @@ TargetOptions options_of(const SurveyProblem& problem) {
 
 void add_targets(PlanResult& result, Site& site, const Measures& measures, const Progress& progress) {
   const SurveyProblem& problem = result.problem;
-  for (PlanEntry& entry : result.front) entry.accuracy_class = problem.target.wanted;
-  if (result.front.empty()) return;
   PlanEntry& entry = result.front[answer(result)];
   if (!entry.exact || std::ranges::count_if(entry.stations, active) < 2) return;
   const TargetOptions options = options_of(problem);

@@ -119,6 +119,13 @@ void CandidateTable::take_in(std::span<const std::size_t> chosen, const ScanOver
     }
 }
 
+double CandidateTable::overlap_error(std::span<const std::size_t> network, double share) const {
+  std::size_t fewest = around_.elements();
+  for (const std::size_t k : network)
+    if (k < around_.candidates()) fewest = std::min(fewest, around_.column(k).size());
+  return fewest > 0 ? std::sqrt(unsampled_ * share * (1 - share) / static_cast<double>(fewest)) : 0;
+}
+
 bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {
   const auto apart = [](const PlacedStation& a, const PlacedStation& b) {
     const Vec3 way = a.position - b.position;

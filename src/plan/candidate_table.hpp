@@ -62,6 +62,8 @@ class CandidateTable {
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
   // Whether a pair's overlap was taken in.
   bool is_known(std::size_t i, std::size_t j) const { return known_.contains(std::minmax(i, j)); }
+  // Standard error of a sampled overlap of that share, for the station of a network that sees least of the sample.
+  double overlap_error(std::span<const std::size_t> network, double share) const;
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
   // Extended by each addition.

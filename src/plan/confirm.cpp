@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "core/seconds_since.hpp"
+#include "plan/answer.hpp"
 #include "plan/limits.hpp"
 #include "plan/scaled_objectives.hpp"
 
@@ -26,6 +29,19 @@ void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyPro
     const Objective& objective = problem.objectives[k];
     if (point.f[k] <= 1) entry.searched.at(objective.name).value = objective.unscaled(point.f[k]);
     if (objective.by_alpha) entry.searched.at(objective.name).value = static_cast<double>(entry.stations.size());
+  }
+}
+
+// Takes what positions alone decide, which no stop leaves unknown.
+void take_by_positions(PlanEntry& entry, const SurveyProblem& problem, const Measures& measures) {
+  const NetworkCounts none;
+  for (const Objective& measure : measures.all) {
+    const RequiredInputs& needs = measure.needs;
+    if (needs.counts || needs.pairs || needs.visibility || needs.surroundings || needs.time || needs.registration ||
+        needs.surroundings_registration || needs.attainable)
+      continue;
+    entry.searched.at(measure.name).value =
+        measure.value({.counts = none, .stations = entry.stations, .existing = problem.existing.size()});
   }
 }
 
@@ -109,6 +125,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     entry.stations = space.decode(point.x);
     for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
     take_objectives(entry, point, problem);
+    take_by_positions(entry, problem, measures);
     entry.values = entry.searched;
     networks.push_back(entry.stations);
   }
@@ -140,29 +157,46 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
   const auto start = Clock::now();
   const auto report = [&](std::size_t done, double part) {
     if (!watch.report) return;
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = seconds_since(start);
     const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
     // The times of stations differ severalfold, and an engine may trace those of the first network along with others. A
     // part of it tells nothing yet about the whole.
     const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
-    watch.report({.iteration = done,
-                  .iterations = entries.size(),
-                  .evaluations = found.evaluations,
-                  .hypervolume = found.hypervolume,
-                  .evaluations_per_second = rate,
-                  .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
-                  .phase = "confirm"});
+    watch.report(
+        {.iteration = done,
+         .iterations = entries.size(),
+         .evaluations = found.evaluations,
+         .hypervolume = found.hypervolume,
+         .evaluations_per_second = rate,
+         .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
+         .phase = "confirm",
+         .done = (static_cast<double>(done) + part) / static_cast<double>(std::max<std::size_t>(entries.size(), 1))});
   };
   report(0, 0);
-  const Progress progress{.report =
-                              [&](double share) {
-                                constexpr double rounding = 1e-9;
-                                const double done = share * static_cast<double>(entries.size());
-                                const auto whole = static_cast<std::size_t>(done + rounding);
-                                report(whole, std::max(0.0, done - static_cast<double>(whole)));
-                              },
-                          .stop = watch.abort};
-  std::vector<std::optional<Evaluation>> confirmed = evaluator.confirm(networks, progress);
+  const auto confirm = [&](std::size_t first, std::size_t many) {
+    return evaluator.confirm(std::span(networks).subspan(first, many),
+                             {.report =
+                                  [&, first, many](double share) {
+                                    constexpr double rounding = 1e-9;
+                                    const double done = static_cast<double>(first) + share * static_cast<double>(many);
+                                    const auto whole = static_cast<std::size_t>(done + rounding);
+                                    report(whole, std::max(0.0, done - static_cast<double>(whole)));
+                                  },
+                              .stop = watch.abort});
+  };
+  std::vector<std::optional<Evaluation>> confirmed;
+  if (!entries.empty()) {
+    // The answer first, as far as it is known: a stop leaves that measured.
+    for (PlanEntry& entry : entries) entry.violation = violation_of(entry, problem.requirements);
+    const auto chosen = static_cast<std::ptrdiff_t>(answer(entries, problem));
+    std::rotate(entries.begin(), entries.begin() + chosen, entries.begin() + chosen + 1);
+    std::rotate(networks.begin(), networks.begin() + chosen, networks.begin() + chosen + 1);
+    confirmed = confirm(0, 1);
+    const auto stations = networks.front().size();
+    if (confirmed.front() && watch.seconds_after)
+      watch.seconds_after(stations, seconds_since(start) / static_cast<double>(std::max<std::size_t>(stations, 1)));
+    if (entries.size() > 1) std::ranges::move(confirm(1, entries.size() - 1), std::back_inserter(confirmed));
+  }
   const double link = limit_of(problem, Objective::Kind::link, Requirement::Bound::at_least).value_or(0);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     PlanEntry& entry = entries[k];

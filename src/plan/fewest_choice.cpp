@@ -20,11 +20,6 @@ constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
-void stronger(FewestChoice& choice, const std::stop_token& stop) {
-  if (choice.asked.most_coverage) return;  // all links are for coverage
-  choice.network = improve_weakest_link(cover_problem(choice), std::move(choice.network), stop);
-}
-
 // Finds the most coverage of as many stations as there is time for.
 void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_token& stop) {
   if (!choice.asked.minutes) return;
@@ -117,10 +112,18 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
   choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
 }
 
+void strengthen(FewestChoice& choice, const std::stop_token& stop) {
+  if (choice.asked.most_coverage) return;  // all links are for coverage
+  const double errors = std::max(kMostLinkErrors - choice.link_errors, 0.0);
+  const double enough =
+      choice.asked.link + errors * choice.table.overlap_error(choice.network.chosen, choice.asked.link);
+  choice.network = improve_weakest_link(cover_problem(choice), std::move(choice.network), enough, stop);
+}
+
 void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop) {
   choose_from(choice, {}, stop);
   fit_time(choice, visit, stop);
-  stronger(choice, stop);
+  strengthen(choice, stop);
 }
 
 void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double radius_m, const Progress& progress) {
@@ -135,11 +138,11 @@ void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double r
   if (choice.one_fewer) {
     CoverProblem fewer = cover_problem(choice);
     fewer.most = std::min(fewer.most, choice.one_fewer->chosen.size() - choice.asked.existing);
-    choice.one_fewer = improve_weakest_link(fewer, std::move(*choice.one_fewer), progress.stop);
+    choice.one_fewer = improve_weakest_link(fewer, std::move(*choice.one_fewer), choice.asked.link, progress.stop);
     if (choice.one_fewer->violation <= choice.network.violation)
       choose_from(choice, std::move(choice.one_fewer), progress.stop);
   }
-  stronger(choice, progress.stop);
+  strengthen(choice, progress.stop);
 }
 
 }  // namespace vantage

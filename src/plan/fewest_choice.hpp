@@ -41,6 +41,9 @@ struct Margins {
   double coverage = 0, link = 0;
 };
 
+// Standard errors by which a sampled link is taken for weaker than it seems, at most.
+inline constexpr double kMostLinkErrors = 2;
+
 // The network chosen from a table, and the inputs of the next stages.
 struct FewestChoice {
   FewestAsked asked;
@@ -73,7 +76,9 @@ struct VisitTime {
   std::function<double(std::span<const PlacedStation>)> minutes = {};  // the round over the placed ones
 };
 
-// Chooses the fewest stations, with the strongest weakest link of their number. If their round is longer than
+// Swaps stations until the weakest link has what is asked and the margin of its error. Stronger links serve nobody.
+void strengthen(FewestChoice& choice, const std::stop_token& stop);
+// Chooses the fewest stations, and strengthens their links. If their round is longer than
 // `asked.minutes`, chooses as many as fit, and lowers `asked.most` to that number.
 void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop);
 // Starts from a network of the table, or from none.

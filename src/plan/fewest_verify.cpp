@@ -17,8 +17,8 @@ namespace {
 
 // Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
-// Standard errors of a sampled overlap by which each repair takes links for weaker than they seem, and at most.
-constexpr double kRepairErrors = 1, kMostErrors = 2;
+// Standard errors of a sampled overlap by which each repair takes links for weaker than they seem.
+constexpr double kRepairErrors = 1;
 // Most rounds of links checked on another sample.
 constexpr std::size_t kChecks = 8;
 // Further candidates around each end of a link that is too weak.
@@ -231,12 +231,13 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   choice.one_fewer.reset();
   // From the present network, at this number, or else with one more.
   const CoverProblem asked = cover_problem(choice);
-  CoverSolution same = improve_weakest_link(asked, evaluate_cover(asked, choice.network.chosen), stop);
+  CoverSolution same =
+      improve_weakest_link(asked, evaluate_cover(asked, choice.network.chosen), choice.asked.link, stop);
   if (same.violation == 0)
     choice.network = std::move(same);
   else
     choose_from(choice, std::move(same), stop);
-  choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
+  strengthen(choice, stop);
 }
 
 void check_links(FewestChoice& choice, const PlacementOracle& oracle, const LeastOverlaps& least_overlaps,
@@ -273,7 +274,7 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   // The last one verified is the chosen one.
   const double known = choice.network.violation;
   if (last.exact && missing.link > 0 && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
-    choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostErrors);
+    choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostLinkErrors);
     choice.table.take_least_overlaps(choice.link_errors);
     choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
     choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
@@ -298,8 +299,8 @@ bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, dou
   const double margin = std::exchange(choice.margins.coverage, error);
   ConnectedCover found = min_connected_cover(cover_problem(choice), stop, *choice.one_fewer);
   if (found.best.violation == 0 && found.best.chosen.size() <= choice.network.chosen.size()) {
-    CoverSolution before =
-        std::exchange(choice.network, improve_weakest_link(cover_problem(choice), std::move(found.best), stop));
+    CoverSolution before = std::exchange(choice.network, std::move(found.best));
+    strengthen(choice, stop);
     const double now_overstated = verify(choice, verified);
     const PlanEntry& now = verified.entries().back();
     if (now.exact && now.violation == 0) {

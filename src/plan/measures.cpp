@@ -54,4 +54,10 @@ double missed_by(const SurveyProblem& problem, const Measures& measures, std::sp
   return missed;
 }
 
+bool needs_attainable(const SurveyProblem& problem) {
+  const auto needs = [](const Objective& objective) { return objective.needs.attainable; };
+  return std::ranges::any_of(problem.objectives, needs) ||
+         std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
+}
+
 }  // namespace vantage

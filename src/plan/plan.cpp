@@ -7,24 +7,19 @@
 #include "core/deadline.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/tabu_search.hpp"
-#include "plan/answer_targets.hpp"
+#include "plan/check_problem.hpp"
+#include "plan/complete_front.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
+#include "plan/plan_time.hpp"
 #include "plan/somewhere_to_stand.hpp"
 #include "plan/spread_positions.hpp"
-#include "plan/trade_off.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
 namespace {
-
-bool needs_attainable(const SurveyProblem& problem) {
-  const auto needs = [](const Objective& objective) { return objective.needs.attainable; };
-  return std::ranges::any_of(problem.objectives, needs) ||
-         std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
-}
 
 // What a problem says, with the scale of the number of stations as it is, and `capture` of what is attainable.
 SurveyProblem settled(SurveyProblem problem) {
@@ -52,8 +47,6 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
-// Share of the time limit for looking, choosing and searching. The rest is for tracing every ray of the results.
-constexpr double kSearchTimeShare = 0.8;
 // Shares of it for finding candidates, and until these are counted on the second sample: links take time, too.
 constexpr double kCandidatesTimeShare = 0.25, kCountedTimeShare = 0.5;
 // More are tried where it pays: around the stations that are chosen.
@@ -64,8 +57,6 @@ constexpr double kGroundPerCandidate_m2 = 16;
 // a larger site has as many voxels a square metre, up to so many times as many, since each candidate looks at all.
 constexpr std::uint64_t kLargerSample = 5;
 constexpr double kGroundOfSample_m2 = 8000, kMostSamples = 4;
-// The front of more entries than this has its rounds worked out for the answer alone.
-constexpr std::size_t kMostRounds = 16;
 
 // Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
 // with no more than twice as many all of them, since as many others are taken to confirm it.
@@ -106,7 +97,7 @@ std::size_t most_candidates(Site& site) {
 
 // Finds candidates, and if a measure needs it what is attainable: the problem learns it.
 std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyProblem& problem,
-                                       const PlanConfig& config, const PlanWatch& watch) {
+                                       const PlanConfig& config, double max_seconds, const PlanWatch& watch) {
   Simulator& simulator = site.simulator();
   const auto begun = std::chrono::steady_clock::now();
   const auto report = [&](double done) {
@@ -119,12 +110,12 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
                                                          {.most = most_candidates(site),
                                                           .sample_voxels = sample_of_choice(problem, config, site),
                                                           .scanner = finest(simulator, problem.scanners),
-                                                          .max_seconds = kCandidatesTimeShare * config.max_seconds},
+                                                          .max_seconds = kCandidatesTimeShare * max_seconds},
                                                          {.report = report, .stop = watch.stop}));
   const bool limit_wanted = needs_attainable(problem);
   if (limit_wanted) {
-    const double left = kCountedTimeShare * config.max_seconds - seconds_since(begun);
-    const Deadline counted_by(config.max_seconds > 0 ? std::max(left, 0.1) : 0, watch.stop);
+    const double left = kCountedTimeShare * max_seconds - seconds_since(begun);
+    const Deadline counted_by(max_seconds > 0 ? std::max(left, 0.1) : 0, watch.stop);
     count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
                      {.report = {}, .stop = counted_by.stop()});
   }
@@ -137,75 +128,27 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
   return candidates;
 }
 
-// A station of a confirmed network may see more of a voxel than any candidate did.
-void take_in_confirmed(PlanResult& result, PlanContext& context, Simulator& simulator, const Progress& progress) {
-  std::vector<Network> networks;
-  for (const PlanEntry& entry : result.front)
-    if (entry.exact) networks.push_back(to_network(entry.stations));
-  if (networks.empty()) return;
-  AttainableCounts raised = context.confirmed;
-  for (const Network& network : networks)
-    if (!raise_attainable(raised, simulator, network, progress)) return;
-  const std::vector<Estimate> shares = captured_shares(simulator, raised, networks, progress);
-  if (shares.empty()) return;
-  context.confirmed = std::move(raised);
-  std::size_t k = 0;
-  for (PlanEntry& entry : result.front) {
-    if (!entry.exact) continue;
-    entry.values.at("capture") = shares[k++];
-    entry.attainable = context.confirmed.coverage();
-  }
-  result.exact_hypervolume = judge_by_every_ray(result.front, result.problem, context.measures());
-}
-
-// The answer takes its place in the trade-off, as it was confirmed.
-void put_answer_in_trade_off(PlanResult& result) {
-  if (result.trade_off.empty() || result.front.empty()) return;
-  const PlanEntry& entry = result.front[answer(result)];
-  TradeOffPoint point{.stations = entry.stations, .values = entry.values, .answer = true};
-  if (entry.visit) point.minutes_on_site = entry.visit->minutes;
-  const auto stations = [](const TradeOffPoint& p) { return p.stations.size(); };
-  const auto at = std::ranges::lower_bound(result.trade_off, entry.stations.size(), {}, stations);
-  if (at != result.trade_off.end() && at->stations.size() == entry.stations.size())
-    *at = std::move(point);
-  else
-    result.trade_off.insert(at, std::move(point));
-  mark_knee(result.trade_off);
-}
-
-void work_out_rounds(PlanResult& result, PlanContext& context) {
-  if (result.front.empty()) return;
-  const std::size_t chosen = answer(result), kept = result.problem.existing.size();
-  for (std::size_t k = 0; k < result.front.size(); ++k) {
-    PlanEntry& entry = result.front[k];
-    if (k == chosen || result.front.size() <= kMostRounds)
-      entry.visit = context.on_site().visit(std::span(entry.stations).subspan(kept));
-  }
-}
-
-// Stops at the limits too, and reports no longer times than they leave.
-PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadline& all_by) {
-  PlanWatch own{.report = {}, .stop = search_by.stop(), .abort = all_by.stop()};
-  if (watch.report) {
-    own.report = [&](const PlanProgress& now) {
-      PlanProgress told = now;
-      const Deadline& end = now.phase == "confirm" ? all_by : search_by;
-      told.seconds_left = std::min(now.seconds_left, end.seconds_left());
-      if (now.whole_seconds_left) told.whole_seconds_left = std::min(*now.whole_seconds_left, all_by.seconds_left());
-      watch.report(told);
-    };
-  }
-  return own;
+// Counts one station with every ray, by which the watch learns how long that takes.
+void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
+  const std::vector<PlacedStation> one =
+      spread_positions(context.oracle(), context.area().mesh(), context.oracle().height_m, 1).stations;
+  if (one.empty()) return;
+  Simulator* const around = context.measures().all_needs().surroundings ? &context.surroundings() : nullptr;
+  const auto begun = std::chrono::steady_clock::now();
+  for (Simulator* const counting : {&simulator, around})
+    if (counting && counting->evaluate(to_network(one), {}, {.report = {}, .stop = watch.stop}).cancelled) return;
+  watch.seconds_after(context.problem().existing.size() + context.problem().stations_max, seconds_since(begun));
 }
 
 }  // namespace
 
 PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted, const PlanWatch& given) {
   using Clock = std::chrono::steady_clock;
+  check_problem(site, asked);
+  check_search(site, wanted);
   const auto start = Clock::now();
-  // Building the site's missing parts is part of the time.
-  const Deadline search_by(kSearchTimeShare * wanted.max_seconds, given.stop), all_by(wanted.max_seconds, given.abort);
-  const PlanWatch watch = limited(given, search_by, all_by);
+  PlanTime time(wanted.max_seconds, given);  // building the site's missing parts is part of it
+  const PlanWatch watch = time.watch();
   Simulator& simulator = site.simulator();
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   const Work before = site.work();
@@ -217,7 +160,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   PlanContext context(site, config);
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;
-  if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, watch);
+  if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);
   problem = settled(std::move(problem));
   context.ask(problem);
   PlanResult result;
@@ -226,6 +169,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
     result.seconds = seconds_since(start);
     result.trace_seconds = context.evaluator().trace_seconds();
   } else {
+    if (time.limited()) time_a_station(context, simulator, watch);
     const SearchOutcome found = context.search(problem, config, {}, watch);
     const auto searched = Clock::now();
     const double searched_trace = context.evaluator().trace_seconds();
@@ -238,17 +182,9 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
     result.seconds = found.seconds + seconds_since(searched);
     result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }
-  if (result.stop_reason == StopReason::cancelled && search_by.passed()) result.stop_reason = StopReason::max_time;
-  if (limit_wanted) {
-    take_in_confirmed(result, context, simulator, {.report = {}, .stop = watch.abort});
-    result.attainable = context.confirmed.coverage();
-  }
-  for (PlanEntry& entry : result.front)
-    if (limit_wanted) entry.attainable_growth = candidates->ended() == "all" ? 0 : candidates->change();
+  if (result.stop_reason == StopReason::cancelled && time.search_ended()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
-  if (!watch.abort.stop_requested()) work_out_rounds(result, context);
-  put_answer_in_trade_off(result);
-  add_targets(result, site, context.measures(), {.report = {}, .stop = watch.abort});
+  complete_front(result, context, site, {.report = {}, .stop = watch.abort});
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;
 }

@@ -247,11 +247,11 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   return found;
 }
 
-// The trade-off around the answer, measured on the voxels of confirmation. The answer's own point is as it was
-// confirmed.
+// The trade-off around the chosen network, measured on the voxels of confirmation. Once the search is to end its
+// networks are not improved any more; an abort leaves points out.
 std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
   if (!choice.asked.captured) return {};
-  const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop);
+  const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop, watch.abort);
   std::vector<PlacedNetwork> networks;
   for (const CoverSolution& solution : solutions) networks.push_back(choice.stations_of(solution));
   // Sums of all pairs of hundreds of stations, by group of voxels, are gigabytes: one network at a time.
@@ -261,12 +261,12 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
     auto some =
         context.evaluator().estimate(std::span(networks).subspan(first, std::min(at_once, networks.size() - first)),
                                      {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
-                                     NetworkEvaluator::Which::all, {.report = {}, .stop = watch.stop});
-    if (!some) return {};
+                                     NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort});
+    if (!some) break;
     std::ranges::move(*some, std::back_inserter(estimates));
   }
   std::vector<TradeOffPoint> points;
-  for (std::size_t k = 0; k < networks.size(); ++k) {
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
     TradeOffPoint& point = points.emplace_back(TradeOffPoint{.stations = networks[k]});
     for (std::size_t m = 0; m < context.measures().all.size(); ++m) {
       const Objective& measure = context.measures().all[m];
@@ -307,12 +307,14 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result.front = any_position(context, *candidates, verified);
   } else {
     const double overstated = verify_and_repair(choice, verified, context, simulator, watch, report);
+    // Before the search, which takes whatever time there is.
+    std::vector<TradeOffPoint> points = trade_off(choice, context, watch);
     found = search_from(choice, context, overstated, candidates->stations().size(), config, watch, report);
     verified.add(found, choice.placed());
     result = context.result(found);
     result.evaluations += report.traced;
     result.front = verified.front();
-    if (!report.stopped()) result.trade_off = trade_off(choice, context, watch);
+    result.trade_off = std::move(points);
   }
   result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
   return result;

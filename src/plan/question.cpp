@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/setting_table.hpp"
+#include "plan/check_problem.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -147,6 +148,7 @@ bool SurveyQuestion::asks_for_fewest() const {
 }
 
 SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
+  check_settings(question_settings(), question);
   const bool survey = question.asks_for_fewest();
   const auto stations = station_range(question);
   if (!question.objectives.empty() && question.problem && !survey)
@@ -158,6 +160,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
   asked.existing = question.existing, asked.existing_setups = question.existing_setups;
+  asked.existing_names = question.existing_names;
   asked.heights_m = question.heights_m;
   asked.link_overlap = least;
   asked.registration = question.registration;
@@ -184,6 +187,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
       return 0;
     });
   asked.scanners = scanners_with(site, question.search_steps);
+  check_problem(site, asked);
   return asked;
 }
 

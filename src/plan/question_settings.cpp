@@ -2,6 +2,7 @@
 #include <span>
 
 #include "core/setting_table.hpp"
+#include "core/site_reach.hpp"
 #include "vantage/question.hpp"
 
 namespace vantage {
@@ -13,8 +14,6 @@ std::string list_of(std::span<const std::string> names) {
   return text;
 }
 
-constexpr Interval share{.low = 0, .high = 1};
-
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
   for (const auto part : split(text, ',')) names.emplace_back(part);
@@ -22,87 +21,6 @@ std::vector<std::string> names_in(const std::string& text) {
 }
 
 }  // namespace
-
-const SettingTable<OnSiteOptions>& on_site_settings() {
-  static const SettingTable<OnSiteOptions> table =
-      SettingRows<OnSiteOptions>()
-          .group("Problem")
-          .number("set-up", "MIN", "Minutes at each station besides the scan itself", &OnSiteOptions::set_up_min,
-                  not_negative)
-          .number("photos", "MIN", "Minutes at each station for pictures, where the scanner takes some",
-                  &OnSiteOptions::photos_min, not_negative)
-          .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
-                  &OnSiteOptions::walking_m_per_s, positive)
-          .take();
-  return table;
-}
-
-const SettingTable<TargetOptions>& target_settings() {
-  using Options = TargetOptions;
-  static const SettingTable<Options> table = [] {
-    return SettingRows<Options>()
-        .group("Targets")
-        .number("target-diameter", "M", "Diameter of a target, a sphere or checkerboard", &Options::diameter_m,
-                {.low = 0.01, .high = 2})
-        .number("target-height", "M", "Height of a proposed target's centre above the ground", &Options::height_m,
-                {.low = 0.05, .high = 10})
-        .number("target-sigma", "M", "Standard deviation of a target's centre in a scan, besides range noise",
-                &Options::sigma_m, {.low = 1e-5, .high = 0.1})
-        .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
-                "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
-                [](Options& options, const std::string& text, const std::string& what) {
-                  options.wanted = named(what, [&] { return accuracy_class_from_string(text); });
-                })
-        .take();
-  }();
-  return table;
-}
-
-const SettingTable<RegistrationOptions>& registration_settings() {
-  static const SettingTable<RegistrationOptions> table = [] {
-    using Options = RegistrationOptions;
-    const Options usual;
-    const auto number = [](auto member, Interval interval) {
-      return [member, interval](Options& options, const std::string& text, const std::string& what) {
-        member(options) = parse_number(text, what, interval);
-      };
-    };
-    const auto degrees = [](Angle Options::*member, Interval interval) {
-      return [member, interval](Options& options, const std::string& text, const std::string& what) {
-        options.*member = Angle::degrees(parse_number(text, what, interval));
-      };
-    };
-    return SettingRows<Options>()
-        .group("Registration")
-        .custom("registration-rho", "M",
-                otherwise("Modelling error of a scan's surface besides range noise, the same over a patch, in metres",
-                          usual.model.rho_m),
-                number([](Options& o) -> double& { return o.model.rho_m; }, {.low = 1e-6, .high = 1}))
-        .custom("registration-patch", "M", otherwise("Side of such a patch, in metres", usual.model.patch_m),
-                number([](Options& o) -> double& { return o.model.patch_m; }, {.low = 1e-3, .high = 100}))
-        .custom("registration-position", "M",
-                otherwise("Standard deviation of a head's position before registration, in metres", usual.position_m),
-                number([](Options& o) -> double& { return o.position_m; }, {.low = 1e-6, .high = 1e4}))
-        .custom("registration-heading", "DEG",
-                otherwise("Standard deviation of a scan's heading before registration, in degrees",
-                          usual.heading.in_degrees()),
-                degrees(&Options::heading, {.low = 1e-6, .high = 180}))
-        .custom("registration-tilt", "DEG",
-                otherwise("Standard deviation of a scan's tilts, from its compensator, in degrees; 0: exactly level, "
-                          "some degrees: not levelled",
-                          usual.tilt.in_degrees()),
-                degrees(&Options::tilt, {.low = 0, .high = 180}))
-        .custom("registration-surfaces", "surveyed|all",
-                "Surfaces that scans register on: surveyed ones, or all; surveyed otherwise",
-                [](Options& options, const std::string& text, const std::string& what) {
-                  if (text != "all" && text != "surveyed")
-                    throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither surveyed nor all");
-                  options.surfaces = text == "all" ? RegistrationSurfaces::all : RegistrationSurfaces::surveyed;
-                })
-        .take();
-  }();
-  return table;
-}
 
 const SettingTable<SurveyQuestion>& question_settings() {
   using Question = SurveyQuestion;
@@ -115,19 +33,22 @@ const SettingTable<SurveyQuestion>& question_settings() {
               &Question::problem)
           .number("capture", "SHARE",
                   otherwise("Least share of what is attainable that the survey captures", default_capture),
-                  &Question::capture, share)
+                  &Question::capture, any_share)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "
                             "that the other sees too, over all surfaces",
                             default_link),
-                  &Question::link, share)
+                  &Question::link, any_share)
           .number(
               "apart", "M",
               otherwise("Least distance between two stations, in metres; none for problems by name", default_apart_m),
-              &Question::apart_m, not_negative)
+              &Question::apart_m, {.low = 0, .high = kSiteReach_m})
           .optional("max-time-on-site", "T", "Longest time of the survey on site: 90min or 6h",
                     &Question::minutes_on_site,
                     [](const std::string& text, const std::string& what) { return parse_duration(text, what) / 60; })
+          .checked([](const Question& q, const std::string& what) {
+            if (q.minutes_on_site) check_number(*q.minutes_on_site, what, positive);
+          })
           .include(on_site_settings(), &Question::on_site)
           .custom(
               "objectives", "LIST",
@@ -148,6 +69,11 @@ const SettingTable<SurveyQuestion>& question_settings() {
                       const CountRange found = parse_count_range(range, what, 1, max_stations);
                       return std::array{found.low, found.high};
                     })
+          .checked([](const Question& q, const std::string& what) {
+            if (q.stations)
+              parse_count_range(std::to_string((*q.stations)[0]) + ".." + std::to_string((*q.stations)[1]), what, 1,
+                                max_stations);
+          })
           .custom(
               "search-step", "LIST",
               "Steps to choose from for each station: degrees, such as 0.2,0.1,0.05, or settings of the scanner, "
@@ -157,11 +83,11 @@ const SettingTable<SurveyQuestion>& question_settings() {
           .numbers("heights", "LOW,HIGH", "Range of heights to search for each station, in metres",
                    &Question::heights_m, 2, not_negative)
           .number("link-overlap", "W", otherwise("Least overlap of a link, 0 to 1", default_link_overlap),
-                  &Question::link_overlap, share)
+                  &Question::link_overlap, any_share)
           .number("min-overlap", "W",
                   "Least overlap of the links that connect all stations: sets link-overlap to W and requires "
                   "parts<=1",
-                  &Question::min_overlap, share)
+                  &Question::min_overlap, any_share)
           .optional("fitness", "L1,L2,L3",
                     "Search one network of the largest fitness: weights of coverage, number and visibility, such as "
                     "0.4,0.4,0.2",
@@ -170,6 +96,11 @@ const SettingTable<SurveyQuestion>& question_settings() {
                       const auto weights = parse_numbers(text, what, 3, 3, not_negative);
                       return FitnessWeights{weights[0], weights[1], weights[2]};
                     })
+          .checked([](const Question& q, const std::string& what) {
+            if (q.fitness)
+              for (const double weight : {q.fitness->coverage, q.fitness->station_count, q.fitness->visibility})
+                check_number(weight, what, not_negative);
+          })
           .include(registration_settings(), &Question::registration)
           .group("Targets")
           .custom(
@@ -183,6 +114,9 @@ const SettingTable<SurveyQuestion>& question_settings() {
                   q.targets = text == "off" ? 0 : parse_count(text, what, 0, 1000);
               },
               [](const Question& q) { return q.targets.has_value(); })
+          .checked([](const Question& q, const std::string& what) {
+            if (q.targets) parse_count(std::to_string(*q.targets), what, 0, 1000);
+          })
           .include(target_settings(), &Question::target)
           .take();
   return table;
@@ -218,9 +152,14 @@ const SettingTable<PlanConfig>& plan_settings() {
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.max_seconds = parse_duration(text, what);
                   })
-          .optional("target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
-                    &Config::target_hypervolume,
-                    [](const std::string& text, const std::string& what) { return parse_number(text, what, share); })
+          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, any_seconds); })
+          .optional(
+              "target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
+              &Config::target_hypervolume,
+              [](const std::string& text, const std::string& what) { return parse_number(text, what, any_share); })
+          .checked([](const Config& c, const std::string& what) {
+            if (c.target_hypervolume) check_number(*c.target_hypervolume, what, any_share);
+          })
           .flag("exact", "Search with every ray instead of a sample of voxels", &Config::exact)
           .custom(
               "sample", "N|P%",
@@ -232,6 +171,9 @@ const SettingTable<PlanConfig>& plan_settings() {
                 c.sample_voxels = size.voxels.value_or(0), c.sample_share = size.share;
               },
               [](const Config& c) { return c.sample_voxels > 0 || c.sample_share; })
+          .checked([](const Config& c, const std::string& what) {
+            if (c.sample_share) check_number(*c.sample_share, what, {.low = 0, .high = 1, .low_included = false});
+          })
           .excludes({"exact"})
           .optional("renew", "K",
                     "Redraw the voxels every K iterations, so that no network survives by luck, and choose the front "
@@ -246,6 +188,8 @@ const SettingTable<PlanConfig>& plan_settings() {
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.checkpoint_seconds = parse_duration(text, what);
                   })
+          .checked(
+              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, any_seconds); })
           .flag("resume", "Continue from the folder's checkpoint", &Config::resume)
           .take();
   return table;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/parse.hpp"
 #include "core/part_of.hpp"
 #include "plan/placement_oracle.hpp"
 #include "vantage/error.hpp"
@@ -69,9 +70,8 @@ GreedyResult greedy_network(Site& site, const GreedyConfig& config, const Progre
 
 ExactResult exact_network(Site& site, const ExactConfig& config, const Progress& progress) {
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "exact: at least one candidate is needed");
-  if (!(config.apart_m >= 0 && std::isfinite(config.apart_m)))
-    throw Error(Errc::invalid_argument,
-                "exact: heads are to be " + std::to_string(config.apart_m) + " m apart; give 0 or more");
+  check_number(config.apart_m, "exact: the least distance of heads in metres", not_negative);
+  check_number(config.link, "exact: the least overlap of a link", any_share);
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");

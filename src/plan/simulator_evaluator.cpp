@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "core/part_of.hpp"
+#include "objective/number_of.hpp"
 #include "objective/registered_sample.hpp"
 #include "trace/tracer_maker.hpp"
 
@@ -127,7 +128,7 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
   std::vector<std::vector<double>> values(placed.size());
   parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
-    for (std::size_t m = 0; m < measures_.searched; ++m) values[k].push_back(measures_.all[m].value(network));
+    for (std::size_t m = 0; m < measures_.searched; ++m) values[k].push_back(number_of(measures_.all[m], network));
   });
   return values;
 }

@@ -5,6 +5,7 @@
 #include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {
@@ -74,6 +75,9 @@ std::span<const std::string> problem_names() {
 
 SurveyProblem fewest_stations(double capture, double link, std::size_t stations_min, std::size_t stations_max,
                               double apart_m) {
+  SurveyQuestion question;
+  question.capture = capture, question.link = link, question.apart_m = apart_m;
+  check_settings(question_settings(), question);
   const std::vector<std::string> goal{"registration"};
   SurveyProblem problem = survey_problem(goal, stations_min, stations_max);
   problem.name = "survey";

@@ -57,7 +57,8 @@ std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most)
   return numbers;
 }
 
-std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& stop) {
+std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& unimproved,
+                                              const std::stop_token& stop) {
   if (choice.placed() == 0) return {};
   CoverProblem problem = cover_problem(choice);
   problem.coverage = 1;  // as much as there is
@@ -72,12 +73,12 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
     bool dropped = true;
     while (dropped && now.size() > existing + *number) dropped = drop_one(problem, now);
     if (!dropped) break;
-    now = improve_by_swaps(problem, std::move(now), stop);
+    now = improve_by_swaps(problem, std::move(now), unimproved);
     networks.insert(networks.begin(), evaluate_cover(problem, now));
   }
   for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
     problem.most = problem.fewest = *number;
-    CoverSolution more = grow_and_swap(problem, networks.back().chosen, stop);
+    CoverSolution more = grow_and_swap(problem, networks.back().chosen, unimproved);
     if (more.chosen.size() == networks.back().chosen.size()) break;
     networks.push_back(std::move(more));
   }

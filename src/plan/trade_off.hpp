@@ -10,9 +10,10 @@
 namespace vantage {
 
 // The best network found of each of some numbers of stations, from one to a few beyond the chosen, by rising number:
-// from the chosen one down, always without the station that is missed least, and up along links; swaps improve each. A
-// stopped call returns what it has.
-std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& stop);
+// from the chosen one down, always without the station that is missed least, and up along links; swaps improve each,
+// until `unimproved` is requested. A stopped call returns what it has.
+std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& unimproved,
+                                              const std::stop_token& stop);
 
 // Numbers of stations to tell a trade-off by, around the chosen one: all of few, else so many evenly spread.
 std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most);

@@ -52,13 +52,13 @@ function tradeOffChart(holder, points) {
   const shares = [0, 0.25, 0.5, 0.75, 1].map((value) => ({ value, text: `${100 * value} %` }));
   const chart = gridChart({ width, height, left, right, top, bottom }, niceTicks(0, last, width < 500 ? 4 : 8).filter((t) => Number.isInteger(t.value)),
     shares, px, py, 'Stations', 'Captured', { role: 'img', 'aria-label': 'Stations against what they capture; the table below has the numbers' });
-  chart.append(svg('path', { class: 'trade-off', fill: 'none', d: points.map((p, k) => `${k ? 'L' : 'M'}${px(p.stations).toFixed(1)} ${py(p.captured).toFixed(1)}`).join('') }));
+  chart.append(svg('path', { class: 'trade-off', fill: 'none', d: points.map((p, k) => `${k ? 'L' : 'M'}${px(p.stations).toFixed(1)} ${py(p.capture).toFixed(1)}`).join('') }));
   for (const p of points) {
     const name = p.answer ? `${p.stations}: the plan` : p.knee ? `${p.stations}: knee` : '';
-    const dot = svg('circle', { class: name ? 'dot' : 'dot small', cx: px(p.stations), cy: py(p.captured), r: name ? 6.5 : 3.5 });
-    dot.append(svg('title', {}, `${p.stations} stations, ${(100 * p.captured).toFixed(1)} %`));
+    const dot = svg('circle', { class: name ? 'dot' : 'dot small', cx: px(p.stations), cy: py(p.capture), r: name ? 6.5 : 3.5 });
+    dot.append(svg('title', {}, `${p.stations} stations, ${(100 * p.capture).toFixed(1)} %`));
     chart.append(dot);
-    if (name) chart.append(svg('text', { x: px(p.stations), y: py(p.captured) + 26, 'text-anchor': 'middle' }, name));
+    if (name) chart.append(svg('text', { x: px(p.stations), y: py(p.capture) + 26, 'text-anchor': 'middle' }, name));
   }
   holder.replaceChildren(chart);
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/json_text.hpp"
 #include "report/packed.hpp"
 
 namespace vantage {
@@ -15,8 +16,7 @@ namespace {
 // JSON as content of a script element: nothing in it ends the element or begins a comment.
 std::string within_script(const nlohmann::ordered_json& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  for (const char c : json_text(json)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   return text;
 }
 

@@ -133,8 +133,8 @@
     at('trade-off').hidden = false;
     tradeOffChart(at('trade-off-chart'), report.trade_off);
     at('trade-off-table').replaceChildren(table(['Stations', 'Captured', 'Registered to', 'On site', ''], report.trade_off.map((p) => [
-      p.stations, `${percent(p.captured)} ± ${percent(p.error)}`, p.registration_mm === null ? null : `${p.registration_mm.toFixed(2)} mm`,
-      p.seconds_on_site === null ? null : duration(p.seconds_on_site), p.answer ? 'the plan' : p.knee ? 'knee' : '']), [4]));
+      p.stations, `${percent(p.capture)} ± ${percent(p.capture_se)}`, p.registration === null ? null : `${p.registration.toFixed(2)} mm`,
+      p.minutes_on_site === null ? null : duration(60 * p.minutes_on_site), p.answer ? 'the plan' : p.knee ? 'knee' : '']), [4]));
   }
   if (report.axes.length) {
     at('front').hidden = false;

@@ -8,6 +8,7 @@
 #include "core/read_file.hpp"
 #include "export/missed_colours.hpp"
 #include "export/shown_links.hpp"
+#include "export/station_json.hpp"
 #include "report/packed.hpp"
 #include "vantage/image.hpp"
 #include "vantage/summary.hpp"
@@ -35,15 +36,11 @@ ordered_json stations_json(const Evaluation& network) {
   const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
   for (std::size_t k = 0; k < network.stations.size(); ++k) {
     const PlacedStation& s = network.stations[k];
-    const bool placed = s.status != StationStatus::hole;
-    stations.push_back({{"name", names[k]},
-                        {"head", placed ? point_json(s.position) : ordered_json()},
-                        {"ground", placed ? point_json(s.ground) : ordered_json()},
-                        {"status", to_string(s.status)},
-                        {"fault", explain(s.status)},
-                        {"active", active(s)},
-                        {"existing", s.existing},
-                        {"points", network.exact && k < points.size() ? ordered_json(points[k]) : ordered_json()}});
+    ordered_json station = station_json<ordered_json>(s, names[k]);
+    station["fault"] = explain(s.status);
+    station["active"] = active(s);
+    station["points_on_surveyed"] = network.exact && k < points.size() ? ordered_json(points[k]) : ordered_json();
+    stations.push_back(std::move(station));
   }
   return stations;
 }
@@ -105,8 +102,8 @@ ordered_json targets_json(const std::vector<Target>& targets) {
   ordered_json json = ordered_json::array();
   for (const Target& target : targets)
     json.push_back({{"name", target.name},
-                    {"at", point_json(target.centre)},
-                    {"control_mm", target.control_m > 0 ? ordered_json(1e3 * target.control_m) : ordered_json()},
+                    {"position", point_json(target.centre)},
+                    {"sigma_m", target.control_m > 0 ? ordered_json(target.control_m) : ordered_json()},
                     {"proposed", target.proposed},
                     {"stations", target.stations}});
   return json;
@@ -117,7 +114,7 @@ ordered_json targets_json(const std::vector<Target>& targets) {
 ordered_json network_json(const Evaluation& network, std::span<const Requirement> requirements) {
   ordered_json values, summary = ordered_json::array();
   for (const auto& [name, value] : network.values)
-    values[name] = {{"value", known(value.value)}, {"error", value.standard_error}};
+    values[name] = {{"value", known(value.value)}, {"standard_error", value.standard_error}};
   for (const auto& [heading, text] : summary_lines(network, requirements))
     summary.push_back({{"heading", heading}, {"text", text}});
   ordered_json json = {{"confirmed", network.exact},
@@ -125,7 +122,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"values", std::move(values)},
                        {"coverage", network.value("coverage")},
                        {"captured", nullptr},
-                       {"seconds_on_site", nullptr},
+                       {"minutes_on_site", nullptr},
                        {"summary", std::move(summary)},
                        {"stations", stations_json(network)},
                        {"visit", nullptr},
@@ -136,7 +133,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
   }
   json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
-  if (network.visit) json["seconds_on_site"] = 60 * network.visit->minutes;
+  if (network.visit) json["minutes_on_site"] = network.visit->minutes;
   if (const auto links = network.links()) {
     json["parts"] = links->parts.size();
     json["link_measure"] = to_string(links->measure);
@@ -176,10 +173,10 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
     const auto registered = point.values.find("registration");
     json.push_back(
         {{"stations", point.stations.size()},
-         {"captured", known(point.values.at("capture").value)},
-         {"error", point.values.at("capture").standard_error},
-         {"registration_mm", registered == point.values.end() ? ordered_json() : known(registered->second.value)},
-         {"seconds_on_site", point.minutes_on_site ? ordered_json(60 * *point.minutes_on_site) : ordered_json()},
+         {"capture", known(point.values.at("capture").value)},
+         {"capture_se", point.values.at("capture").standard_error},
+         {"registration", registered == point.values.end() ? ordered_json() : known(registered->second.value)},
+         {"minutes_on_site", point.minutes_on_site ? ordered_json(*point.minutes_on_site) : ordered_json()},
          {"answer", point.answer},
          {"knee", point.knee}});
   }

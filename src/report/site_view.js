@@ -274,7 +274,7 @@ class SiteView {
       label.textContent = station.name;
       label.setAttribute('aria-pressed', 'false');
       label.addEventListener('click', () => this.onPick(k));
-      label.hidden = !station.head;
+      label.hidden = !station.position;
       this.holder.append(label);
       return label;
     }).concat(targets.map((target) => {
@@ -288,7 +288,7 @@ class SiteView {
   }
 
   // Of the k-th label.
-  placeOf(k) { return k < this.stations.length ? this.stations[k].head : this.targets[k - this.stations.length].at; }
+  placeOf(k) { return k < this.stations.length ? this.stations[k].position : this.targets[k - this.stations.length].position; }
 
   // The same stations at other positions.
   moveStations(stations, links) {
@@ -296,7 +296,7 @@ class SiteView {
     this.links = links;
     stations.forEach((station, k) => {
       this.labels[k].classList.toggle('left-out', !station.active);
-      this.labels[k].hidden = !station.head;
+      this.labels[k].hidden = !station.position;
     });
     this.drawMarks();
   }
@@ -318,14 +318,14 @@ class SiteView {
       mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
     };
     this.stations.forEach((station, k) => {
-      if (!station.head) return;
-      const head = this.local(station.head), colour = k === this.selected ? '#111111' : station.existing ? VIEW_COLOURS.existing : VIEW_COLOURS.station;
+      if (!station.position) return;
+      const head = this.local(station.position), colour = k === this.selected ? '#111111' : station.existing ? VIEW_COLOURS.existing : VIEW_COLOURS.station;
       if (!this.shown(head)) return;
       add(new THREE.SphereGeometry(size, 20, 14), colour, head);
       rod(this.local(station.ground), head, size * 0.18, colour);
     });
     for (const target of this.targets) {
-      const at = this.local(target.at);
+      const at = this.local(target.position);
       if (!this.shown(at)) continue;
       for (let k = 0; k < 4; ++k)  // checkered all around
         add(new THREE.SphereGeometry(0.8 * size, 6, 12, (k * Math.PI) / 2, Math.PI / 2), VIEW_COLOURS.target[k % 2], at);
@@ -333,7 +333,7 @@ class SiteView {
     if (this.visit) this.addRoute(size);
     const most = Math.max(0.5, ...this.links.map((link) => link.value));
     for (const link of this.links) {
-      const a = this.local(this.stations[link.a].head), b = this.local(this.stations[link.b].head);
+      const a = this.local(this.stations[link.a].position), b = this.local(this.stations[link.b].position);
       if (!this.shown(a) || !this.shown(b)) continue;
       const faint = this.selected !== null && link.a !== this.selected && link.b !== this.selected;
       if (faint) continue;
@@ -406,8 +406,8 @@ class SiteView {
     this.leave();
     const [low, high] = this.focus.map((corner) => corner.clone().setZ(Math.min(Math.max(corner.z, this.slice[0]), this.slice[1])));
     for (const station of this.stations)
-      for (const point of [station.head, station.ground])
-        if (point && this.shown(this.local(station.head))) {
+      for (const point of [station.position, station.ground])
+        if (point && this.shown(this.local(station.position))) {
           low.min(this.local(point));
           high.max(this.local(point));
         }
@@ -441,7 +441,7 @@ class SiteView {
 
   // Looks round from a station's head, at the whole site.
   stand(k) {
-    const head = this.local(this.stations[k].head), outward = this.centre.clone().sub(head).setZ(0);
+    const head = this.local(this.stations[k].position), outward = this.centre.clone().sub(head).setZ(0);
     if (outward.length() < 0.1) outward.set(1, 0, 0);
     this.standing = { slice: this.slice };
     this.camera.fov = 75;

@@ -51,8 +51,8 @@ function figures(holder, network) {
   if (registered)
     tiles.push(registered.value === null
       ? tile('Registered', 'Not known', 'surfaces do not hold the scans together', true)
-      : tile('Registered', `${registered.value.toFixed(2)} mm`, `${!network.confirmed && registered.error > 0 ? `± ${registered.error.toFixed(2)} mm, ` : ''}predicted error of the scans`));
-  if (network.seconds_on_site !== null) tiles.push(tile('On site', duration(network.seconds_on_site), 'with setting up and walking'));
+      : tile('Registered', `${registered.value.toFixed(2)} mm`, `${!network.confirmed && registered.standard_error > 0 ? `± ${registered.standard_error.toFixed(2)} mm, ` : ''}predicted error of the scans`));
+  if (network.minutes_on_site !== null) tiles.push(tile('On site', duration(60 * network.minutes_on_site), 'with setting up and walking'));
   holder.replaceChildren(...tiles);
 }
 
@@ -111,8 +111,8 @@ function stationTable(holder, network, pick, order = visitingOrder(network)) {
     const s = network.stations[k];
     const name = element('button', { type: 'button', 'data-station': k }, s.name);
     name.addEventListener('click', () => pick(k));
-    const cells = [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
-      s.points === null ? null : grouped(s.points), s.linked === undefined ? null : s.linked];
+    const cells = [name, ...(s.position || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
+      s.points_on_surveyed === null ? null : grouped(s.points_on_surveyed), s.linked === undefined ? null : s.linked];
     if (targets) cells.push(seen(k));
     if (place.size) cells.push(place.has(k) ? place.get(k) + 1 : null, place.has(k) ? network.visit.legs_m[place.get(k)].toFixed(1) : null);
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
@@ -122,8 +122,8 @@ function stationTable(holder, network, pick, order = visitingOrder(network)) {
 }
 
 function targetTable(holder, network) {
-  const kind = (t) => (t.control_mm !== null ? `control point, known to ${t.control_mm} mm` : t.proposed ? 'proposed' : 'there before');
-  holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'z (m)', 'Kind', 'Measured by'], network.targets.map((t) => [t.name, ...t.at.map(metres), kind(t),
+  const kind = (t) => (t.sigma_m !== null ? `control point, known to ${1e3 * t.sigma_m} mm` : t.proposed ? 'proposed' : 'there before');
+  holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'z (m)', 'Kind', 'Measured by'], network.targets.map((t) => [t.name, ...t.position.map(metres), kind(t),
     t.stations.length ? t.stations.map((k) => network.stations[k].name).join(', ') : element('span', { class: 'tag weak' }, 'no station')]), [0, 4, 5]));
 }
 
@@ -168,7 +168,7 @@ function linkTable(holder, wordsHolder, network) {
     if (l.weakest) tags.push(element('span', { class: 'tag' }, 'weakest that the survey depends on'));
     const cell = element('span', {});
     cell.append(...tags);
-    return [network.stations[l.a].name, network.stations[l.b].name, percent(l.value), cell];
+    return [network.stations[l.a].name, network.stations[l.b].name, l.voxels === undefined ? percent(l.value) : `${percent(l.value)} ± ${percent(l.error)}, of ${grouped(l.voxels)} voxels`, cell];
   };
   if (!network.links.length) {
     holder.replaceChildren(element('p', {}, 'No two stations are linked.'));
@@ -209,7 +209,7 @@ function missedTable(holder, wordsHolder, missed) {
 
 function valuesTable(holder, report, network) {
   const rows = report.measures.filter((m) => network.values[m.name]).map((m) => {
-    const { value, error } = network.values[m.name];
+    const { value, standard_error: error } = network.values[m.name];
     return [m.label, value === null ? null : value.toFixed(4) + (error > 0 ? ` ± ${error.toFixed(4)}` : ''), m.unit, m.name];
   });
   holder.replaceChildren(table(['Measure', network.confirmed ? 'By every ray' : 'From a sample', 'Unit', 'In front.json'], rows, [2, 3]));
@@ -239,11 +239,11 @@ function stationCard(holder, network, k, only, { pick, stand }) {
     parts.push(element('img', { class: 'sight', src: `data:image/jpeg;base64,${s.picture}`, alt: `What ${s.name} sees all around, towards the middle of the site in the middle` }));
   const facts = element('dl', {});
   const fact = (name, text) => facts.append(element('dt', {}, name), element('dd', {}, text));
-  if (s.head) {
-    fact('Head', s.head.map(metres).join(', ') + ' m');
-    fact('Ground', `${metres(s.ground[2])} m, ${(s.head[2] - s.ground[2]).toFixed(2)} m below`);
+  if (s.position) {
+    fact('Head', s.position.map(metres).join(', ') + ' m');
+    fact('Ground', `${metres(s.ground[2])} m, ${(s.position[2] - s.ground[2]).toFixed(2)} m below`);
   }
-  if (s.points !== null) fact('Points', `${grouped(s.points)} on the site`);
+  if (s.points_on_surveyed !== null) fact('Points', `${grouped(s.points_on_surveyed)} on the site`);
   if (only !== null) fact('Only it sees', percent(only) + ' of the site');
   const stop = network.visit ? network.visit.order.indexOf(k) : -1;
   if (stop >= 0) fact('Stop', `${stop + 1} of ${network.visit.order.length}, after ${network.visit.legs_m[stop].toFixed(1)} m on foot`);
@@ -258,7 +258,7 @@ function stationCard(holder, network, k, only, { pick, stand }) {
       `${network.stations[l.a === k ? l.b : l.a].name}, ${percent(l.value)}${l.bridge ? ', a bridge' : ''}${weak(network, l) ? ', weak' : ''}`)),
       s.linked > kNamed ? element('li', {}, `and ${s.linked - kNamed} more`) : null));
   }
-  if (s.head && stand) {
+  if (s.position && stand) {
     const look = element('button', { type: 'button', id: 'stand' }, 'Look round from here');
     look.addEventListener('click', () => stand(k));
     parts.push(look);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/parse.hpp"
+#include "core/site_reach.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -89,7 +91,7 @@ void Scanner::check() const {
            "0 or more, and at most 180 with half of vertical_angle, " + ten_digits(vertical / 2));
   check_step("azimuth_step", azimuth_step, "horizontal_angle", horizontal_angle);
   check_step("zenith_step", zenith_step, "half of vertical_angle", zenith_sweep(*this));
-  if (!(std::isfinite(height_m) && height_m >= 0)) refuse("height_m", height_m, "0 or more");
+  if (!(height_m >= 0 && height_m <= kSiteReach_m)) refuse("height_m", height_m, "from 0 to 1e6");
   if (!(std::isfinite(min_range_m) && min_range_m >= 0)) refuse("min_range_m", min_range_m, "0 or more");
   if (!(std::isfinite(max_range_m) && max_range_m > min_range_m))
     refuse("max_range_m", max_range_m, "finite and above min_range_m, " + ten_digits(min_range_m));
@@ -101,8 +103,7 @@ void Scanner::check() const {
     refuse("detection_range_m", detection_range_m, "from 0 to 1e6");
   if (!(detection_reflectivity > 0 && detection_reflectivity <= 1))
     refuse("detection_reflectivity", detection_reflectivity, "above 0 and at most 1");
-  if (!(std::isfinite(points_per_second) && points_per_second > 0))
-    refuse("points_per_second", points_per_second, "finite and above 0");
+  check_number(points_per_second, "scanner: points_per_second", measurable);
   check_noise(noise);
 }
 

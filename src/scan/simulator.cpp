@@ -17,8 +17,11 @@
 #include "core/add_saturating.hpp"
 #include "core/lru_cache.hpp"
 #include "core/parallel.hpp"
+#include "core/parse.hpp"
 #include "core/part_of.hpp"
 #include "core/seconds_since.hpp"
+#include "core/setting_table.hpp"
+#include "core/site_reach.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
@@ -83,10 +86,7 @@ std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& c
 // Null if stopped.
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
                                             std::span<const double> spacings_m, const Progress& progress) {
-  if (!(std::isfinite(config.point_spacing_m) && config.point_spacing_m > 0)) {
-    throw Error(Errc::invalid_argument,
-                "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
-  }
+  check_number(config.point_spacing_m, "the point spacing in metres", measurable);
   // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a size that works.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
@@ -135,9 +135,7 @@ class AsCaller {
 void check_beam(const BeamOptions& beam, const Scanner& scanner) {
   if (beam.sub_rays != 7 && beam.sub_rays != 19)
     throw Error(Errc::invalid_argument, "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
-  if (!(beam.pulse_m > 0 && std::isfinite(beam.pulse_m)))
-    throw Error(Errc::invalid_argument,
-                "the length of a pulse is " + std::to_string(beam.pulse_m) + " m, but must be above 0");
+  check_number(beam.pulse_m, "the length of a pulse in metres", measurable);
   if (scanner.beam_divergence.in_radians() == 0 && scanner.exit_diameter_m == 0)
     throw Error(Errc::invalid_argument, "the beam of the scanner \"" + scanner.name +
                                             "\" is not known: choose a scanner that states it, or give its divergence "
@@ -157,6 +155,9 @@ struct Simulator::Impl {
       : scene(s), scanners(all.begin(), all.end()), config(c) {
     if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
     for (const Scanner& scanner : scanners) scanner.check();
+    if (config.max_incidence)
+      check_number(whole_degrees(*config.max_incidence), "the largest incidence in degrees",
+                   {.low = 0, .high = 90, .low_included = false});
     require_memory(scene, scanners, config);
     const std::vector<double> spacings = spacings_of(data(), config);
     grid = build_grid(data(), config, spacings, progress);
@@ -200,15 +201,9 @@ struct Simulator::Impl {
   }
 
   TraceStation trace_station(const Station& station, std::size_t place) const {
-    // Beyond this, floats are too coarse, and the margins for rounding would exceed the scene.
-    constexpr double farthest_m = 1e6;
+    if (!in_reach(station.position, data().origin))
+      refuse_position(station.position, "station " + std::to_string(place + 1) + " stands");
     const Vec3 local = station.position - data().origin;
-    if (!(std::abs(local.x) <= farthest_m && std::abs(local.y) <= farthest_m && std::abs(local.z) <= farthest_m)) {
-      std::ostringstream what;
-      what << "station " << place + 1 << " stands at (" << station.position.x << ", " << station.position.y << ", "
-           << station.position.z << "); a position must be finite and within 1000 km of the scene";
-      throw Error(Errc::invalid_argument, what.str());
-    }
     const StationSetup& setup = station.setup;
     if (!(std::isfinite(setup.heading.in_radians()) && std::isfinite(setup.tilt.in_radians())))
       throw Error(Errc::invalid_argument,

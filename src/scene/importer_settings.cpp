@@ -21,6 +21,7 @@ std::vector<std::string> importer_settings(const SceneOptions& options, const im
     words.push_back(setting + "=" + value);
   };
   if (options.unit && takes_setting(format, "unit")) words.push_back(std::string("unit=") + to_string(*options.unit));
+  if (options.up && takes_setting(format, "up")) words.push_back(std::string("up=") + to_string(*options.up));
   for (const std::string& layer : options.wall_layers) add("wall-layer", layer);
   if (options.wall_height_m) {
     if (!(*options.wall_height_m > 0 && *options.wall_height_m <= 1000))

@@ -41,6 +41,7 @@ SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t fir
                     own_.back().first_stored + own_.back().triangle_count - own_.front().first_stored,
                     static_cast<unsigned>(scene.instances.size()), filters);
     add_instances(device, end, filters);
+    add_boxes(device);
   }
   rtcCommitScene(tree_.get());
   embree::check(device, "building the tree " + what + " over " + std::to_string(end - first) + " triangles");
@@ -87,6 +88,7 @@ void SceneTree::add_triangles(RTCDevice device, RTCScene to, std::uint32_t first
 
 void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters& filters) {
   std::map<std::uint32_t, RTCScene> known;  // by first stored triangle
+  meshes_.resize(scene_.instances.size());
   for (std::size_t k = 0; k < scene_.instances.size(); ++k) {
     const MeshInstance& instance = scene_.instances[k];
     if (instance.place == MeshInstance::kNoPlace || instance.first_triangle < first_ || instance.first_triangle >= end)
@@ -98,6 +100,7 @@ void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters
       add_triangles(device, mesh, instance.first_stored, instance.triangle_count, 0, filters);
       rtcCommitScene(mesh);
     }
+    meshes_[k] = mesh;
     const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), mesh);
     const std::array<float, 12> columns = local_from_mesh(scene_, scene_.places[instance.place]);
@@ -105,6 +108,35 @@ void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(tree_.get(), geometry.get(), static_cast<unsigned>(k));
   }
+}
+
+// Instances that are not in the tree have an empty box.
+void SceneTree::add_boxes(RTCDevice device) {
+  boxes_ = new_scene(device);
+  const auto count = static_cast<unsigned>(scene_.instances.size());
+  if (!own_.empty()) rtcAttachGeometryByID(boxes_.get(), rtcGetGeometry(tree_.get(), count), count);
+  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  rtcSetGeometryUserPrimitiveCount(geometry.get(), count);
+  rtcSetGeometryUserData(geometry.get(), this);
+  rtcSetGeometryBoundsFunction(
+      geometry.get(),
+      [](const RTCBoundsFunctionArguments* arguments) {
+        const auto& tree = *static_cast<const SceneTree*>(arguments->geometryUserPtr);
+        RTCBounds& out = *arguments->bounds_o;
+        if (!tree.meshes_[arguments->primID]) {
+          out.lower_x = 1, out.upper_x = -1;
+          return;
+        }
+        // Its corners are floats, since those of triangles are.
+        const Box& box = tree.scene_.instances[arguments->primID].bounds;
+        out.lower_x = static_cast<float>(box.min.x), out.upper_x = static_cast<float>(box.max.x);
+        out.lower_y = static_cast<float>(box.min.y), out.upper_y = static_cast<float>(box.max.y);
+        out.lower_z = static_cast<float>(box.min.z), out.upper_z = static_cast<float>(box.max.z);
+      },
+      nullptr);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(boxes_.get(), geometry.get(), count + 1);
+  rtcCommitScene(boxes_.get());
 }
 
 }  // namespace vantage

@@ -23,6 +23,11 @@ class SceneTree {
             const std::string& what);
 
   RTCScene get() const { return tree_.get(); }
+  // For point queries: own triangles, and for each instance its box, a primitive with the instance's number.
+  RTCScene for_points() const { return scene_.shares() ? boxes_.get() : tree_.get(); }
+  bool is_box(unsigned geometry) const { return scene_.shares() && geometry == scene_.instances.size() + 1; }
+  // The tree of an instance's shared mesh; null if the instance is not in this tree.
+  RTCScene mesh(std::size_t instance) const { return meshes_[instance]; }
   // Number in the scene of a triangle that Embree names.
   std::uint32_t number(unsigned instance, unsigned primitive) const {
     return !scene_.shares()                      ? first_ + primitive
@@ -35,12 +40,14 @@ class SceneTree {
   void add_triangles(RTCDevice device, RTCScene to, std::uint32_t first, std::uint32_t count, unsigned id,
                      const Filters& filters);
   void add_instances(RTCDevice device, std::uint32_t end, const Filters& filters);
+  void add_boxes(RTCDevice device);
 
   const SceneData& scene_;
   std::uint32_t first_;
   std::vector<MeshInstance> own_;      // runs of triangles that are stored where they stand
   std::vector<embree::Scene> shared_;  // of each shared mesh
-  embree::Scene tree_;
+  std::vector<RTCScene> meshes_;       // one of them for each instance
+  embree::Scene tree_, boxes_;
 };
 
 }  // namespace vantage

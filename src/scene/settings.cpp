@@ -12,6 +12,7 @@ Settings settings(const SceneOptions& options) {
     return texts;
   };
   return SettingList()
+      .add("beside", options.beside, {"beside", false})
       .add("surveyed", options.surveyed, {"surveyed", false})
       .add("blocking", options.blocking, {"blocking", false})
       .add("search", options.search, {"search", false})

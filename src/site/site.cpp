@@ -9,11 +9,13 @@
 
 #include "core/read_json.hpp"
 #include "core/setting_list.hpp"
+#include "core/site_reach.hpp"
 #include "core/utf8.hpp"
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
 #include "scene/door_leaf.hpp"
+#include "scene/scene_data.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
 
@@ -176,6 +178,7 @@ struct Site::Impl {
   void log(const std::string& line) const {
     if (options.log) options.log(line);
   }
+  void require(const Vec3& position, const char* what) const { require_in_reach(position, scene.data().origin, what); }
   void choose(const char* setting, std::string value, std::string why) {
     choices.push_back({setting, std::move(value), std::move(why)});
   }
@@ -184,6 +187,7 @@ struct Site::Impl {
     scale = scale_of(scene.bounds());
     scanners = options.scanners;
     if (scanners.empty()) scanners = {site_scanner(options, scale)};
+    for (const Scanner& one : scanners) one.check();
     noise = noise_source(options, scanners.front());
     choose_devices(config, options);
     config.warn = options.warn;
@@ -267,6 +271,7 @@ struct Site::Impl {
 };
 
 Site Site::open(const std::filesystem::path& file, SiteOptions options) {
+  check_settings(site_settings(), options);
   if (options.memory_bytes > 0) options.scene.max_memory_bytes = options.memory_bytes;
   Scene scene = Scene::load(file, options.scene);
   if (options.log)
@@ -277,6 +282,8 @@ Site Site::open(const std::filesystem::path& file, SiteOptions options) {
 
 Site::Site(Scene scene, SiteOptions options, std::string name) : impl_(std::make_unique<Impl>(std::move(scene))) {
   impl_->name = std::move(name);
+  check_settings(site_settings(), options);
+  for (const Vec3& place : options.enter) impl_->require(place, "enter: the entrance is");
   impl_->options = std::move(options);
   impl_->resolve();
   impl_->weigh_ground();
@@ -387,16 +394,18 @@ Simulator& Site::surroundings() {
 }
 
 PlacedHead Site::place_head(const Vec3& head, std::optional<Uv> uv) {
+  impl_->require(head, "the scanner's head is");
   return vantage::place_head(has_area() ? &area() : nullptr, clash(), scanner().height_m, head, uv);
 }
 
 std::optional<PlacedStation> Site::nearest_place(const Vec3& head, double reach_m) {
+  impl_->require(head, "the scanner's head is");
   return vantage::nearest_place(area(), clash(), scanner().height_m, head, reach_m);
 }
 
 OnSite Site::on_site(OnSiteOptions options) {
   if (!options.entrance && !walkable().enter.empty()) options.entrance = walkable().enter.front();
-  return {area(), clash(), scanners(), options};
+  return {area(), clash(), scanners(), options, impl_->scene.data().origin};
 }
 
 Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,

@@ -19,10 +19,30 @@ auto wish(std::string unit, std::string example, Parse parse) {
       };
 }
 
-double length(const std::string& text, const std::string& what) { return parse_number(text, what, positive); }
+double length(const std::string& text, const std::string& what) { return parse_number(text, what, measurable); }
+
+// A check of the values of wishes.
+template <class Values>
+auto each_in(Values values, Interval interval) {
+  return [values, interval](const SiteOptions& options, const std::string& what) {
+    for (const auto& [pattern, value] : values(options))
+      check_number(static_cast<double>(value), what + " of \"" + pattern + "\"", interval);
+  };
+}
+
+// A check of an optional number.
+template <class Value>
+auto if_given(Value value, Interval interval) {
+  return [value, interval](const SiteOptions& options, const std::string& what) {
+    if (const auto& number = value(options)) check_number(*number, what, interval);
+  };
+}
 
 void add_scene(Rows& rows) {
   rows.group("Scene")
+      .texts(
+          "beside", "FILE", "Further files of the same site: IFC models, scans or floor plans, as the first one is",
+          [](SiteOptions & o) -> auto& { return o.scene.beside; })
       .texts(
           "surveyed", "PATTERN", "Nodes to survey, by name; * is any text, ? any letter",
           [](SiteOptions & o) -> auto& { return o.scene.surveyed; })
@@ -50,14 +70,19 @@ void add_scene(Rows& rows) {
                [](const std::string& text, const std::string& what) {
                  return static_cast<std::uint32_t>(parse_count(text, what, 1, 255));
                }))
+      .checked(each_in([](const SiteOptions& o) -> auto& { return o.scene.weights; }, {.low = 1, .high = 255}))
       .repeated(
           "detail", "PATTERN=MM",
           "Widest beam footprint, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.details_mm; }, wish("PATTERN=MM", "pipe*=10", length))
+      .checked(each_in(
+          [](const SiteOptions& o) -> auto& { return o.scene.details_mm; }, measurable))
       .repeated(
           "accuracy", "PATTERN=MM",
           "Largest range noise, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.accuracies_mm; }, wish("PATTERN=MM", "flange*=1", length))
+      .checked(each_in(
+          [](const SiteOptions& o) -> auto& { return o.scene.accuracies_mm; }, measurable))
       .custom(
           "unit", "UNIT", "Unit of lengths in the file: m, cm, mm, in or ft; recognised by default",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
@@ -76,19 +101,20 @@ void add_scene(Rows& rows) {
       .custom(
           "wall-height", "M", "Height of a floor plan's walls; 2.7",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
-            o.scene.wall_height_m = parse_number(text, what, positive);
+            o.scene.wall_height_m = parse_number(text, what, measurable);
           },
           [](const SiteOptions& o) { return o.scene.wall_height_m.has_value(); })
+      .checked(if_given(
+          [](const SiteOptions& o) -> auto& { return o.scene.wall_height_m; }, measurable))
       .custom(
           "scene-index", "N", "Scene of the file; its own default otherwise",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.scene_index = parse_count(text, what, 0, 0xFFFFFFFF);
           },
           [](const SiteOptions& o) { return o.scene.scene_index.has_value(); })
-      .custom("diffuse", "R", "Diffuse reflection coefficient if the file gives none, 0 to 1",
-              [](SiteOptions& o, const std::string& text, const std::string& what) {
-                o.scene.default_diffuse = parse_number(text, what, {.low = 0, .high = 1});
-              })
+      .number_in(
+          "diffuse", "R", "Diffuse reflection coefficient if the file gives none, 0 to 1",
+          [](SiteOptions & o) -> auto& { return o.scene.default_diffuse; }, any_share)
       .custom(
           "shared-meshes", "WHEN",
           "Store a mesh that several nodes place once: auto, in scenes of more than 8 million triangles; always; never",
@@ -108,20 +134,23 @@ void add_scanner(Rows& rows) {
       .by_scene()
       .optional("step", "DEG[,DEG]", "Angle between rays: one for both, or azimuth and zenith", &SiteOptions::steps,
                 [](const std::string& text, const std::string& what) {
-                  const auto values = parse_numbers(text, what, 1, 2, positive);
+                  const auto values = parse_numbers(text, what, 1, 2, measurable);
                   return std::array{Angle::degrees(values.front()), Angle::degrees(values.back())};
                 })
+      .checked([](const SiteOptions& o, const std::string& what) {
+        if (o.steps)
+          for (const Angle step : *o.steps) check_number(whole_degrees(step), what, measurable);
+      })
       .by_scene()
       .by_preset()
       .degrees("heading", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", &SiteOptions::heading,
                any_number)
       .by_scene()
-      .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle,
-               {.low = 0, .high = 360, .low_included = false})
+      .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle, {.low = 1e-6, .high = 360})
       .by_scene()
       .by_preset()
       .degrees("vertical", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150",
-               &SiteOptions::vertical_angle, {.low = 0, .high = 360, .low_included = false})
+               &SiteOptions::vertical_angle, {.low = 1e-6, .high = 360})
       .by_scene()
       .by_preset()
       .degrees("zenith-start", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
@@ -154,23 +183,28 @@ void add_scanner(Rows& rows) {
                                                             " ends with " + std::to_string(values[1]));
                   return std::array{values[0], values[1]};
                 })
+      .checked([](const SiteOptions& o, const std::string& what) {
+        if (!o.detection) return;
+        check_number((*o.detection)[0], what, not_negative);
+        check_number((*o.detection)[1], what, any_share);
+      })
       .by_scene()
       .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
-              &SiteOptions::points_per_second, positive)
+              &SiteOptions::points_per_second, measurable)
       .by_preset();
 }
 
 void add_measure(Rows& rows) {
   rows.group("Measure")
-      .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, positive)
+      .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, measurable)
       .by_scene()
       .degrees("incidence",
                "Largest angle between ray and normal of points that count, 90: any; 60 if a detail or an accuracy "
                "is set, else 90",
-               &SiteOptions::max_incidence, {.low = 0, .high = 90, .low_included = false})
+               &SiteOptions::max_incidence, {.low = 1e-6, .high = 90})
       .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
-              positive)
+              measurable)
       .by_scene()
       .flag("spacing-by-detail",
             "Use the detail of nodes as their spacing; the default if details differ and no spacing is given",
@@ -191,7 +225,7 @@ void add_placement(Rows& rows) {
       .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, not_negative)
       .by_scene()
       .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
-               &SiteOptions::passage_m, 2, positive)
+               &SiteOptions::passage_m, 2, measurable)
       .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, not_negative)
       .repeated(
           "enter", "X,Y,Z", "Entrance of the site; found automatically by default; may be repeated",
@@ -200,6 +234,10 @@ void add_placement(Rows& rows) {
             const auto values = parse_numbers(text, what, 3, 3);
             return Vec3{values[0], values[1], values[2]};
           })
+      .checked([](const SiteOptions& o, const std::string& what) {
+        for (const Vec3& place : o.enter)
+          for (const double value : {place.x, place.y, place.z}) check_number(value, what);
+      })
       .texts(
           "doors", "PATTERN",
           "Nodes that are closed doors: open for people, closed for rays; closed: keep all doors closed",

@@ -63,10 +63,7 @@ PlacedStation station_of(Site& found, const TakenScan& scan) {
 void check(const NextConfig& config, std::span<const TakenScan> scans) {
   const auto refuse = [](const std::string& why) { throw Error(Errc::invalid_argument, "next stations: " + why); };
   if (scans.empty()) refuse("no scan was given");
-  if (!(config.capture > 0 && config.capture <= 1)) refuse("the wanted share must be above 0 and at most 1");
-  if (!(config.link >= 0 && config.link <= 1)) refuse("the least overlap must be 0 to 1");
-  if (!(config.tolerance_m > 0 && std::isfinite(config.tolerance_m))) refuse("the tolerance must be above 0");
-  if (!(config.taken_within_m >= 0)) refuse("the distance of a taken station must not be negative");
+  check_settings(next_settings(), config);
   if (config.sample_voxels == 0) refuse("a sample has at least one voxel");
 }
 

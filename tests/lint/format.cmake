@@ -7,6 +7,7 @@ endif()
 set(sources "")
 foreach(folder include src shaders tests examples python)
   file(GLOB_RECURSE found ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.c ${ROOT}/${folder}/*.h)
+  list(FILTER found EXCLUDE REGEX "/node_modules/") # by others
   list(APPEND sources ${found})
 endforeach()
 if(NOT sources)

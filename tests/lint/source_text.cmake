@@ -10,6 +10,7 @@ string(REPEAT "[^\n]" 121 long_line)
 foreach(folder include src shaders tests examples python)
   file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.c ${ROOT}/${folder}/*.h
        ${ROOT}/${folder}/*.comp ${ROOT}/${folder}/*.glsl)
+  list(FILTER sources EXCLUDE REGEX "/node_modules/") # by others
   foreach(source IN LISTS sources)
     math(EXPR seen "${seen} + 1")
     file(STRINGS ${ROOT}/${source} first LIMIT_COUNT 1)

@@ -55,7 +55,7 @@ class Pickles(unittest.TestCase):
     def test_problems(self):
         for problem in (vantage.fewest_stations(0.8, 0.25, 2, 9), vantage.coverage_overlap_min(3, 7),
                         vantage.SurveyProblem(stations_min=2, stations_max=3, existing=[(1, 2, 1.5)], objectives=["time"],
-                                              existing_setups=[vantage.StationSetup(tilt_deg=90)], heights_m=(1.2, 1.9),
+                                              existing_setups=[vantage.StationSetup(tilt_deg=90)], existing_names=["K"], heights_m=(1.2, 1.9),
                                               requirements=["coverage >= 0.123456789", "stations <= 3"])):
             self.same(problem)
         own = vantage.Objective("own", lambda network: 1, vantage.maximise(1, 0))

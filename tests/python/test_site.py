@@ -25,13 +25,16 @@ class Sites(unittest.TestCase):
     def assert_same_as_the_program(self, scene, settings, question):
         found = vantage.Site.open(scene, **settings).plan(**question)
         with tempfile.TemporaryDirectory() as folder:
-            found.write(os.path.join(folder, "module"))
+            self.assertEqual(found.write(os.path.join(folder, "module"), reports=False), [])
             code, _, text = program("plan", scene, *options(settings), *options(question), "--no-report", "-o",
                                     os.path.join(folder, "program"))
             self.assertIn(code, (0, 3), text)
             given = [f"{name.replace('_', '-')}={value}" for name, value in {**settings, **question}.items()]
             subprocess.run([os.environ["VANTAGE_EXAMPLE"], scene, os.path.join(folder, "example"), *given], check=True,
                            capture_output=True)
+            listed = [set(os.listdir(os.path.join(folder, each))) for each in ("module", "program", "example")]
+            self.assertEqual(listed[0], listed[1] - {"config.json", "checkpoint.bin", "checkpoint.bin.before"})
+            self.assertEqual(listed[2], listed[0] | {"report.html", "report.pdf"})
             told = [open(os.path.join(folder, each, "front.json")).read() for each in ("module", "program", "example")]
         self.assertEqual(without_seconds(told[0]), without_seconds(told[1]))
         self.assertEqual(without_seconds(told[0]), without_seconds(told[2]))

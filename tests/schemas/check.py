@@ -125,6 +125,26 @@ def check_files(folder):
     assert not stations.is_valid({**table[0], "status": "perhaps"})
 
 
+def check_json(folder):
+    """What commands print with --json."""
+    with open(os.path.join(folder, "wall.obj"), "w", encoding="utf-8") as file:
+        file.write("v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\nf 1 2 3 4\n")
+    station = ["walls.glb", *COARSE, "--station", "8,0,1.5"]
+    printed = {
+        "info": [["info"], ["info", "--measure", "walls.glb"]],
+        "import": [["import", "wall.obj", "-o", "wall.glb"]],
+        "scan": [["scan", *station], ["scan", *station, "--returns", "all", "--beam", "0.3,6", "-o", "scan.ply"]],
+        "evaluate": [["evaluate", *station], ["evaluate", *station, "--station", "-8,0,1.5", "--registration", "--attainable", "--sample", "200"]],
+        "bound": [["bound", "walls.glb", *COARSE, "--stations", "1", "--capture", "0.5", "--candidates", "8", "--sample", "100"]],
+    }
+    for name, commands in printed.items():
+        holds = validator(os.path.join(SCHEMAS, f"{name}.schema.json"))
+        for command in commands:
+            written = json.loads(run(folder, *command, "--json"))
+            require(holds, written, " ".join(command))
+            assert not holds.is_valid({key: value for key, value in written.items() if key != next(iter(holds.schema["required"]))})
+
+
 def check_manual(folder):
     commands = re.findall(r"^  ([a-z]+) {2,}\S", run(folder, "--help").split("Subcommands:")[1], re.M)
     assert len(commands) > 5
@@ -147,11 +167,16 @@ def check_manual(folder):
     done = subprocess.run(["bash", "-c", bash + 'COMP_WORDS=(vantage plan --capt) COMP_CWORD=2; _vantage 2>/dev/null; echo "${COMPREPLY[@]}"'],
                           capture_output=True, text=True)
     assert done.stdout == "--capture\n", (done.stdout, done.stderr)
+    for option, begun, whole in (("engine", "emb", "embree"), ("scanner", "rtc", "rtc360"), ("problem", "sur", "survey"), ("objectives", "covera", "coverage")):
+        done = subprocess.run(["bash", "-c", bash + f'COMP_WORDS=(vantage plan --{option} {begun}) COMP_CWORD=3; _vantage 2>/dev/null; echo "${{COMPREPLY[@]}}"'],
+                              capture_output=True, text=True)
+        assert whole in done.stdout.split(), (option, done.stdout, done.stderr)
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
         check_files(folder)
+        check_json(folder)
         check_manual(folder)
 
 

@@ -9,6 +9,13 @@ namespace vantage::importer {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20, kLongestLine = std::size_t{1} << 16;
+constexpr std::size_t kMostOpen = 16;
+
+// In the order in which they were opened.
+std::vector<ByteFile*>& open_files() {
+  static std::vector<ByteFile*> files;
+  return files;
+}
 
 }  // namespace
 
@@ -20,21 +27,45 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
-ByteFile::ByteFile(const std::filesystem::path& file) : stream_(file, std::ios::binary) {
+ByteFile::ByteFile(const std::filesystem::path& file) : path_(file) {
   std::error_code failure;
   size_ = std::filesystem::file_size(file, failure);
-  if (failure || !stream_) throw Refused("it cannot be read");
+  if (failure) throw Refused("it cannot be read");
+  open();
+}
+
+ByteFile::~ByteFile() { std::erase(open_files(), this); }
+
+void ByteFile::open() {
+  if (stream_.is_open()) return;
+  std::vector<ByteFile*>& files = open_files();
+  if (files.size() >= kMostOpen) {
+    files.front()->rest();
+    files.erase(files.begin());
+  }
+  stream_.clear();
+  stream_.open(path_, std::ios::binary);
+  if (!stream_) throw Refused("it cannot be read");
+  files.push_back(this);
+  stream_.seekg(static_cast<std::streamoff>(std::min(begin_ + end_, size_)));
+}
+
+void ByteFile::rest() {
+  stream_.close();
+  begin_ += at_, at_ = end_ = 0;
+  buffer_ = {};
 }
 
 void ByteFile::seek(std::uint64_t place) {
   stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(std::min(place, size_)));
+  if (stream_.is_open()) stream_.seekg(static_cast<std::streamoff>(std::min(place, size_)));
   begin_ = place;
   at_ = end_ = 0;
 }
 
 bool ByteFile::fill(std::size_t bytes) {
   if (end_ - at_ >= bytes) return true;
+  open();
   std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(at_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
             buffer_.begin());
   begin_ += at_, end_ -= at_, at_ = 0;

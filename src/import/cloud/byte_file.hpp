@@ -29,11 +29,15 @@ T value_at(const char* bytes, bool big_endian = false) {
 // A whole text as a number; empty if it is none.
 std::optional<double> number_of(std::string_view text);
 
-// A file read forwards, in large blocks.
+// A file read forwards, in large blocks. A folder may hold thousands: the last few that were read are open, and have a
+// buffer.
 class ByteFile {
  public:
   // Throws Refused.
   explicit ByteFile(const std::filesystem::path& file);
+  ByteFile(const ByteFile&) = delete;
+  ByteFile& operator=(const ByteFile&) = delete;
+  ~ByteFile();
 
   std::uint64_t size() const { return size_; }
   std::uint64_t place() const { return begin_ + at_; }
@@ -47,7 +51,10 @@ class ByteFile {
 
  private:
   bool fill(std::size_t bytes);
+  void open();
+  void rest();  // without its buffer and its descriptor, until it is read again
 
+  std::filesystem::path path_;
   std::ifstream stream_;
   std::uint64_t size_ = 0, begin_ = 0;  // place of the buffer
   std::vector<char> buffer_;

@@ -4,10 +4,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
+#include "import/cloud/byte_file.hpp"
 #include "import/cloud/cell_grid.hpp"
 #include "import/cloud/density.hpp"
 #include "import/cloud/flat_regions.hpp"
@@ -27,8 +29,9 @@ using nlohmann::json;
 constexpr std::int32_t kClosedGap = 3;
 // A person's space above ground, in metres: known if so much of it was seen through.
 constexpr double kFromGround_m = 0.3, kHeight_m = 1.8, kKnownShare = 0.5;
-constexpr double kGround = 0.8;   // least z of a normal of ground
-constexpr double kUpright = 0.3;  // largest z of a wall's
+constexpr double kGround = 0.8;      // least z of a normal of ground
+constexpr double kUpright = 0.3;     // largest z of a wall's
+constexpr double kFarthest_m = 1e9;  // of a scene's coordinates
 // Rays of all scans that are followed to find free space; more say nothing new.
 constexpr std::uint64_t kMostRays = 20'000'000;
 
@@ -48,10 +51,17 @@ std::string with_unit(double value, const char* unit) {
   return std::string(text) + unit;
 }
 
-// Triangles of one node, about the cloud's middle; Y up, as glTF has it.
+// A place with Z up as glTF has it, with Y up, or as it is.
+std::array<double, 3> up_axis(const Eigen::Vector3d& p, bool y_up) {
+  return y_up ? std::array{p.x(), p.z(), -p.y()} : std::array{p.x(), p.y(), p.z()};
+}
+
+// Triangles of one node, about the cloud's middle.
 class Surface {
  public:
   explicit Surface(const char* name) : name_(name) {}
+
+  void stand_up(bool y_up) { y_up_ = y_up; }
 
   void add(const FlatRegion& region, const std::vector<Square>& squares, double cell_m, bool turned) {
     const std::vector<Rectangle> all = rectangles(squares);
@@ -89,7 +99,7 @@ class Surface {
     Eigen::Vector3d p;
     p[(region.axis + 1) % 3] = u, p[(region.axis + 2) % 3] = v, p[region.axis] = region.height(u, v);
     p *= cell_m;
-    for (const double c : {p.x(), p.z(), -p.y()}) positions_.push_back(static_cast<float>(c));
+    for (const double c : up_axis(p, y_up_)) positions_.push_back(static_cast<float>(c));
   }
   void add_triangle(std::array<std::uint32_t, 3> corners, bool forwards) {
     if (!forwards) std::swap(corners[1], corners[2]);
@@ -97,14 +107,17 @@ class Surface {
   }
 
   const char* name_;
+  bool y_up_ = true;
   std::vector<float> positions_;
   std::vector<std::uint32_t> indices_;
 };
 
 class Converter {
  public:
-  Converter(const Files& files, const std::string& format, std::optional<double> cell_m)
-      : source_(open_source(files, format)), cell_m_(cell_m) {}
+  Converter(const Files& files, const std::string& format, const CloudSettings& settings)
+      : source_(open_source(files, format, settings)),
+        cell_m_(settings.cell_m),
+        metric_(settings.unit_m || source_->metric()) {}
 
   std::string run() {
     measure();
@@ -138,18 +151,54 @@ class Converter {
     });
   }
 
-  void measure() {
-    Density density;
+  Density density_of(double scale) {
+    Density density(scale);
     read(0, 0.3, [&](const PointBlock& block) {
       for (const Eigen::Vector3d& p : block.positions) density.add(p);
     });
     points_ = density.points();
+    return density;
+  }
+
+  void measure() {
+    Density density = density_of(1);
     if (points_ == 0) throw Refused("it holds no point; export it again");
-    const double cell_m =
-        cell_m_ ? *cell_m_ : Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
+    const bool far = density.middle().cwiseAbs().maxCoeff() > kFarthest_m;
+    if (far && metric_) throw Refused("its points lie farther than 1e9 m from the origin; export it again");
+    if (!metric_) refuse_degrees(density);
+    if (far) {
+      // Nothing on earth is that far but in millimetres.
+      source_ = moved(std::move(source_), Eigen::Matrix3d::Identity(), 0.001);
+      metric_ = true;
+      unit_note_ =
+          "its coordinates are too large for metres, and are taken as millimetres; the setting unit tells another";
+      density = density_of(1);
+    }
+    double cell = 0;
+    if (cell_m_) {
+      cell = *cell_m_;
+    } else {
+      // Lengths of an unknown unit are measured as metres unless points are too far apart for that.
+      constexpr double kMostScale = 1000, kCentimetres = 100;
+      while (!metric_ && density.too_thin() && scale_ < kMostScale) {
+        scale_ = scale_ == 1 ? kCentimetres : kMostScale;
+        density = density_of(scale_);
+      }
+      cell = scale_ * Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
+    }
     // Whole metres, so that coordinates stay short.
-    grid_.emplace(density.middle().array().round(), cell_m);
+    grid_.emplace(density.middle().array().round(), cell);
     for (const CloudScan& scan : source_->scans()) posed_ += scan.posed ? 1 : 0;
+  }
+
+  // No site is a few metres long and wide as the earth sees it, and higher than that in degrees.
+  static void refuse_degrees(const Density& density) {
+    constexpr double kWidest = 0.02, kHigher = 50, kLeastHigh = 0.3;
+    const Eigen::Vector3d extent = density.extent(), middle = density.middle();
+    const double wide = std::max(extent.x(), extent.y());
+    if (wide < kWidest && extent.z() > kHigher * wide && extent.z() > kLeastHigh && std::abs(middle.x()) <= 180 &&
+        std::abs(middle.y()) <= 180)
+      throw Refused("its coordinates look like degrees of latitude and longitude; project them to metres, e.g. UTM");
   }
 
   // Number of a scan in cells.
@@ -187,7 +236,8 @@ class Converter {
   // Tells whether the space of a person there was seen.
   bool known_above(const FreeSpace& free, const Eigen::Vector3d& ground) const {
     int known = 0, all = 0;
-    for (double z = kFromGround_m / grid_->cell_m(); z < kHeight_m / grid_->cell_m(); z += free.coarse_cells(), ++all)
+    const double cells = scale_ / grid_->cell_m();  // of a metre
+    for (double z = kFromGround_m * cells; z < kHeight_m * cells; z += free.coarse_cells(), ++all)
       known += free.known(ground + Eigen::Vector3d(0, 0, z)) ? 1 : 0;
     return known >= kKnownShare * all;
   }
@@ -195,6 +245,7 @@ class Converter {
   // `free`: null if nothing is known about it.
   void cover(const std::vector<FlatRegion>& regions, const FreeSpace* free) {
     const double square_m2 = grid_->cell_m() * grid_->cell_m();
+    for (Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_}) surface->stand_up(metric_);
     for (const FlatRegion& region : regions) {
       std::vector<Square> known = close_gaps(region.columns, kClosedGap), unknown;
       const bool ground = region.normal.z() >= kGround && region.axis == 2;
@@ -230,10 +281,11 @@ class Converter {
   void tell(std::uint32_t lone, std::uint32_t moving) {
     notes_ = source_->notes();
     const std::size_t scans = source_->scans().size();
-    notes_.push_back("a point cloud, " + counted(points_, "points") +
-                     (scans > 1 ? " of " + counted(scans, "scans") : std::string()) +
-                     ": surfaces are fitted in cells of " + with_unit(100 * grid_->cell_m(), "cm") + ", " +
-                     counted(triangles(), "triangles"));
+    notes_.push_back(
+        "a point cloud, " + counted(points_, "points") +
+        (scans > 1 ? " of " + counted(scans, "scans") : std::string()) + ": surfaces are fitted in cells of " +
+        (metric_ ? with_unit(100 * grid_->cell_m(), "cm") : with_unit(grid_->cell_m(), "in the file's unit")) + ", " +
+        counted(triangles(), "triangles"));
     if (lone > 0) notes_.push_back(counted(lone, "cells of lone points are left out"));
     if (far_ > 0) notes_.push_back(counted(far_, "points far from all others are left out"));
     if (moving > 0)
@@ -243,7 +295,8 @@ class Converter {
       notes_.push_back(posed_ == 0
                            ? "the file does not say where its scans were taken: what lies between points counts as free"
                            : counted(scans - posed_, "scans have no pose: what lies between points counts as free"));
-    if (unknown_m2_ >= 0.1)
+    if (!unit_note_.empty()) notes_.push_back(unit_note_);
+    if (metric_ && unknown_m2_ >= 0.1)
       notes_.push_back(
           with_unit(unknown_m2_, "m² of ground lie below space that no scan saw; no station stands there"));
   }
@@ -252,12 +305,14 @@ class Converter {
     Buffer buffer;
     json nodes = json::array(), meshes = json::array();
     const Eigen::Vector3d& middle = grid_->middle();
-    const json translation{middle.x(), middle.z(), -middle.y()};
+    const json translation = up_axis(middle, metric_);
     for (const Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_})
       surface->write(buffer, nodes, meshes, translation);
     json roots = json::array();
     for (std::size_t k = 0; k < nodes.size(); ++k) roots.push_back(k);
-    json vantage{{"unit", "m"}, {"up", "y"}, {"scanned", true}};
+    // Without a unit, which the reader of scenes then recognises or asks, the axes stay those that the user knows.
+    json vantage{{"up", metric_ ? "y" : "z"}, {"scanned", true}};
+    if (metric_) vantage["unit"] = "m";
     const std::string& crs = source_->crs();
     if (crs.starts_with("PROJCS[") || crs.starts_with("COMPD_CS[") || crs.starts_with("EPSG:")) vantage["crs"] = crs;
     return buffer.finish({{"asset",
@@ -272,6 +327,9 @@ class Converter {
 
   std::unique_ptr<PointSource> source_;
   std::optional<double> cell_m_;  // as the user wants it
+  bool metric_ = false;           // whether lengths are metres, or in the file's own unit
+  double scale_ = 1;              // lengths in a metre, as far as they were measured
+  std::string unit_note_;
   std::optional<CellGrid> grid_;
   std::uint64_t points_ = 0, far_ = 0;
   std::size_t posed_ = 0;  // scans with a pose
@@ -283,18 +341,51 @@ class Converter {
 
 }  // namespace
 
-std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format) {
+bool take_setting(CloudSettings& settings, const std::string& word) {
+  constexpr double kFinest_m = 1e-4, kCoarsest_m = 10;
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos) return false;
+  const std::string name = word.substr(0, equals), value = word.substr(equals + 1);
+  if (name == "cell") {
+    const auto cell_m = number_of(value);
+    if (!cell_m || !(*cell_m >= kFinest_m && *cell_m <= kCoarsest_m))
+      throw Refused("the setting " + word + " is not cell=METRES, from 0.0001 to 10");
+    settings.cell_m = cell_m;
+  } else if (name == "unit") {
+    constexpr std::array<std::pair<const char*, double>, 5> kUnits{
+        {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
+    const auto* unit = std::ranges::find(kUnits, value, &std::pair<const char*, double>::first);
+    if (unit == kUnits.end()) throw Refused("the setting " + word + " is not unit=m, cm, mm, in or ft");
+    settings.unit_m = unit->second;
+  } else if (name == "up") {
+    if (value != "x" && value != "y" && value != "z") throw Refused("the setting " + word + " is not up=x, y or z");
+    settings.up = value.front();
+  } else if (name == "columns") {
+    settings.columns = value;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format, const CloudSettings& settings) {
+  const Reading reading{.own_unit = !settings.unit_m, .columns = settings.columns};
   std::vector<std::unique_ptr<PointSource>> sources;
   for (const std::filesystem::path& file : files) try {
       sources.push_back(format == "e57"   ? open_e57(file)
-                        : format == "las" ? open_las(file)
+                        : format == "las" ? open_las(file, reading)
                         : format == "ply" ? open_ply(file)
                         : format == "pcd" ? open_pcd(file)
-                                          : open_text(file));
+                                          : open_text(file, reading));
     } catch (const Refused& why) {
       throw files.size() == 1 ? why : Refused(file.filename().string() + ": " + why.what());
     }
-  return joined(std::move(sources));
+  auto all = joined(std::move(sources));
+  if (!settings.unit_m && settings.up == 'z') return all;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (settings.up == 'y') turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  if (settings.up == 'x') turn << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return moved(std::move(all), turn, settings.unit_m.value_or(1));
 }
 
 double memory_for_cells() {
@@ -304,8 +395,8 @@ double memory_for_cells() {
   return kShare * static_cast<double>(limit.rlim_cur);
 }
 
-std::string convert_cloud(const Files& files, const std::string& format, std::optional<double> cell_m) {
-  return Converter(files, format, cell_m).run();
+std::string convert_cloud(const Files& files, const std::string& format, const CloudSettings& settings) {
+  return Converter(files, format, settings).run();
 }
 
 json scan_json(const CloudScan& scan) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kReservoir = 1023, kMostSampled = 1 << 14;
 // A plane has three unknowns; twice as many points show whether they lie in one. Neighbours help with the rest.
 constexpr double kEnough = 6;
-constexpr double kFarthest_m = 1e9;  // as scenes have it
+constexpr double kFarthest = 1e13;  // its cells of the smallest size can be numbered
 
 std::uint64_t mixed(
     std::uint64_t value) {  // Steele, Lea and Flood: Fast Splittable Pseudorandom Number Generators, 2014
@@ -25,7 +25,7 @@ std::uint64_t mixed(
 }  // namespace
 
 void Density::add(const Eigen::Vector3d& p) {
-  if (!(p.cwiseAbs().maxCoeff() <= kFarthest_m)) return;
+  if (!(p.cwiseAbs().maxCoeff() <= kFarthest)) return;
   ++points_;
   if (reservoir_.size() < kReservoir) {
     reservoir_.push_back(p);
@@ -36,7 +36,8 @@ void Density::add(const Eigen::Vector3d& p) {
   for (std::size_t s = 0; s < sizes_m.size(); ++s) {
     std::uint64_t hash = s;
     for (int axis = 0; axis < 3; ++axis)
-      hash = mixed(hash + static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / sizes_m[s]))));
+      hash = mixed(hash +
+                   static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / (sizes_m[s] * scale_)))));
     Sample& sample = samples_[s];
     if (hash & sample.mask) continue;
     ++sample.counts[hash];
@@ -60,6 +61,20 @@ Eigen::Vector3d Density::middle() const {
   return middle;
 }
 
+Eigen::Vector3d Density::extent() const {
+  constexpr double kLeftOut = 0.02;  // at each end
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();
+  std::vector<double> values;
+  for (int axis = 0; axis < 3 && !reservoir_.empty(); ++axis) {
+    values.clear();
+    for (const Eigen::Vector3d& p : reservoir_) values.push_back(p[axis]);
+    std::ranges::sort(values);
+    const auto left_out = static_cast<std::size_t>(kLeftOut * static_cast<double>(values.size()));
+    extent[axis] = values[values.size() - 1 - left_out] - values[left_out];
+  }
+  return extent;
+}
+
 double Density::median(std::size_t size) const {
   std::vector<std::uint32_t> counts;
   for (const auto& cell : samples_[size].counts) counts.push_back(cell.second);
@@ -69,6 +84,8 @@ double Density::median(std::size_t size) const {
   return *half;
 }
 
+bool Density::too_thin() const { return median(sizes_m.size() - 1) < kEnough; }
+
 double Density::cells(std::size_t size) const {
   return static_cast<double>(samples_[size].counts.size()) * static_cast<double>(samples_[size].mask + 1);
 }
@@ -76,7 +93,7 @@ double Density::cells(std::size_t size) const {
 std::size_t choose_cell(const Density& density, double memory, double bytes_each) {
   for (std::size_t s = 0; s < Density::sizes_m.size(); ++s)
     if (density.median(s) >= kEnough && density.cells(s) * bytes_each <= memory) return s;
-  if (density.median(Density::sizes_m.size() - 1) >= kEnough)
+  if (!density.too_thin())
     throw Refused("its surfaces take more memory than there is, even in cells of 50 cm; export parts of it");
   throw Refused("its points, " + std::to_string(density.points()) +
                 " in all, are too thin for surfaces: cells of 50 cm mostly hold fewer than 6; export more of them");

@@ -15,11 +15,18 @@ class Density {
  public:
   static constexpr std::array<double, 11> sizes_m{0.02, 0.025, 0.03, 0.04, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5};
 
+  // `scale`: lengths of the points in a metre of `sizes_m`.
+  explicit Density(double scale = 1) : scale_(scale) {}
+
   void add(const Eigen::Vector3d& p);
 
   std::uint64_t points() const { return points_; }
   // A place in the middle of the cloud, whatever single points lie far away.
   Eigen::Vector3d middle() const;
+  // Whether cells of all sizes mostly hold too few points for a plane.
+  bool too_thin() const;
+  // How long the cloud is along each axis, without the farthest points.
+  Eigen::Vector3d extent() const;
   // Median number of points of an occupied cell, and the estimated number of such cells.
   double median(std::size_t size) const;
   double cells(std::size_t size) const;
@@ -30,6 +37,7 @@ class Density {
     std::unordered_map<std::uint64_t, std::uint32_t> counts;
   };
 
+  double scale_;
   std::uint64_t points_ = 0, random_ = 0x9E3779B97F4A7C15;
   std::vector<Eigen::Vector3d> reservoir_;
   std::array<Sample, sizes_m.size()> samples_;

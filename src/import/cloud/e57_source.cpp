@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <optional>
 
+#include "core/coordinate_reference.hpp"
 #include "core/utf8.hpp"
 #include "import/cloud/e57_records.hpp"
 #include "import/cloud/points.hpp"
@@ -70,7 +71,7 @@ class E57Source final : public PointSource {
  public:
   explicit E57Source(const std::filesystem::path& file) : pages_(file) {
     const XmlElement root = parse_xml(pages_.xml());
-    crs_ = to_utf8(root.text_at("coordinateMetadata"));
+    take_system(to_utf8(root.text_at("coordinateMetadata")));
     const XmlElement* all = root.child("data3D");
     for (const XmlElement& element : all ? all->children : std::vector<XmlElement>()) {
       CloudScan scan;
@@ -105,38 +106,93 @@ class E57Source final : public PointSource {
   }
 
  private:
-  void read_scan(const Data3d& data, const std::string& name, std::uint32_t scan, const PointSink& sink) {
-    const bool cartesian = data.has("cartesianX");
-    const std::array<const char*, 3> names =
-        cartesian ? std::array{"cartesianX", "cartesianY", "cartesianZ"}
-                  : std::array{"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
-    const bool normals = data.has("nor:normalX") && data.has("nor:normalY") && data.has("nor:normalZ");
-    const char* state = cartesian ? "cartesianInvalidState" : "sphericalInvalidState";
-    std::vector<std::size_t> wanted;
-    for (const char* field : names) {
-      if (!data.has(field)) throw Refused("its scan " + name + " has no " + field + "; export it again");
-      wanted.push_back(data.field(field));
+  // Lengths of E57 are metres, whatever the unit of the system.
+  void take_system(const std::string& text) {
+    const auto system = text.empty() ? std::nullopt : read_coordinate_reference(text);
+    crs_ = text;
+    if (!system) return;
+    if (system->kind == CoordinateReference::Kind::geocentric)
+      throw Refused("its coordinates are counted from the middle of the earth; project them to metres, e.g. UTM");
+    crs_.clear();
+    if (system->kind != CoordinateReference::Kind::projected || !system->has_usual_axes()) {
+      if (system->kind != CoordinateReference::Kind::local)
+        notes_.push_back("its coordinate system " + to_utf8(system->name) +
+                         " is left out, as it has not metres with axes east and north");
+      return;
     }
+    const bool metres = system->first.factor == 1 && (!system->height || system->height->factor == 1);
+    crs_ = metres ? (text.starts_with("PROJCS[") || text.starts_with("COMPD_CS[") ? text : system->text)
+                  : to_utf8(system->in_metres);
+    if (!metres)
+      notes_.emplace_back("its coordinate system is not in metres; its points are, as E57 has it, and are taken so");
+  }
+
+  // Places of three fields among those that are read, if a scan has them, and that of what says that they are invalid.
+  struct Coordinates {
+    std::optional<std::size_t> first, state;
+  };
+
+  static std::size_t want(const Data3d& data, const std::string& name, const char* field,
+                          std::vector<std::size_t>& wanted) {
+    const std::size_t k = data.field(field);
+    if (data.fields[k].type == E57RecordField::Type::text)
+      throw Refused("the field " + std::string(field) + " of its scan " + name + " is a text; export it again");
+    wanted.push_back(k);
+    return wanted.size() - 1;
+  }
+
+  static Coordinates want_coordinates(const Data3d& data, const std::string& name,
+                                      const std::array<const char*, 3>& fields, const char* state,
+                                      std::vector<std::size_t>& wanted) {
+    Coordinates out;
+    if (!data.has(fields[0])) return out;
+    for (const char* field : fields) {
+      if (!data.has(field)) throw Refused("its scan " + name + " has no " + field + "; export it again");
+      const std::size_t place = want(data, name, field, wanted);
+      if (!out.first) out.first = place;
+    }
+    if (data.has(state)) out.state = want(data, name, state, wanted);
+    return out;
+  }
+
+  void read_scan(const Data3d& data, const std::string& name, std::uint32_t scan, const PointSink& sink) {
+    std::vector<std::size_t> wanted;
+    // Records may have both, of which each has its own state.
+    const Coordinates cartesian =
+        want_coordinates(data, name, {"cartesianX", "cartesianY", "cartesianZ"}, "cartesianInvalidState", wanted);
+    Coordinates spherical;
+    if (!cartesian.first || cartesian.state)
+      spherical = want_coordinates(data, name, {"sphericalRange", "sphericalAzimuth", "sphericalElevation"},
+                                   "sphericalInvalidState", wanted);
+    if (!cartesian.first && !spherical.first)
+      throw Refused("its scan " + name + " has neither cartesianX nor sphericalRange; export it again");
+    const bool normals = data.has("nor:normalX") && data.has("nor:normalY") && data.has("nor:normalZ");
+    const std::size_t first_normal = wanted.size();
     if (normals)
-      for (const char* field : {"nor:normalX", "nor:normalY", "nor:normalZ"}) wanted.push_back(data.field(field));
+      for (const char* field : {"nor:normalX", "nor:normalY", "nor:normalZ"}) want(data, name, field, wanted);
     const std::size_t first_cell = wanted.size();
     const bool cells = cells_ && data.has("rowIndex") && data.has("columnIndex");
-    if (cells) wanted.push_back(data.field("rowIndex")), wanted.push_back(data.field("columnIndex"));
-    const bool stated = data.has(state);
-    if (stated) wanted.push_back(data.field(state));
-    for (const std::size_t field : wanted)
-      if (data.fields[field].type == E57RecordField::Type::text)
-        throw Refused("the field " + data.fields[field].name + " of its scan " + name + " is a text; export it again");
+    if (cells) want(data, name, "rowIndex", wanted), want(data, name, "columnIndex", wanted);
     BlockWriter points(sink, scan, normals);
     const Eigen::Matrix3d turn = data.rotation.toRotationMatrix();
+    const auto valid = [](const Coordinates& kind, std::span<const double> v) {
+      return kind.first && (!kind.state || v[*kind.state] == 0);
+    };
     try {
       read_e57_records(pages_, data.section, data.count, data.fields, wanted, [&](std::span<const double> v) {
-        if (stated && v.back() != 0) return;
-        Eigen::Vector3d p(v[0], v[1], v[2]);
-        if (!cartesian)
-          p = v[0] * Eigen::Vector3d(std::cos(v[2]) * std::cos(v[1]), std::cos(v[2]) * std::sin(v[1]), std::sin(v[2]));
+        Eigen::Vector3d p = Eigen::Vector3d::Zero();
+        if (valid(cartesian, v)) {
+          const std::size_t at = *cartesian.first;
+          p = {v[at], v[at + 1], v[at + 2]};
+        } else if (valid(spherical, v)) {
+          const std::size_t at = *spherical.first;
+          p = v[at] * Eigen::Vector3d(std::cos(v[at + 2]) * std::cos(v[at + 1]),
+                                      std::cos(v[at + 2]) * std::sin(v[at + 1]), std::sin(v[at + 2]));
+        }
+        if (p == Eigen::Vector3d::Zero()) return;  // no return: nothing is that near to a scanner
+        const double* n = v.data() + first_normal;
         const Eigen::Vector3f normal =
-            normals ? (turn * Eigen::Vector3d(v[3], v[4], v[5])).cast<float>().eval() : Eigen::Vector3f::Zero().eval();
+            normals ? (turn * Eigen::Vector3d(n[0], n[1], n[2])).cast<float>().eval() : Eigen::Vector3f::Zero().eval();
         std::optional<std::array<std::uint32_t, 2>> cell;
         if (cells) cell = {index_of(v[first_cell]), index_of(v[first_cell + 1])};
         points.add(turn * p + data.translation, normal, cell);

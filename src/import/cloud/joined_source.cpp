@@ -20,6 +20,10 @@ class JoinedSource : public PointSource {
     return sum;
   }
 
+  bool metric() const override {
+    return std::ranges::all_of(sources_, [](const auto& source) { return source->metric(); });
+  }
+
   void read(const PointSink& sink) override {
     scans_.clear(), notes_.clear();
     for (const auto& source : sources_) {
@@ -40,7 +44,49 @@ class JoinedSource : public PointSource {
   std::vector<std::unique_ptr<PointSource>> sources_;
 };
 
+class MovedSource : public PointSource {
+ public:
+  MovedSource(std::unique_ptr<PointSource> source, const Eigen::Matrix3d& turn, double factor)
+      : source_(std::move(source)), turn_(turn), factor_(factor) {
+    take_scans();
+  }
+
+  std::uint64_t announced() const override { return source_->announced(); }
+  bool metric() const override { return source_->metric(); }
+
+  void read(const PointSink& sink) override {
+    std::vector<Eigen::Vector3d> positions;
+    std::vector<Eigen::Vector3f> normals;
+    const Eigen::Matrix3d moves = factor_ * turn_;
+    const Eigen::Matrix3f turns = turn_.cast<float>();
+    source_->read([&](const PointBlock& block) {
+      if (scans_.size() != source_->scans().size()) take_scans();
+      positions.assign(block.positions.begin(), block.positions.end());
+      for (Eigen::Vector3d& p : positions) p = moves * p;
+      normals.assign(block.normals.begin(), block.normals.end());
+      for (Eigen::Vector3f& n : normals) n = turns * n;
+      sink({positions, normals, block.scan, block.cells});
+    });
+    notes_ = source_->notes();
+  }
+
+ private:
+  void take_scans() {
+    scans_ = source_->scans();
+    for (CloudScan& scan : scans_)
+      scan.position = factor_ * turn_ * scan.position, scan.rotation = Eigen::Quaterniond(turn_) * scan.rotation;
+  }
+
+  std::unique_ptr<PointSource> source_;
+  Eigen::Matrix3d turn_;
+  double factor_;
+};
+
 }  // namespace
+
+std::unique_ptr<PointSource> moved(std::unique_ptr<PointSource> source, const Eigen::Matrix3d& turn, double factor) {
+  return std::make_unique<MovedSource>(std::move(source), turn, factor);
+}
 
 std::unique_ptr<PointSource> joined(std::vector<std::unique_ptr<PointSource>> sources) {
   if (sources.size() == 1) return std::move(sources.front());

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // PCD 0.6 and 0.7 of the Point Cloud Library (Rusu and Cousins, 3D is here, 2011): text, binary, and compressed binary.
-// The viewpoint is passed over.
+// A viewpoint moves the points, as PCL's viewer has it, and is where the scanner stood.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "import/cloud/lzf.hpp"
 #include "import/cloud/points.hpp"
@@ -19,10 +21,18 @@ class PcdSource final : public PointSource {
     for (const char* name : {"x", "y", "z"}) place_.push_back(index_of(name));
     normal_ = find_fields(fields_, {"normal_x", "normal_y", "normal_z"});
     data_at_ = file_.place();
-    scans_.push_back({});
+    CloudScan scan;
+    // The viewpoint that writers put when they know none is that of a merged cloud.
+    scan.posed = moved_ = !place_of_view_.isZero(0) || std::abs(view_.w()) < view_.norm();
+    scan.position = place_of_view_;
+    if (moved_) scan.rotation = view_.normalized();
+    turn_ = scan.rotation.toRotationMatrix();
+    scans_.push_back(scan);
+    if (moved_) notes_.emplace_back("its viewpoint moves its points, and is where the scanner stood");
   }
 
   std::uint64_t announced() const override { return count_; }
+  bool metric() const override { return false; }
 
   void read(const PointSink& sink) override {
     file_.seek(data_at_);
@@ -59,6 +69,7 @@ class PcdSource final : public PointSource {
       if (key == "WIDTH") width = count_of(next_word(line), "its width");
       if (key == "HEIGHT") height = count_of(next_word(line), "its height");
       if (key == "POINTS") points = count_of(next_word(line), "the number of its points");
+      if (key == "VIEWPOINT") read_viewpoint(line);
       if (key == "DATA") data_ = next_word(line);
     }
     if (data_ != "ascii" && data_ != "binary" && data_ != "binary_compressed")
@@ -85,6 +96,20 @@ class PcdSource final : public PointSource {
     }
   }
 
+  // Place, and turn as a quaternion w, x, y, z.
+  void read_viewpoint(std::string_view line) {
+    std::array<double, 7> v{};
+    for (double& value : v) {
+      const auto number = number_of(next_word(line));
+      if (!number || !std::isfinite(*number))
+        throw Refused("its viewpoint has not seven numbers, place and turn; export it again");
+      value = *number;
+    }
+    place_of_view_ = {v[0], v[1], v[2]};
+    view_ = Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
+    if (!(view_.norm() > 0)) throw Refused("the turn of its viewpoint is no quaternion; export it again");
+  }
+
   std::size_t index_of(const char* name) const {
     const std::size_t k = find_field(fields_, name);
     if (k == fields_.size() || times_[k] != 1)
@@ -100,7 +125,12 @@ class PcdSource final : public PointSource {
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     if (!normal_.empty())
       normal = Eigen::Vector3d(values[normal_[0]], values[normal_[1]], values[normal_[2]]).cast<float>();
-    points.add({values[place_[0]], values[place_[1]], values[place_[2]]}, normal);
+    Eigen::Vector3d p(values[place_[0]], values[place_[1]], values[place_[2]]);
+    if (moved_) {
+      p = turn_ * p + place_of_view_;
+      normal = turn_.cast<float>() * normal;
+    }
+    points.add(p, normal);
   }
 
   void read_text(BlockWriter& points) {
@@ -160,6 +190,10 @@ class PcdSource final : public PointSource {
   std::string data_;
   std::uint64_t count_ = 0, data_at_ = 0;
   std::size_t record_ = 0;
+  Eigen::Vector3d place_of_view_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond view_ = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  bool moved_ = false;
 };
 
 }  // namespace

@@ -48,6 +48,7 @@ class PlySource final : public PointSource {
   }
 
   std::uint64_t announced() const override { return elements_[vertex_].count; }
+  bool metric() const override { return metric_; }
 
   void read(const PointSink& sink) override {
     file_.seek(data_);
@@ -97,8 +98,10 @@ class PlySource final : public PointSource {
         text_ = kind == "ascii", big_endian_ = kind == "binary_big_endian", format = true;
         if (!text_ && !big_endian_ && kind != "binary_little_endian")
           throw Refused("it is of no format that PLY knows; export it again");
-      } else if (word == "comment" && next_word(line) == "crs") {
-        crs_ = line.substr(std::min(line.find_first_not_of(' '), line.size()));
+      } else if (word == "comment") {
+        const std::string_view about = next_word(line);
+        metric_ |= about == "crs" || about == "vantage";
+        if (about == "crs") crs_ = line.substr(std::min(line.find_first_not_of(' '), line.size()));
       } else if (word == "element") {
         Element element;
         element.name = next_word(line);
@@ -142,6 +145,7 @@ class PlySource final : public PointSource {
 
   ByteFile file_;
   bool text_ = false, big_endian_ = false;
+  bool metric_ = false;  // this program wrote it
   std::vector<Element> elements_;
   std::size_t vertex_ = 0;
   std::vector<std::size_t> place_, normal_;

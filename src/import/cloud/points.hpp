@@ -15,7 +15,7 @@
 
 namespace vantage::importer {
 
-// One scan of a cloud. Frame of the file, Z up, in metres.
+// One scan of a cloud. Frame of the file, Z up, in metres (or the file's unit, see PointSource::metric()).
 struct CloudScan {
   std::string name;
   bool posed = false;  // whether the file says from where it was taken
@@ -25,7 +25,7 @@ struct CloudScan {
 };
 
 struct PointBlock {
-  std::span<const Eigen::Vector3d> positions;  // metres, finite
+  std::span<const Eigen::Vector3d> positions;  // finite
   std::span<const Eigen::Vector3f> normals;    // none, or one each; 0 if unknown
   std::uint32_t scan = 0;
   std::span<const std::array<std::uint32_t, 2>> cells = {};  // row and column in the scan's grid; none, or one each
@@ -40,6 +40,8 @@ class PointSource {
   virtual void read(const PointSink& sink) = 0;
   // Points that the file announces; 0: it does not say.
   virtual std::uint64_t announced() const { return 0; }
+  // Whether lengths are metres: by the format's definition, or as the file says. Else they are in the file's own unit.
+  virtual bool metric() const { return true; }
   // Wants `PointBlock::cells` of those scans that have them.
   void want_cells() { cells_ = true; }
   // Complete after the first read().
@@ -87,11 +89,21 @@ class BlockWriter {
 // All points of several sources, one after the other.
 std::unique_ptr<PointSource> joined(std::vector<std::unique_ptr<PointSource>> sources);
 
+// All points of a source, turned and then multiplied by `factor`; without its coordinate system.
+std::unique_ptr<PointSource> moved(std::unique_ptr<PointSource> source, const Eigen::Matrix3d& turn, double factor);
+
+// How a file is read, where it does not tell itself.
+struct Reading {
+  bool own_unit = true;      // converts lengths by the unit that the file tells; false: passes them on as they are
+  std::string columns = {};  // of a text, see columns_of()
+};
+
 // Readers, one a format. Each reads the file's head. Throw Refused.
 std::unique_ptr<PointSource> open_e57(const std::filesystem::path& file);
-std::unique_ptr<PointSource> open_las(const std::filesystem::path& file);
+std::unique_ptr<PointSource> open_las(const std::filesystem::path& file, const Reading& reading = {});  // and LAZ
 std::unique_ptr<PointSource> open_ply(const std::filesystem::path& file);
 std::unique_ptr<PointSource> open_pcd(const std::filesystem::path& file);
-std::unique_ptr<PointSource> open_text(const std::filesystem::path& file);  // XYZ, PTS, PTX
+std::unique_ptr<PointSource> open_text(const std::filesystem::path& file,
+                                       const Reading& reading = {});  // XYZ, PTS, CSV, PTX
 
 }  // namespace vantage::importer

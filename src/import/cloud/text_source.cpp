@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points as lines of numbers: XYZ; PTS, which counts them first; and PTX, scans with a head of ten lines each: columns,
-// rows, the scanner's place, its axes, and the matrix that moves its points (row vectors; Leica, Cyclone pointcloud
-// export format).
+// Points as lines of numbers: XYZ and CSV; PTS, which counts them first; and PTX, scans with a head of ten lines each:
+// columns, rows, the scanner's place, its axes, and the matrix that moves its points (row vectors; Leica, Cyclone
+// pointcloud export format).
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "import/cloud/points.hpp"
 #include "import/cloud/scalar_field.hpp"
+#include "import/cloud/text_columns.hpp"
 
 namespace vantage::importer {
 namespace {
@@ -23,11 +27,17 @@ std::size_t numbers(std::string_view line, double* to, std::size_t most) {
 
 class TextSource final : public PointSource {
  public:
-  explicit TextSource(const std::filesystem::path& path) : file_(path) {
+  TextSource(const std::filesystem::path& path, const Reading& reading) : file_(path) {
     const std::array first{next_counts(), next_counts()};
     ptx_ = first[0] == 1 && first[1] == 1;
-    if (!ptx_) scans_.push_back({});
+    if (ptx_) return;
+    scans_.push_back({});
+    columns_ = columns_of(first_lines(), reading.columns);
+    if (!reading.own_unit) columns_.metres = 0;
+    file_.seek(0);
   }
+
+  bool metric() const override { return ptx_ || columns_.metres > 0; }
 
   void read(const PointSink& sink) override {
     file_.seek(0);
@@ -49,6 +59,19 @@ class TextSource final : public PointSource {
     return n;
   }
 
+  // Lines that are not empty, enough to tell columns.
+  std::vector<std::string> first_lines() {
+    constexpr std::size_t kLines = 2000;
+    std::vector<std::string> lines;
+    file_.seek(0);
+    while (lines.size() < kLines)
+      if (const auto line = file_.line(); !line)
+        break;
+      else if (!line->empty())
+        lines.emplace_back(lines.empty() && line->starts_with("\xEF\xBB\xBF") ? line->substr(3) : *line);
+    return lines;
+  }
+
   std::optional<std::string_view> next_line() {
     ++line_;
     return file_.line();
@@ -57,14 +80,28 @@ class TextSource final : public PointSource {
     throw Refused("line " + std::to_string(line_) + " " + what + "; copy or export it again");
   }
 
+  // The coordinates of a line; false if it has none.
+  bool coordinates(std::string_view line, std::array<double, 3>& p) {
+    if (columns_.usual()) return numbers(line, p.data(), 3) == 3;
+    columns_.split(line, words_);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (columns_.place[axis] >= words_.size()) return false;
+      const auto value = columns_.numbers.value(words_[columns_.place[axis]]);
+      if (!value) return false;
+      p[axis] = *value;
+    }
+    return true;
+  }
+
   void read_xyz(const PointSink& sink) {
     // Titles, counts and comments stand between points; more of them than points are no cloud.
     BlockWriter points(sink, 0, false);
     std::uint64_t found = 0, others = 0;
+    const double metres = columns_.metres > 0 ? columns_.metres : 1;
     while (const auto line = next_line()) {
       std::array<double, 3> p{};
-      if (numbers(*line, p.data(), 3) == 3) {
-        points.add({p[0], p[1], p[2]});
+      if (coordinates(*line, p)) {
+        points.add({p[0] * metres, p[1] * metres, p[2] * metres});
         ++found;
       } else if (!line->empty() && !line->starts_with('#') && !line->starts_with("//") && ++others > 100 + found) {
         refuse("and most others are no points, which begin with three numbers");
@@ -72,11 +109,15 @@ class TextSource final : public PointSource {
     }
     points.flush();
     notes_.clear();
+    if (!columns_.note.empty()) notes_.push_back(columns_.note);
+    if (metres != 1)
+      notes_.push_back("its titles tell the unit, " + std::to_string(metres) +
+                       " m, and coordinates are taken as metres");
     if (others > 2) notes_.push_back(std::to_string(others) + " lines that are no points are passed over");
   }
 
   void read_ptx(const PointSink& sink) {
-    scans_.clear();
+    scans_.clear(), notes_.clear();
     while (auto first = next_line()) {
       if (first->find_first_not_of(" \t") == std::string_view::npos) continue;
       std::string_view words = *first;
@@ -86,10 +127,12 @@ class TextSource final : public PointSource {
       words = *second;
       const std::uint64_t rows = count_of(next_word(words), "its rows");
       if (columns > UINT32_MAX || rows > UINT32_MAX) refuse("has more rows than there can be");
-      std::array<double, 3> skipped{};
-      for (int k = 0; k < 4; ++k) {  // place and axes, which the matrix has, too
+      Eigen::Matrix4d head = Eigen::Matrix4d::Identity();  // place and axes, which the matrix mostly has, too
+      for (const int column : {3, 0, 1, 2}) {
         const auto line = next_line();
-        if (!line || numbers(*line, skipped.data(), 3) != 3) refuse("has not three numbers, as the head of a scan has");
+        std::array<double, 3> v{};
+        if (!line || numbers(*line, v.data(), 3) != 3) refuse("has not three numbers, as the head of a scan has");
+        for (int row = 0; row < 3; ++row) head(row, column) = v[static_cast<std::size_t>(row)];
       }
       Eigen::Matrix4d matrix;
       for (int row = 0; row < 4; ++row) {
@@ -99,32 +142,81 @@ class TextSource final : public PointSource {
         for (int column = 0; column < 4; ++column) matrix(column, row) = v[static_cast<std::size_t>(column)];
       }
       if (!matrix.allFinite()) refuse("ends a matrix that is not finite");
-      CloudScan scan;
-      scan.name = "scan " + std::to_string(scans_.size() + 1);
-      scan.posed = true;
-      scan.position = matrix.block<3, 1>(0, 3);
-      scan.rotation = Eigen::Quaterniond(Eigen::Matrix3d(matrix.block<3, 3>(0, 0))).normalized();
-      scans_.push_back(scan);
-      BlockWriter points(sink, static_cast<std::uint32_t>(scans_.size() - 1), false);
-      for (std::uint64_t k = 0; k < columns * rows; ++k) {
-        const auto line = next_line();
-        std::array<double, 3> p{};
-        if (!line) refuse("is missing: a scan of " + std::to_string(columns * rows) + " points ends before");
-        if (numbers(*line, p.data(), 3) != 3) refuse("has not three numbers, as a point has");
-        if (p[0] == 0 && p[1] == 0 && p[2] == 0) continue;  // no return
-        points.add((matrix * Eigen::Vector4d(p[0], p[1], p[2], 1)).head<3>());
-      }
-      points.flush();
+      if (!head.allFinite()) refuse("ends a head that is not finite");
+      read_scan(columns, rows, head, matrix, sink);
     }
+  }
+
+  // Reads points behind the head of a scan. Some writers leave the matrix at none and tell the scanner's place above it
+  // alone; points are then either in the scanner's frame, or moved already. The grid tells: points of a column lie in
+  // one plane through the scanner.
+  void read_scan(std::uint64_t columns, std::uint64_t rows, const Eigen::Matrix4d& head, const Eigen::Matrix4d& matrix,
+                 const PointSink& sink) {
+    CloudScan scan;
+    scan.name = "scan " + std::to_string(scans_.size() + 1);
+    scan.posed = true;
+    const bool by_head = matrix.isIdentity() && !head.isIdentity();
+    Eigen::Matrix4d moves = matrix;
+    if (by_head) {
+      const std::uint64_t place = file_.place(), line = line_;
+      const bool moved = moved_already(columns, rows, head.block<3, 1>(0, 3));
+      file_.seek(place), line_ = line;
+      if (!moved) moves = head;
+      const std::string note = moved ? "its scanners' places are those before matrices that move nothing"
+                                     : "the matrices of its scans move nothing: the place and axes before them do";
+      if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);
+    }
+    const Eigen::Matrix4d& pose = by_head ? head : matrix;
+    scan.position = pose.block<3, 1>(0, 3);
+    scan.rotation = Eigen::Quaterniond(Eigen::Matrix3d(pose.block<3, 3>(0, 0))).normalized();
+    scans_.push_back(scan);
+    BlockWriter points(sink, static_cast<std::uint32_t>(scans_.size() - 1), false);
+    for (std::uint64_t k = 0; k < columns * rows; ++k) {
+      Eigen::Vector3d p;
+      if (read_point(columns * rows, p)) points.add((moves * p.homogeneous()).head<3>());
+    }
+    points.flush();
+  }
+
+  // The point of the next line; false without a return.
+  bool read_point(std::uint64_t all, Eigen::Vector3d& p) {
+    const auto line = next_line();
+    if (!line) refuse("is missing: a scan of " + std::to_string(all) + " points ends before");
+    if (numbers(*line, p.data(), 3) != 3) refuse("has not three numbers, as a point has");
+    return p != Eigen::Vector3d::Zero();
+  }
+
+  bool moved_already(std::uint64_t columns, std::uint64_t rows, const Eigen::Vector3d& head) {
+    constexpr std::uint64_t kMost = 200'000;
+    constexpr std::size_t kLeast = 30;
+    std::array<std::vector<double>, 2> turns;  // of azimuths from point to point, as from the origin and from the head
+    std::optional<Eigen::Vector3d> last;
+    for (std::uint64_t k = 0; k < std::min(columns * rows, kMost); ++k) {
+      if (k % rows == 0) last.reset();
+      Eigen::Vector3d p;
+      if (!read_point(columns * rows, p)) continue;
+      for (std::size_t from = 0; last && from < 2; ++from) {
+        const Eigen::Vector3d a = *last - from * head, b = p - from * head;
+        turns[from].push_back(std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y())));
+      }
+      last = p;
+    }
+    if (turns[0].size() < kLeast) return false;
+    for (auto& all : turns) std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2));
+    return turns[1][turns[1].size() / 2] < turns[0][turns[0].size() / 2];
   }
 
   ByteFile file_;
   bool ptx_ = false;
   std::uint64_t line_ = 0;
+  TextColumns columns_;
+  std::vector<std::string_view> words_;
 };
 
 }  // namespace
 
-std::unique_ptr<PointSource> open_text(const std::filesystem::path& file) { return std::make_unique<TextSource>(file); }
+std::unique_ptr<PointSource> open_text(const std::filesystem::path& file, const Reading& reading) {
+  return std::make_unique<TextSource>(file, reading);
+}
 
 }  // namespace vantage::importer

@@ -2,7 +2,6 @@
 // The points of each scan, thinned: one for each small cell around its scanner, with the number of points that it
 // stands for.
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <optional>
 
@@ -17,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFinest_m = 1e-4, kCoarsest_m = 10;
 constexpr std::size_t kRecord = 4 * sizeof(std::uint32_t);  // x, y, z, count
 
 // All scans with cells of one size. Empty if they would take more than `memory` bytes.
@@ -91,16 +89,6 @@ class ThinScans {
 };
 
 }  // namespace
-
-double cell_of(const std::string& setting) {
-  constexpr std::string_view kName = "cell=";
-  double cell_m = 0;
-  const char* end = setting.data() + setting.size();
-  if (!setting.starts_with(kName) || std::from_chars(setting.data() + kName.size(), end, cell_m).ptr != end ||
-      !(cell_m >= kFinest_m && cell_m <= kCoarsest_m))
-    throw Refused("the setting " + setting + " is not cell=METRES, from 0.0001 to 10");
-  return cell_m;
-}
 
 std::string thin_scans(const Files& files, const std::string& format, double cell_m) {
   const std::unique_ptr<PointSource> source = open_source(files, format);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "import/floor_plan/drawing.hpp"
 #include "import/floor_plan/join_ends.hpp"
@@ -25,11 +26,13 @@ namespace {
 using importer::Refused;
 using nlohmann::json;
 
-// To metres, and around a point of whole metres amid the lines: floats hold no map coordinates.
+// To metres, and around a point of whole metres amid the lines: floats hold no map coordinates. Curves become lines.
 Point scale_to_metres(Drawing& drawing, double metres) {
   const auto each = [&](const auto& visit) {
     for (Line& line : drawing.lines) visit(line.a), visit(line.b);
     for (Arc& arc : drawing.arcs) visit(arc.centre), visit(arc.start);
+    for (Curve& curve : drawing.curves)
+      for (Point& p : curve.points) visit(p);
     for (Area& area : drawing.areas)
       for (auto& ring : area.rings)
         for (Point& p : ring) visit(p);
@@ -46,8 +49,16 @@ Point scale_to_metres(Drawing& drawing, double metres) {
     return *middle;
   };
   for (Text& text : drawing.texts) text.height *= metres;
+  for (Line& line : drawing.lines) line.width *= metres;
   const Point origin{std::floor(median(xs)), std::floor(median(ys))};
   each([&](Point& p) { p = p - origin; });
+  for (const Curve& curve : drawing.curves) {
+    const auto points = simplified(curve.points, kCurve_m);
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) drawing.lines.push_back({points[k], points[k + 1], curve.from});
+  }
+  drawing.curves.clear();
+  for (Area& area : drawing.areas)
+    for (auto& ring : area.rings) ring = simplified(ring, kCurve_m / 10);
   return origin;
 }
 
@@ -68,7 +79,54 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > kMost ? out + ", …" : out;
 }
 
-std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, const Walls& walls, const Scale& scale) {
+// What a drawing holds and the site does not, by layer and type, so that nothing is lost in silence.
+void add_left_out(std::vector<std::string>& notes, const Drawing& drawing, const Walls& walls,
+                  const std::vector<Swing>& swings) {
+  const auto add = [&](const std::string& what, const auto& wanted) {
+    std::map<std::string, std::map<std::string, std::size_t>> layers;
+    for (const auto& [key, times] : drawing.entities)
+      if (wanted(key)) layers[drawing.layers[static_cast<std::size_t>(key.layer)]][key.type] += times;
+    constexpr std::size_t kMost = 40;
+    std::string text;
+    std::size_t shown = 0, rest = 0;
+    for (const auto& [layer, types] : layers) {
+      std::string own;
+      for (const auto& [type, times] : types) {
+        own += (own.empty() ? "" : ", ") + std::to_string(times) + " " + type;
+        rest += shown >= kMost ? times : 0;
+      }
+      if (shown++ < kMost) text += (text.empty() ? "" : "; ") + layer + ": " + own;
+    }
+    if (rest > 0) text += "; and " + std::to_string(rest) + " on " + counted(shown - kMost, "layer");
+    if (!text.empty()) notes.push_back(what + " (" + text + ")");
+  };
+  const auto of = [](Fate fate) { return [fate](const EntityKey& key) { return key.fate == fate; }; };
+  add("not read", of(Fate::not_read));
+  add("invisible, left out", of(Fate::invisible));
+  add("on layers that are off or frozen, left out", of(Fate::hidden_layer));
+  add("blocks and external references that the file does not hold", of(Fate::missing_block));
+  add("on sheets (paper space), left out", of(Fate::paper_space));
+  std::set<int> of_walls, of_swings;
+  for (std::size_t l = 0; l < drawing.layers.size(); ++l)
+    if (std::ranges::find(walls.layers, drawing.layers[l]) != walls.layers.end()) of_walls.insert(static_cast<int>(l));
+  for (const Swing& swing : swings) of_swings.insert(swing.layer);
+  const auto is_text = [](const EntityKey& key) {
+    return key.type == "TEXT" || key.type == "MTEXT" || key.type == "ATTDEF";
+  };
+  add("no part of walls, doors, windows, furniture or stairs", [&](const EntityKey& key) {
+    if (key.fate != Fate::drawn || is_text(key)) return false;
+    if (key.type == "ARC" && of_swings.contains(key.layer)) return false;
+    return key.kind == Kind::annotation || (key.kind == Kind::furniture && !key.in_symbol) ||
+           (key.kind == Kind::other && !of_walls.contains(key.layer)) || (key.kind == Kind::wall && !walls.by_name);
+  });
+  add("layers that are not plotted, read as the screen shows them", [&](const EntityKey& key) {
+    return key.fate == Fate::drawn && !drawing.plotted[static_cast<std::size_t>(key.layer)] && !is_text(key) &&
+           key.kind != Kind::annotation && (key.kind != Kind::other || of_walls.contains(key.layer));
+  });
+}
+
+std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, const Walls& walls,
+                                  const std::vector<Swing>& swings, const Scale& scale) {
   std::array<std::size_t, 3> kinds{};
   for (const Opening& opening : plan.openings) ++kinds[opening.kind];
   const std::size_t named = static_cast<std::size_t>(std::ranges::count_if(
@@ -82,6 +140,9 @@ std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, cons
                                      fixed(kDoorHeight_m, 1) + " m, " + counted(kinds[Opening::window], "window") +
                                      " from " + fixed(kSill_m, 1) + " m; " + counted(plan.furniture.size(), "piece") +
                                      " of furniture, boxes of " + fixed(kTable_m, 2) + " m"};
+  if (walls.filled_gaps > 0)
+    notes.push_back(counted(walls.filled_gaps, "gap") + " of up to " + fixed(100 * walls.widest_gap_m, 1) +
+                    " cm between walls filled (" + fixed(100 * kTolerance_m, 0) + " cm at most)");
   if (walls.joined_ends > 0)
     notes.push_back(counted(walls.joined_ends, "end") + " of wall lines joined to what they missed by up to " +
                     fixed(100 * walls.farthest_join_m, 1) + " cm (" + fixed(100 * kTolerance_m, 0) + " cm at most)");
@@ -90,8 +151,7 @@ std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, cons
   else if (plan.rooms.closed_m > 0)
     notes.push_back("the outer walls do not close; gaps of up to " + fixed(plan.rooms.closed_m, 1) +
                     " m are closed to find the rooms");
-  if (!drawing.hidden.empty()) notes.push_back("layers that are off or frozen are left out: " + listed(drawing.hidden));
-  if (drawing.not_read > 0) notes.push_back(counted(drawing.not_read, "spline or face") + " of the drawing left out");
+  add_left_out(notes, drawing, walls, swings);
   return notes;
 }
 
@@ -212,7 +272,7 @@ namespace {
 
 Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   Drawing drawing = read_drawing(file, settings.wall_layers);
-  if (drawing.lines.empty() && drawing.arcs.empty() && drawing.areas.empty())
+  if (drawing.lines.empty() && drawing.arcs.empty() && drawing.curves.empty() && drawing.areas.empty())
     throw Refused("it holds no lines in its model space; export the floor plan with its lines");
   const Scale scale = scale_of(drawing, settings.unit);
   const Point origin = scale_to_metres(drawing, scale.metres);
@@ -233,7 +293,7 @@ Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   for (const Opening& opening : plan.openings) open.push_back(clone(opening.area));
   if (!open.empty()) plan.solid = areas(without(walls.solid, united(std::move(open))));
   plan.furniture = find_furniture(drawing, plan.rooms);
-  std::vector<std::string> notes = notes_of(plan, drawing, walls, scale);
+  std::vector<std::string> notes = notes_of(plan, drawing, walls, swings, scale);
   check_view(drawing, plan, !swings.empty(), !settings.wall_layers.empty(), notes);
   std::vector<Flight> flights = find_flights(drawing);
   return {std::move(plan),      std::move(flights), std::move(drawing.texts), origin, 0,

@@ -3,11 +3,17 @@
 #pragma once
 
 #include <cmath>
+#include <compare>
 #include <filesystem>
+#include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 namespace vantage::floor_plan {
+
+inline constexpr double kTurn = 2 * std::numbers::pi, kDegree = kTurn / 360;
+inline constexpr double kCurve_m = 0.005;  // by how much chords stray from curves
 
 struct Point {
   double x = 0, y = 0;
@@ -34,6 +40,7 @@ struct Origin {
 struct Line {
   Point a, b;
   Origin from;
+  double width = 0;  // of a wide polyline
 };
 
 // From `start` around `centre` by `sweep` radians, counter-clockwise if positive.
@@ -46,7 +53,13 @@ struct Arc {
   Point end() const { return at(1); }
 };
 
-// A filled area: rings of a hatch or a solid.
+// What is neither straight nor an arc: a chain of points that are dense.
+struct Curve {
+  std::vector<Point> points;
+  Origin from;
+};
+
+// A filled area: rings of a hatch or a solid; rings within rings are holes.
 struct Area {
   std::vector<std::vector<Point>> rings;
   Origin from;
@@ -67,22 +80,40 @@ struct Symbol {
   int parent = -1;  // the block that it is in
 };
 
+// What became of an entity.
+enum class Fate { drawn, not_read, invisible, hidden_layer, missing_block, paper_space };
+
+// Entities of one type, as DXF names it, that share their fate and layer.
+struct EntityKey {
+  Fate fate = Fate::drawn;
+  int layer = 0;
+  Kind kind = Kind::other;
+  bool in_symbol = false;
+  std::string type;
+  friend auto operator<=>(const EntityKey&, const EntityKey&) = default;
+};
+
 struct Drawing {
   std::vector<std::string> layers;
+  std::vector<bool> plotted;  // by layer
   std::vector<Kind> layer_kinds;
   std::vector<Symbol> symbols;
   std::vector<Line> lines;
   std::vector<Arc> arcs;
+  std::vector<Curve> curves;
   std::vector<Area> areas;
   std::vector<Text> texts;
-  int unit_code = 0;                // $INSUNITS
-  std::vector<std::string> hidden;  // layers that are off or frozen and hold something
-  std::size_t not_read = 0;         // entities of other kinds that draw something
+  int unit_code = 0;                          // $INSUNITS
+  bool in_inches = false;                     // lengths are shown in feet and inches ($LUNITS)
+  std::map<EntityKey, std::size_t> entities;  // all that the file holds, as often as it is placed
 };
 
 // Reads the model space of a DXF; coordinates are the file's. Layers that match `wall_layers` (shell patterns, case
 // does not matter), if there are any, are the walls, whatever names say. Throws Refused.
 Drawing read_drawing(const std::filesystem::path& file, const std::vector<std::string>& wall_layers);
+
+// Leaves points out as long as the chain strays by at most `error`.
+std::vector<Point> simplified(const std::vector<Point>& points, double error);
 
 // An arc as a chain of points that stray from it by at most `error`.
 std::vector<Point> chain(const Arc& arc, double error);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "import/floor_plan/drawing.hpp"
@@ -21,25 +24,66 @@ class Grid {
       large_.push_back(index);
       return;
     }
-    for_cells(low, high, [&](std::int64_t key) { cells_[key].push_back(index); });
+    for_cells(low, high, [&](std::int64_t x, std::int64_t y) { cells_[key(x, y)].push_back(index); });
+  }
+
+  // A line, and what is within `margin` of it.
+  void add_line(std::size_t index, Point a, Point b, double margin) {
+    if (is_long(a, b))
+      large_.push_back(index);
+    else
+      for_cells_of_line(a, b, margin, [&](std::int64_t x, std::int64_t y) { cells_[key(x, y)].push_back(index); });
   }
 
   // Calls `visit(index)` for all things whose cells meet the box, some of them more than once.
   template <class Visit>
   void visit(Point low, Point high, const Visit& visit) const {
     for (const std::size_t index : large_) visit(index);
-    for_cells(low, high, [&](std::int64_t key) {
-      if (const auto found = cells_.find(key); found != cells_.end())
+    for_cells(low, high, [&](std::int64_t x, std::int64_t y) {
+      if (const auto found = cells_.find(key(x, y)); found != cells_.end())
         for (const std::size_t index : found->second) visit(index);
     });
   }
 
+  // Calls `visit(index, low corner of the cell, cell)` for all things in the cells that a line passes, none if it is
+  // longer than some thousand cells.
+  template <class Visit>
+  void visit_line(Point a, Point b, const Visit& visit) const {
+    if (is_long(a, b)) return;
+    for_cells_of_line(a, b, 0, [&](std::int64_t x, std::int64_t y) {
+      if (const auto found = cells_.find(key(x, y)); found != cells_.end())
+        for (const std::size_t index : found->second)
+          visit(index, Point{static_cast<double>(x) * cell_, static_cast<double>(y) * cell_}, cell_);
+    });
+  }
+
  private:
+  static std::int64_t key(std::int64_t x, std::int64_t y) { return (x << 32) ^ (y & 0xFFFFFFFF); }
+  std::int64_t cell_of(double v) const { return static_cast<std::int64_t>(std::floor(v / cell_)); }
+
+  bool is_long(Point a, Point b) const {
+    constexpr double kMostCells = 8192;
+    return !((std::abs(b.x - a.x) + std::abs(b.y - a.y)) / cell_ <= kMostCells);
+  }
+
   template <class Visit>
   void for_cells(Point low, Point high, const Visit& visit) const {
-    const auto cell = [&](double v) { return static_cast<std::int64_t>(std::floor(v / cell_)); };
-    for (std::int64_t y = cell(low.y); y <= cell(high.y); ++y)
-      for (std::int64_t x = cell(low.x); x <= cell(high.x); ++x) visit((x << 32) ^ (y & 0xFFFFFFFF));
+    for (std::int64_t y = cell_of(low.y); y <= cell_of(high.y); ++y)
+      for (std::int64_t x = cell_of(low.x); x <= cell_of(high.x); ++x) visit(x, y);
+  }
+
+  // Row by row.
+  template <class Visit>
+  void for_cells_of_line(Point a, Point b, double margin, const Visit& visit) const {
+    if (a.y > b.y) std::swap(a, b);
+    const auto x_at = [&](double y) { return a.x + (b.x - a.x) * std::clamp((y - a.y) / (b.y - a.y), 0.0, 1.0); };
+    for (std::int64_t row = cell_of(a.y - margin); row <= cell_of(b.y + margin); ++row) {
+      const double low = static_cast<double>(row) * cell_;
+      const bool level = !(b.y > a.y);
+      const double from = level ? a.x : x_at(low - margin), to = level ? b.x : x_at(low + cell_ + margin);
+      for (std::int64_t x = cell_of(std::min(from, to) - margin); x <= cell_of(std::max(from, to) + margin); ++x)
+        visit(x, row);
+    }
   }
 
   double cell_;

@@ -11,7 +11,8 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kSame = 1e-3;  // ends closer than this are joined already
+constexpr double kSame = 1e-3;    // lines are longer; joins by half of it are told
+constexpr double kJoined = 1e-6;  // ends closer than this are joined already
 
 Point nearest_on(const Line& line, Point p) {
   const Point along = line.b - line.a;
@@ -30,13 +31,11 @@ std::optional<Point> crossing(const Line& line, const Line& other) {
 class Ends {
  public:
   explicit Ends(std::vector<Line> lines) : lines_(std::move(lines)) {
-    Grid grid(1.0);
-    for (std::size_t l = 0; l < lines_.size(); ++l) {
-      const Point margin{kTolerance_m, kTolerance_m};
-      grid.add(l, lowest(lines_[l].a, lines_[l].b) - margin, highest(lines_[l].a, lines_[l].b) + margin);
-    }
+    Grid grid(0.25);
+    for (std::size_t l = 0; l < lines_.size(); ++l) grid.add_line(l, lines_[l].a, lines_[l].b, kTolerance_m);
+    is_loose_.resize(2 * lines_.size());
     for (std::size_t e = 0; e < 2 * lines_.size(); ++e)
-      if (loose(e, grid)) loose_.push_back(e);
+      if (loose(e, grid)) loose_.push_back(e), is_loose_[e] = true;
     find_moves(grid);
   }
 
@@ -44,15 +43,27 @@ class Ends {
     std::ranges::sort(moves_, {}, &Move::by);
     std::vector<bool> done(2 * lines_.size());
     Joined out;
+    const auto move_to = [&](std::size_t end, Point target) {
+      const double by = distance(at(end), target);
+      if (distance(target, other(end)) < kSame) return;  // would make a point of it
+      at(end) = target;
+      if (by < kSame / 2) return;
+      ++out.ends;
+      out.farthest_m = std::max(out.farthest_m, by);
+    };
     for (const Move& move : moves_) {
       if (done[move.end]) continue;
       done[move.end] = true;
-      if (move.onto) done[*move.onto] = true;  // which stays where it is
-      const Point target = move.onto ? at(*move.onto) : move.to;
-      if (distance(target, other(move.end)) < kSame) continue;  // would make a point of it
-      at(move.end) = target;
-      ++out.ends;
-      out.farthest_m = std::max(out.farthest_m, move.by);
+      Point target = move.onto ? at(*move.onto) : move.to;
+      if (move.onto && !done[*move.onto]) {
+        // Both go on to where they meet, if that is near; else the other stays where it is.
+        const auto corner = crossing(lines_[move.end / 2], lines_[*move.onto / 2]);
+        const bool near = corner && is_loose_[*move.onto] && distance(*corner, at(move.end)) <= kTolerance_m &&
+                          distance(*corner, at(*move.onto)) <= kTolerance_m;
+        if (near) move_to(*move.onto, target = *corner);
+        done[*move.onto] = true;
+      }
+      move_to(move.end, target);
     }
     close_walls(done);
     out.lines = std::move(lines_);
@@ -74,7 +85,7 @@ class Ends {
     const Point p = at(end);
     bool meets = false;
     grid.visit(p, p, [&](std::size_t l) {
-      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kSame);
+      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kJoined);
     });
     return !meets;
   }
@@ -97,7 +108,8 @@ class Ends {
         const Point to = straight_on ? *meeting : nearest_on(lines_[l], p);
         better(to_line, {end, std::nullopt, to, distance(to, p)});
       });
-      if (to_end)
+      const bool on_line = to_line && to_line->by < kSame && !(to_end && to_end->by < kSame);
+      if (to_end && !on_line)
         moves_.push_back(*to_end);
       else if (to_line)
         moves_.push_back(*to_line);
@@ -110,12 +122,12 @@ class Ends {
       if (!done[end]) grid.add(end, at(end), at(end));
     std::vector<bool> closed(2 * lines_.size());
     for (const std::size_t end : loose_) {
-      if (done[end] || closed[end]) continue;
+      if (done[end] || closed[end] || lines_[end / 2].width >= kThinnestWall_m) continue;
       const Point p = at(end), outward = (p - other(end)) * (1 / distance(p, other(end)));
       std::optional<std::size_t> best;
       const Point reach{kThickestWall_m, kThickestWall_m};
       grid.visit(p - reach, p + reach, [&](std::size_t e) {
-        if (e / 2 == end / 2 || closed[e] || done[e]) return;
+        if (e / 2 == end / 2 || closed[e] || done[e] || lines_[e / 2].width >= kThinnestWall_m) return;
         const Point to = at(e) - p, way = (at(e) - other(e)) * (1 / distance(at(e), other(e)));
         const double wide = length(to);
         const bool side_by_side = wide >= kThinnestWall_m && wide <= kThickestWall_m && dot(way, outward) > 0.98 &&
@@ -130,6 +142,7 @@ class Ends {
 
   std::vector<Line> lines_;
   std::vector<std::size_t> loose_;  // ends that meet nothing: 2 l is the first of line l, 2 l + 1 the second
+  std::vector<bool> is_loose_;      // of all ends
   std::vector<Move> moves_;
 };
 

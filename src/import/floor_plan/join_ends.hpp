@@ -12,7 +12,7 @@ inline constexpr double kTolerance_m = 0.05;
 
 struct Joined {
   std::vector<Line> lines;
-  std::size_t ends = 0;   // that were moved by more than a millimetre
+  std::size_t ends = 0;   // that were moved by half a millimetre or more
   double farthest_m = 0;  // and how far at most
 };
 

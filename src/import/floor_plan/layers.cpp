@@ -16,34 +16,6 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (static_cast<unsigned char>(c) & 0x80) != 0;  // beyond ASCII: a letter
 }
 
-// In lower case: ASCII, and the letters of Latin-1, Latin Extended-A, Greek and Cyrillic that two bytes hold.
-std::string lower(const std::string& text) {
-  std::string out = text;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(out[i]);
-    if (byte >= 'A' && byte <= 'Z') out[i] = static_cast<char>(byte - 'A' + 'a');
-    if (byte < 0xC3 || byte > 0xD1 || i + 1 >= out.size()) continue;
-    const auto next = static_cast<unsigned char>(out[i + 1]);
-    unsigned code = ((byte & 0x1FU) << 6) | (next & 0x3FU);
-    if (code >= 0xC0 && code <= 0xDE && code != 0xD7)
-      code += 0x20;
-    else if (code >= 0x391 && code <= 0x3A9)
-      code += 0x20;
-    else if (code >= 0x410 && code <= 0x42F)
-      code += 0x20;
-    else if (code >= 0x100 && code <= 0x137 && code % 2 == 0)
-      code += 1;
-    else if (code >= 0x139 && code <= 0x148 && code % 2 == 1)
-      code += 1;
-    else if (code >= 0x14A && code <= 0x177 && code % 2 == 0)
-      code += 1;
-    out[i] = static_cast<char>(0xC0 | (code >> 6));
-    out[i + 1] = static_cast<char>(0x80 | (code & 0x3F));
-    ++i;
-  }
-  return out;
-}
-
 bool has(const std::string& name, Words words) {
   return std::ranges::any_of(words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
@@ -110,8 +82,36 @@ bool names_a_wall(const std::string& n) {
 
 }  // namespace
 
+std::string lower_case(const std::string& text) {
+  std::string out = text;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(out[i]);
+    if (byte >= 'A' && byte <= 'Z') out[i] = static_cast<char>(byte - 'A' + 'a');
+    if (byte < 0xC3 || byte > 0xD1 || i + 1 >= out.size()) continue;
+    const auto next = static_cast<unsigned char>(out[i + 1]);
+    // Two bytes.
+    unsigned code = ((byte & 0x1FU) << 6) | (next & 0x3FU);
+    if (code >= 0xC0 && code <= 0xDE && code != 0xD7)
+      code += 0x20;
+    else if (code >= 0x391 && code <= 0x3A9)
+      code += 0x20;
+    else if (code >= 0x410 && code <= 0x42F)
+      code += 0x20;
+    else if (code >= 0x100 && code <= 0x137 && code % 2 == 0)
+      code += 1;
+    else if (code >= 0x139 && code <= 0x148 && code % 2 == 1)
+      code += 1;
+    else if (code >= 0x14A && code <= 0x177 && code % 2 == 0)
+      code += 1;
+    out[i] = static_cast<char>(0xC0 | (code >> 6));
+    out[i + 1] = static_cast<char>(0x80 | (code & 0x3F));
+    ++i;
+  }
+  return out;
+}
+
 Kind kind_of(const std::string& name) {
-  const std::string n = lower(name);
+  const std::string n = lower_case(name);
   if (names_annotation(n)) return Kind::annotation;
   if (names_a_door(n)) return Kind::door;
   if (names_a_window(n)) return Kind::window;
@@ -121,7 +121,7 @@ Kind kind_of(const std::string& name) {
 }
 
 bool names_another_view(const std::string& text) {
-  const std::string n = lower(text);
+  const std::string n = lower_case(text);
   return has(n, {"elevation",       "ansicht",   "facade",   "façade",  "fassade",   "fachada", "alzado",
                  "alçado",          "prospetto", "elevação", "gevel",   "fasad",     "elewacj", "фасад",
                  "разрез",          "立面",      "剖面",     "立面図",  "roof plan", "dachauf", "dachdr",
@@ -130,7 +130,7 @@ bool names_another_view(const std::string& text) {
 }
 
 bool matches(const std::string& name, const std::string& pattern) {
-  return fnmatch(lower(pattern).c_str(), lower(name).c_str(), 0) == 0;
+  return fnmatch(lower_case(pattern).c_str(), lower_case(name).c_str(), 0) == 0;
 }
 
 }  // namespace vantage::floor_plan

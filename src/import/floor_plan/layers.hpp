@@ -8,6 +8,9 @@
 
 namespace vantage::floor_plan {
 
+// ASCII, and letters of Latin-1, Latin Extended-A, Greek and Cyrillic.
+std::string lower_case(const std::string& text);
+
 // By words of some fifteen languages in the name of a layer or block (UTF-8).
 Kind kind_of(const std::string& name);
 

@@ -31,23 +31,71 @@ struct Cap {
   }
 };
 
-std::vector<Cap> caps_of(const Shape& solid) {
+// A ring without corners on its straight sides.
+std::vector<Point> corners_of(const std::vector<Point>& ring) {
+  constexpr double kStraight_m = 5e-4;
+  std::vector<Point> out;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point before = out.empty() ? ring.back() : out.back(), after = ring[(i + 1) % ring.size()];
+    const double chord = distance(before, after);
+    if (!(chord > 0) || std::abs(cross(ring[i] - before, after - before)) > kStraight_m * chord ||
+        dot(ring[i] - before, after - ring[i]) < 0)
+      out.push_back(ring[i]);
+  }
+  return out;
+}
+
+// Jambs may have rebates and frames: ends of some steps, no deeper than kDeepestJamb.
+constexpr std::size_t kMostJambSides = 7;
+constexpr double kDeepestJamb = 0.12;
+
+// The cap of a wall whose side ends in ring[i], and goes back from ring[i + sides]; nothing if no wall ends there.
+std::optional<Cap> cap_at(const std::vector<Point>& ring, std::size_t i, std::size_t sides) {
   constexpr double kLeastSide = 0.04, kStraight = 0.93;
-  std::vector<Cap> caps;
-  for (const auto& ring : rings(solid)) {
-    const std::size_t n = ring.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point before = ring[(i + n - 1) % n], a = ring[i], b = ring[(i + 1) % n], after = ring[(i + 2) % n];
-      const double wide = distance(a, b), left = distance(before, a), right = distance(b, after);
-      if (wide < kThinnestWall_m || wide > kThickestWall_m || left < kLeastSide || right < kLeastSide) continue;
-      const Point in = (a - before) * (1 / left), over = (b - a) * (1 / wide), out = (after - b) * (1 / right);
-      if (cross(in, over) < kStraight || cross(over, out) < kStraight) continue;  // both corners stand out
-      // A column has such sides all around; a wall goes on, or bends where its end begins.
-      const Point further = ring[(i + n - 2) % n], last = ring[(i + 3) % n];
-      const bool bends = cross(a - before, before - further) > 0 || cross(last - after, after - b) > 0;
-      if (!bends && std::max(left, right) < 2 * wide) continue;
-      caps.push_back({a, b});
+  const std::size_t n = ring.size();
+  const auto corner = [&](std::size_t k) { return ring[(i + n + k) % n]; };
+  const Point before = ring[(i + n - 1) % n], a = corner(0), b = corner(sides), after = corner(sides + 1);
+  const double left = distance(before, a), right = distance(b, after);
+  if (left < kLeastSide || right < kLeastSide) return {};
+  const Point in = (a - before) * (1 / left), out = (after - b) * (1 / right);
+  const double wide = sides == 1 ? distance(a, b) : cross(in, b - a);
+  if (wide < kThinnestWall_m || wide > kThickestWall_m) return {};
+  double deepest = std::max(0.0, dot(b - a, in)), shallowest = std::min(0.0, dot(b - a, in));
+  if (sides == 1) {
+    const Point over = (b - a) * (1 / wide);
+    if (cross(in, over) < kStraight || cross(over, out) < kStraight) return {};  // both corners stand out
+  } else {
+    if (dot(in, out) > -0.98) return {};
+    for (std::size_t k = 1; k < sides; ++k) {
+      deepest = std::max(deepest, dot(corner(k) - a, in)), shallowest = std::min(shallowest, dot(corner(k) - a, in));
+      const double across = cross(in, corner(k) - a);
+      if (across < -kDeepestJamb || across > wide + kDeepestJamb) return {};
     }
+    if (deepest - shallowest > kDeepestJamb) return {};
+  }
+  // A column has such sides all around; a wall goes on, or bends where its end begins.
+  const Point further = ring[(i + n - 2) % n], last = corner(sides + 2);
+  const bool bends = cross(a - before, before - further) > 0 || cross(last - after, after - b) > 0;
+  if (!bends && std::max(left, right) < 2 * wide) return {};
+  if (sides == 1) return Cap{a, b};
+  return Cap{a + in * deepest, b + in * (deepest - dot(b - a, in))};
+}
+
+std::vector<Cap> caps_of(const Shape& solid) {
+  std::vector<Cap> caps;
+  for (const auto& whole : rings(solid)) {
+    const auto ring = corners_of(whole);
+    std::vector<bool> taken(ring.size());  // sides of caps
+    for (std::size_t sides = 1; sides <= kMostJambSides && sides + 3 <= ring.size(); ++sides)
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        bool free = true;
+        for (std::size_t k = 0; k < sides; ++k) free = free && !taken[(i + k) % ring.size()];
+        if (!free) continue;
+        const auto cap = cap_at(ring, i, sides);
+        if (!cap) continue;
+        for (std::size_t k = 0; k < sides; ++k) taken[(i + k) % ring.size()] = true;
+        caps.push_back(*cap);
+      }
   }
   return caps;
 }
@@ -58,8 +106,7 @@ class Finder {
       : solid_(clone(solid)), drawing_(drawing), swings_(swings), swing_used_(swings.size()) {
     for (const auto& ring : rings(solid))
       for (std::size_t i = 0; i < ring.size(); ++i) edges_.push_back({ring[i], ring[(i + 1) % ring.size()], {}});
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-      edge_grid_.add(e, lowest(edges_[e].a, edges_[e].b), highest(edges_[e].a, edges_[e].b));
+    for (std::size_t e = 0; e < edges_.size(); ++e) edge_grid_.add_line(e, edges_[e].a, edges_[e].b, 0);
     for (std::size_t s = 0; s < swings.size(); ++s) {
       const Point reach{swings[s].width, swings[s].width};
       swing_grid_.add(s, swings[s].hinge - reach, swings[s].hinge + reach);
@@ -117,7 +164,7 @@ class Finder {
       grid.visit(far - Point{0.7, 0.7}, far + Point{0.7, 0.7}, [&](std::size_t d) {
         if (d == c || taken[d] || dot(caps[d].outward(), way) > -0.97) return;
         const Point to = caps[d].middle() - from;
-        if (std::abs(dot(to, way) - hit.at) <= 0.02 &&
+        if (std::abs(dot(to, way) - hit.at) <= kDeepestJamb &&
             std::abs(cross(way, to)) <= std::max(cap.width(), caps[d].width()) / 2)
           partner = d;
       });
@@ -316,10 +363,7 @@ class Finder {
     };
     constexpr double kTouch = 0.03;
     Grid grid(1.0);
-    for (std::size_t i = 0; i < loose.size(); ++i) {
-      const Point margin{kThickestWall_m, kThickestWall_m};
-      grid.add(i, lowest(loose[i].first, loose[i].second) - margin, highest(loose[i].first, loose[i].second) + margin);
-    }
+    for (std::size_t i = 0; i < loose.size(); ++i) grid.add_line(i, loose[i].first, loose[i].second, kThickestWall_m);
     for (std::size_t i = 0; i < loose.size(); ++i)
       for (const Point& p : {loose[i].first, loose[i].second, (loose[i].first + loose[i].second) * 0.5})
         grid.visit(p, p, [&](std::size_t j) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -91,13 +92,13 @@ Shape multipoint(std::span<const Point> points) {
   return collected(GEOS_MULTIPOINT, std::move(shapes));
 }
 
-Shape buffered(const Shape& shape, double by, int cap) {
+constexpr double kMitre = 2;
+Shape buffered(const Shape& shape, double by, int cap, double mitre = kMitre) {
   GEOSBufferParams* given = GEOSBufferParams_create_r(context());
   constexpr int kQuarter = 4;
-  constexpr double kMitre = 2;
   GEOSBufferParams_setEndCapStyle_r(context(), given, cap);
   GEOSBufferParams_setJoinStyle_r(context(), given, GEOSBUF_JOIN_MITRE);
-  GEOSBufferParams_setMitreLimit_r(context(), given, kMitre);
+  GEOSBufferParams_setMitreLimit_r(context(), given, mitre);
   GEOSBufferParams_setQuadrantSegments_r(context(), given, kQuarter);
   GEOSGeometry* out = GEOSBufferWithParams_r(context(), shape.get(), given, by);
   GEOSBufferParams_destroy_r(context(), given);
@@ -128,6 +129,16 @@ Shape polygon(std::span<const Point> ring) {
   return areas(check(GEOSMakeValid_r(context(), raw.get())));
 }
 
+Shape disc(Point centre, double radius) {
+  constexpr int kCorners = 16;
+  std::vector<Point> ring;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kCorners;
+    ring.push_back(centre + Point{std::cos(angle), std::sin(angle)} * radius);
+  }
+  return polygon(ring);
+}
+
 Shape lines(std::span<const Line> lines) {
   std::vector<Shape> shapes;
   for (const Line& line : lines) {
@@ -151,8 +162,31 @@ Shape common(const Shape& a, const Shape& b) {
 Shape without(const Shape& a, const Shape& b) {
   return check(GEOSDifferencePrec_r(context(), a.get(), b.get(), kGrid));
 }
+Shape odd(std::span<const Shape> shapes) {
+  if (shapes.empty()) return no_area();
+  if (shapes.size() == 1) return clone(shapes[0]);
+  const std::size_t half = shapes.size() / 2;
+  return areas(
+      check(GEOSSymDifferencePrec_r(context(), odd(shapes.first(half)).get(), odd(shapes.subspan(half)).get(), kGrid)));
+}
 Shape grown(const Shape& shape, double by) { return buffered(shape, by, GEOSBUF_CAP_SQUARE); }
-Shape strip(const Shape& lines, double half_width) { return buffered(lines, half_width, GEOSBUF_CAP_FLAT); }
+Shape closed(const Shape& shape, double gap) {
+  constexpr double kSharpest = 10;  // so that corners of rooms are not filled
+  const Shape wider = buffered(shape, gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
+  return buffered(wider, -gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
+}
+Shape straightened(const Shape& shape) {
+  return areas(check(GEOSTopologyPreserveSimplify_r(context(), shape.get(), kGrid)));
+}
+Shape chained(const Shape& lines) { return check(GEOSLineMerge_r(context(), lines.get())); }
+// Line by line: GEOS widens many that overlap in quadratic time.
+Shape strip(const Shape& lines, double half_width) {
+  std::vector<Shape> parts;
+  for_parts(lines.get(), [&](const GEOSGeometry* line) {
+    parts.push_back(buffered(check(GEOSGeom_clone_r(context(), line)), half_width, GEOSBUF_CAP_FLAT));
+  });
+  return straightened(areas(united(std::move(parts))));
+}
 Shape around(std::span<const Point> points) {
   return check(GEOSMinimumRotatedRectangle_r(context(), multipoint(points).get()));
 }

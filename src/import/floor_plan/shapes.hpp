@@ -24,12 +24,17 @@ inline constexpr double kGrid = 1e-4;
 
 Shape no_area();
 Shape polygon(std::span<const Point> ring);  // empty for fewer than three points
+Shape disc(Point centre, double radius);     // sixteen corners on the circle
 Shape lines(std::span<const Line> lines);    // each as a line string
 Shape united(std::vector<Shape> shapes);     // lines are cut where they meet
 Shape united(const Shape& a, const Shape& b);
 Shape common(const Shape& a, const Shape& b);
 Shape without(const Shape& a, const Shape& b);
+Shape odd(std::span<const Shape> shapes);            // what an odd number of them covers
 Shape grown(const Shape& shape, double by);          // shrunk if negative; corners stay sharp
+Shape closed(const Shape& shape, double gap);        // its gaps of up to this width filled
+Shape straightened(const Shape& shape);              // without corners on its straight sides
+Shape chained(const Shape& lines);                   // joined where two ends meet
 Shape strip(const Shape& lines, double half_width);  // ends are cut off flat
 Shape around(std::span<const Point> points);         // the smallest rectangle, turned as it may be
 Shape hull(std::span<const Point> points);

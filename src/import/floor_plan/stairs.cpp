@@ -137,9 +137,9 @@ void add_steps(const Flight& flight, double low_m, double riser_m, std::vector<S
   }
 }
 
-class Finder {
+class StairFinder {
  public:
-  Finder(const StairStorey& lower, const StairStorey& upper, double rise_m)
+  StairFinder(const StairStorey& lower, const StairStorey& upper, double rise_m)
       : lower_(lower), upper_(upper), below_(lower), above_(upper), rise_m_(rise_m) {}
 
   StairsFound find() {
@@ -324,7 +324,7 @@ std::vector<Flight> find_flights(const Drawing& drawing) {
 }
 
 StairsFound find_stairs(const StairStorey& lower, const StairStorey& upper, double rise_m) {
-  return Finder(lower, upper, rise_m).find();
+  return StairFinder(lower, upper, rise_m).find();
 }
 
 }  // namespace vantage::floor_plan

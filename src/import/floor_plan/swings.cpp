@@ -2,7 +2,6 @@
 #include "import/floor_plan/swings.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
 #include "import/floor_plan/grid.hpp"
@@ -10,7 +9,6 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNarrowestLeaf = 0.45, kWidestLeaf = 1.6;  // leaves, cabinets' left out
 constexpr double kLeafThickness = 0.08;
 
@@ -35,16 +33,31 @@ bool is_leaf(const Line& line, const Swing& swing) {
   });
 }
 
-// The line from the hinge to about where the arc begins or ends: a door that is drawn half open.
-std::optional<std::size_t> leaf_of(const Drawing& drawing, const Arc& arc) {
-  constexpr double kNear = 0.15;
-  const auto from_hinge = [&](Point a, Point b) {
-    return distance(a, arc.centre) <= kNear && (distance(b, arc.start) <= kNear || distance(b, arc.end()) <= kNear);
-  };
-  for (std::size_t l = 0; l < drawing.lines.size(); ++l)
-    if (const Line& line = drawing.lines[l]; from_hinge(line.a, line.b) || from_hinge(line.b, line.a)) return l;
-  return std::nullopt;
-}
+// Finds the line from the hinge to about where an arc begins or ends: a door that is drawn half open.
+class Leaves {
+ public:
+  explicit Leaves(const std::vector<Line>& lines) : lines_(lines) {
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      for (const Point& end : {lines[l].a, lines[l].b}) grid_.add(l, end, end);
+  }
+  std::optional<std::size_t> of(const Arc& arc) const {
+    constexpr double kNear = 0.15;
+    const auto from_hinge = [&](Point a, Point b) {
+      return distance(a, arc.centre) <= kNear && (distance(b, arc.start) <= kNear || distance(b, arc.end()) <= kNear);
+    };
+    std::optional<std::size_t> leaf;  // the first of several
+    const Point reach{kNear, kNear};
+    grid_.visit(arc.centre - reach, arc.centre + reach, [&](std::size_t l) {
+      const Line& line = lines_[l];
+      if ((!leaf || l < *leaf) && (from_hinge(line.a, line.b) || from_hinge(line.b, line.a))) leaf = l;
+    });
+    return leaf;
+  }
+
+ private:
+  const std::vector<Line>& lines_;
+  Grid grid_{0.5};
+};
 
 }  // namespace
 
@@ -54,8 +67,7 @@ bool may_swing(const Arc& arc) {
 }
 
 std::vector<Swing> take_swings(Drawing& drawing) {
-  constexpr std::size_t kMostLooked = 2000;
-  std::size_t looked = 0;
+  std::optional<Leaves> leaves;  // few drawings need them
   std::vector<Swing> swings;
   std::vector<bool> is_taken(drawing.lines.size());
   std::erase_if(drawing.arcs, [&](const Arc& arc) {
@@ -65,12 +77,13 @@ std::vector<Swing> take_swings(Drawing& drawing) {
         kind == Kind::stair)
       return false;
     if (!may_swing(arc)) {
-      if (sweep < 10 * kDegree || sweep > 55 * kDegree || looked++ >= kMostLooked) return false;
-      const auto leaf = leaf_of(drawing, arc);
+      if (sweep < 10 * kDegree || sweep > 55 * kDegree) return false;
+      if (!leaves) leaves.emplace(drawing.lines);
+      const auto leaf = leaves->of(arc);
       if (!leaf) return false;
       is_taken[*leaf] = true;
     }
-    swings.push_back({arc.centre, {arc.start, arc.end()}, radius});
+    swings.push_back({arc.centre, {arc.start, arc.end()}, radius, arc.from.layer});
     return true;
   });
   Grid grid(1.0);

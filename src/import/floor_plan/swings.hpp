@@ -12,6 +12,7 @@ namespace vantage::floor_plan {
 struct Swing {
   Point hinge, ends[2];
   double width = 0;
+  int layer = 0;  // in Drawing::layers
 };
 
 // Whether an arc turns as far as a door does. Its radius may be of any unit.

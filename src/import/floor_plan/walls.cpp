@@ -6,14 +6,29 @@
 #include <optional>
 #include <set>
 
+#include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/join_ends.hpp"
 #include "import/program.hpp"
 
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kCurve_m = 0.005;                        // by how much chords stray from arcs
 constexpr double kSmallest_m2 = 1.2, kLargest_m2 = 2000;  // rooms, where layers are judged by them
+
+constexpr double kBeside_m = 0.01;  // lines so near a wall are its own
+
+// How many ends of lines meet at a point.
+class Meetings {
+ public:
+  explicit Meetings(const std::vector<Line>& lines) {
+    for (const Line& line : lines) ++count_[key(line.a)], ++count_[key(line.b)];
+  }
+  int at(Point p) const { return count_.at(key(p)); }
+
+ private:
+  static std::pair<long, long> key(Point p) { return {std::lround(p.x / 1e-3), std::lround(p.y / 1e-3)}; }
+  std::map<std::pair<long, long>, int> count_;
+};
 
 std::vector<Line> lines_of(const Drawing& drawing, const auto& wanted) {
   std::vector<Line> out;
@@ -29,8 +44,34 @@ std::vector<Line> lines_of(const Drawing& drawing, const auto& wanted) {
 
 // Whether nothing as wide as kThickestWall_m fits in.
 bool is_wall(const Shape& face) {
+  const Bounds box = bounds(face);
+  if (std::min(box.high.x - box.low.x, box.high.y - box.low.y) <= kThickestWall_m) return true;
   if (2 * area(face) / perimeter(face) > kThickestWall_m) return false;  // the inscribed circle is no smaller
   return is_empty(grown(face, -kThickestWall_m / 2));
+}
+
+// Whether lines cross so often that their faces would be too many, as those of an exploded hatch.
+bool crosses_often(const std::vector<Line>& lines_in) {
+  constexpr std::size_t kMost = 100'000;
+  constexpr double kEnd_m = 0.01;  // lines that end at others do not cross them
+  const auto amid = [](double share, double size) { return share * size > kEnd_m && (1 - share) * size > kEnd_m; };
+  Grid grid(1.0);
+  std::size_t crossings = 0;
+  for (std::size_t l = 0; l < lines_in.size() && crossings <= kMost; ++l) {
+    const Line& line = lines_in[l];
+    const Point along = line.b - line.a;
+    grid.visit_line(line.a, line.b, [&](std::size_t k, Point low, double cell) {
+      const Point other = lines_in[k].b - lines_in[k].a, between = lines_in[k].a - line.a;
+      const double turn = cross(along, other);
+      if (turn == 0) return;
+      const double at = cross(between, other) / turn, on = cross(between, along) / turn;
+      if (!amid(at, length(along)) || !amid(on, length(other))) return;
+      const Point p = line.a + along * at;  // which lies in one cell
+      crossings += p.x >= low.x && p.x < low.x + cell && p.y >= low.y && p.y < low.y + cell;
+    });
+    grid.add_line(l, line.a, line.b, 0);
+  }
+  return crossings > kMost;
 }
 
 struct Faces {
@@ -49,44 +90,90 @@ Faces faces_of(const std::vector<Line>& lines_in) {
 
 // Pieces of lines that reach out of `solid`, without stubs that are no longer than lines miss each other by.
 std::vector<Line> single_lines(const Shape& cut, const Shape& solid) {
-  const Shape out = without(cut, grown(solid, 0.01));
+  const Shape out = without(cut, grown(solid, kBeside_m));
   std::vector<Line> rest;
   for (const Line& line : pieces(out))
     if (distance(line.a, line.b) > 1e-3) rest.push_back(line);
   // A stub ends where nothing else does.
-  std::map<std::pair<long, long>, int> meetings;
-  const auto key = [](Point p) { return std::pair(std::lround(p.x / 1e-3), std::lround(p.y / 1e-3)); };
-  for (const Line& line : rest) ++meetings[key(line.a)], ++meetings[key(line.b)];
+  const Meetings meetings(rest);
   std::erase_if(rest, [&](const Line& line) {
-    const bool loose = meetings[key(line.a)] == 1 || meetings[key(line.b)] == 1;
+    const bool loose = meetings.at(line.a) == 1 || meetings.at(line.b) == 1;
     return loose && distance(line.a, line.b) <= 2 * kTolerance_m;
   });
   return rest;
 }
 
+// Walls of single lines. Their ends at other walls reach into these.
+Shape single_walls(const std::vector<Line>& rest, const Shape& solid) {
+  constexpr double kHalf_m = kSingleLine_m / 2;
+  const Region beside(grown(solid, 1.5 * kBeside_m));
+  const Meetings meetings(rest);
+  std::vector<Line> longer = rest;
+  std::vector<Shape> all;
+  for (Line& line : longer) {
+    const Point further = (line.b - line.a) * ((kBeside_m + kHalf_m) / distance(line.a, line.b));
+    const bool from_wall = meetings.at(line.a) == 1 && beside.holds(line.a),
+               to_wall = meetings.at(line.b) == 1 && beside.holds(line.b);
+    for (const Point& end : {line.a, line.b})
+      if (meetings.at(end) > 2) all.push_back(disc(end, kHalf_m));  // fills what flat ends leave between them
+    if (from_wall) line.a = line.a - further;
+    if (to_wall) line.b = line.b + further;
+  }
+  all.push_back(strip(chained(lines(longer)), kHalf_m));
+  // What has reached through a wall comes out of it as a part of its own.
+  Grid grid(1.0);
+  for (std::size_t l = 0; l < rest.size(); ++l) grid.add(l, rest[l].a, rest[l].a);
+  std::vector<Shape> kept;
+  for (Shape& part : polygons(without(areas(united(std::move(all))), solid))) {
+    const Bounds box = bounds(part);
+    const Region region(std::move(part));
+    bool holds = false;
+    grid.visit(box.low, box.high, [&](std::size_t l) {
+      holds = holds || region.holds(rest[l].a) || region.holds((rest[l].a + rest[l].b) * 0.5);
+    });
+    if (holds) kept.push_back(clone(region.shape()));
+  }
+  return areas(united(std::move(kept)));
+}
+
 Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const auto& wanted, bool by_name) {
-  Faces found = faces_of(lines_in);
+  std::vector<Line> thin;
+  std::map<long, std::vector<Line>> wide;  // by millimetres
+  for (const Line& line : lines_in)
+    (line.width < kThinnestWall_m ? thin : wide[std::lround(1000 * line.width)]).push_back(line);
+  Faces found = faces_of(thin);
   std::vector<Shape> parts = std::move(found.walls);
+  for (const auto& [width_mm, own] : wide)
+    parts.push_back(strip(chained(lines(own)), static_cast<double>(width_mm) / 2000));
   for (const Area& filled : drawing.areas) {
     if (!wanted(filled.from)) continue;
-    Shape shape = no_area();
-    for (const auto& ring : filled.rings) {  // rings within rings are holes
-      const Shape part = polygon(ring);
-      const Shape both = common(shape, part);
-      shape = areas(without(united(shape, part), both));
-    }
+    std::vector<Shape> rings;
+    for (const auto& ring : filled.rings) rings.push_back(polygon(ring));
+    Shape shape = odd(rings);
     // Elsewhere a hatch may be that of a floor.
     if (!is_empty(shape) && (by_name || is_wall(shape))) parts.push_back(std::move(shape));
   }
-  Shape solid = areas(united(std::move(parts)));
-  const auto rest = single_lines(found.cut, solid);
-  if (!rest.empty()) {
-    std::vector<Shape> all;
-    all.push_back(std::move(solid));
-    all.push_back(strip(lines(rest), kSingleLine_m / 2));
-    solid = areas(united(std::move(all)));
-  }
+  Shape solid = straightened(areas(united(std::move(parts))));
+  if (const auto rest = single_lines(found.cut, solid); !rest.empty())
+    solid = straightened(united(solid, single_walls(rest, solid)));
   return solid;
+}
+
+// Fills what walls miss each other by, with their ends drawn.
+void fill_gaps(Walls& walls) {
+  constexpr double kLeast_m2 = 1e-5;  // rounding leaves less
+  std::vector<Shape> all;
+  for (Shape& gap : polygons(without(closed(walls.solid, kTolerance_m), walls.solid))) {
+    if (area(gap) < kLeast_m2) continue;
+    const auto corners = outer_ring(around(outer_ring(gap)));
+    if (corners.size() != 4) continue;
+    const double wide = std::min(distance(corners[0], corners[1]), distance(corners[1], corners[2]));
+    ++walls.filled_gaps, walls.widest_gap_m = std::max(walls.widest_gap_m, wide);
+    all.push_back(std::move(gap));
+  }
+  if (all.empty()) return;
+  all.push_back(std::move(walls.solid));
+  walls.solid = areas(united(std::move(all)));
 }
 
 // How much lines look like those of walls: rooms that they enclose, and the length of double lines.
@@ -108,7 +195,7 @@ std::set<int> enclosing_layers(const Drawing& drawing) {
   constexpr std::size_t kMostLines = 100'000;
   std::optional<std::pair<double, int>> best;
   for (const auto& [layer, own] : by_layer) {
-    if (own.size() > kMostLines) continue;
+    if (own.size() > kMostLines || crosses_often(own)) continue;
     const double score = likeness(own);
     if (score > 0 && (!best || score > best->first)) best = {score, layer};
   }
@@ -144,9 +231,15 @@ Walls find_walls(const Drawing& drawing) {
                             (names.empty() ? "" : " (it has " + names + ")"));
   }
   for (const int layer : layers) out.layers.push_back(drawing.layers[static_cast<std::size_t>(layer)]);
+  if (crosses_often(own))
+    throw importer::Refused(
+        "the lines of its walls cross more than 100,000 times, as those of an exploded hatch do (layer " +
+        out.layers.front() + (out.layers.size() > 1 ? ", …" : "") +
+        "); leave these out, or name the layers of walls with the setting wall-layer");
   Joined joined = join_ends(std::move(own));
   out.joined_ends = joined.ends, out.farthest_join_m = joined.farthest_m;
   out.solid = solid_of(drawing, joined.lines, wanted, out.by_name);
+  fill_gaps(out);
   return out;
 }
 

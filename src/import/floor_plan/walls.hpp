@@ -19,6 +19,8 @@ struct Walls {
   bool by_name = false;             // whether names tell these
   std::size_t joined_ends = 0;
   double farthest_join_m = 0;
+  std::size_t filled_gaps = 0;  // between walls
+  double widest_gap_m = 0;
 };
 
 // Walls of a drawing in metres, by lines of Kind::wall, or of the layers that enclose most rooms if there are none.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts a building from web-ifc to the nodes, meshes and materials of a glTF.
+// Converts buildings from web-ifc to the nodes, meshes and materials of one glTF.
 import { Glb } from "./glb.mjs";
-import { inverse, product, transformed } from "./matrix.mjs";
+import { determinant, identity, inverse, product, transformed } from "./matrix.mjs";
 import { box, footprint } from "./rooms.mjs";
 
 // Products without a body: openings, air, drawings.
@@ -9,99 +9,43 @@ const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoid
   "IfcExternalSpatialElement", "IfcVirtualElement", "IfcAnnotation", "IfcGrid"]);
 const DOORS = new Set(["IfcDoor", "IfcDoorStandardCase"]);
 
+// Where spaces and what they are in have their long names.
+const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7], ["IfcBuildingStorey", 7], ["IfcSpace", 7]]);
+
+// Share of a solid's surface that may be missing: rounding.
+const OPEN = 1e-4;
+
 const each = (ids, visit) => { for (let i = 0; i < ids.size(); ++i) visit(ids.get(i)); };
 
-export class Building {
-  constructor(ifc, api, model) {
-    Object.assign(this, { ifc, api, model });
+// What several models become together.
+export class Site {
+  constructor() {
     this.glb = new Glb();
     this.nodes = [];
     this.meshes = [];
     this.materials = [];
-    this.nodeOf = new Map();      // by express id
-    this.shapes = new Map();      // mesh and place, by node
-    this.meshOf = new Map();      // by content
     this.materialOf = new Map();  // by colour
     this.roots = [];
-    this.parents = this.#parents();
+    this.notes = [];
+    this.shown = new Set();       // GlobalIds of products with a shape
+    this.shapes = new Map();      // mesh and place, by node
+    this.extent = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
+    this.crs = "";
   }
 
   toGlb() {
-    const shown = new Set();
-    this.api.StreamAllMeshes(this.model, (mesh) => { if (this.#addProduct(mesh)) shown.add(mesh.expressID); });
-    if (shown.size === 0) throw new Error("it holds no product with a shape; export the model with its geometry");
-    this.#addRooms();
+    if (this.shapes.size === 0) throw new Error("it holds no product with a shape; export the model with its geometry");
     this.#addShapes();
     const glass = this.materials.some((material) => material.alphaMode);
     return this.glb.bytes({
       asset: {
         version: "2.0", generator: "vantage-import-ifc",
-        extras: { vantage: { unit: "m", up: "y" }, notes: this.#notes(shown) },
+        extras: { vantage: { unit: "m", up: "y", ...(this.crs ? { crs: this.crs } : {}) }, notes: this.notes },
       },
       ...(glass ? { extensionsUsed: ["KHR_materials_transmission"] } : {}),
       scene: 0, scenes: [{ nodes: this.roots }], nodes: this.nodes, meshes: this.meshes,
       ...(this.materials.length > 0 ? { materials: this.materials } : {}),
     });
-  }
-
-  // Parent of each element: its whole, storey or building.
-  #parents() {
-    const { ifc, api, model } = this, parents = new Map();
-    const collect = (type, whole, parts) => each(api.GetLineIDsWithType(model, type), (id) => {
-      const relation = api.GetLine(model, id);
-      for (const part of relation[parts] ?? [])
-        if (part && relation[whole] && !parents.has(part.value)) parents.set(part.value, relation[whole].value);
-    });
-    collect(ifc.IFCRELAGGREGATES, "RelatingObject", "RelatedObjects");
-    collect(ifc.IFCRELNESTS, "RelatingObject", "RelatedObjects");
-    collect(ifc.IFCRELCONTAINEDINSPATIALSTRUCTURE, "RelatingStructure", "RelatedElements");
-    return parents;
-  }
-
-  #className(id) {
-    return this.api.GetNameFromTypeCode(this.api.GetLineType(this.model, id));
-  }
-
-  // Node of an element, below those of its parents.
-  #node(id, visiting = new Set()) {
-    if (this.nodeOf.has(id)) return this.nodeOf.get(id);
-    visiting.add(id);
-    const line = this.api.GetLine(this.model, id) ?? {}, type = this.#className(id);
-    const name = (line.Name?.value ?? "").replace(/\s+/g, " ").trim(), key = line.GlobalId?.value ?? "";
-    const vantage = { class: type, ...(name ? { name } : {}), ...(key ? { id: key } : {}) };
-    if (DOORS.has(type)) vantage.door = true;
-    const longName = line.LongName?.value?.trim();
-    if (longName) vantage.long_name = longName;
-    const index = this.nodes.push({ name: [type, name, key].filter(Boolean).join(" "), extras: { vantage } }) - 1;
-    this.nodeOf.set(id, index);
-    const parent = this.parents.get(id);
-    if (parent === undefined || visiting.has(parent)) {
-      this.roots.push(index);
-    } else {
-      const above = this.nodes[this.#node(parent, visiting)];
-      (above.children ??= []).push(index);
-    }
-    return index;
-  }
-
-  #addProduct(mesh) {
-    const { expressID: id, geometries } = mesh;
-    if (NO_BODY.has(this.#className(id))) return false;
-    const parts = [];
-    each(geometries, (part) => parts.push({
-      geometry: part.geometryExpressID, colour: [part.color.x, part.color.y, part.color.z, part.color.w],
-      place: Array.from(part.flatTransformation),
-    }));
-    if (parts.length === 0 || !parts.every((part) => part.place.every(Number.isFinite))) return false;
-    // Equal products share a mesh if their parts lie equally to the first.
-    const back = inverse(parts[0].place);
-    const place = back ? parts[0].place : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...parts[0].place.slice(12)];
-    const toFirst = back ?? inverse(place);
-    for (const part of parts) part.place = product(toFirst, part.place);
-    const index = this.#mesh(parts);
-    if (index < 0) return false;
-    this.shapes.set(this.#node(id), { mesh: index, matrix: place });
-    return true;
   }
 
   // A whole passes no transform to its parts: its own shape, if any, is a node below it.
@@ -113,42 +57,8 @@ export class Building {
     }
   }
 
-  #mesh(parts) {
-    const key = parts.map((part) => [part.geometry, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
-    if (this.meshOf.has(key)) return this.meshOf.get(key);
-    const byMaterial = new Map();
-    for (const part of parts) {
-      const { positions, indices } = this.#geometry(part.geometry, part.place);
-      if (indices.length === 0) continue;
-      const material = this.#material(part.colour);
-      if (!byMaterial.has(material)) byMaterial.set(material, { positions: [], indices: [] });
-      const all = byMaterial.get(material), first = all.positions.length / 3;
-      for (const value of positions) all.positions.push(value);
-      for (const value of indices) all.indices.push(value + first);
-    }
-    const primitives = [...byMaterial].map(([material, { positions, indices }]) => ({
-      attributes: { POSITION: this.glb.positions(Float32Array.from(positions)) },
-      indices: this.glb.indices(Uint32Array.from(indices)), ...(material >= 0 ? { material } : {}),
-    }));
-    const index = primitives.length === 0 ? -1 : this.meshes.push({ primitives }) - 1;
-    this.meshOf.set(key, index);
-    return index;
-  }
-
-  // Vertices come with a normal each, already placed.
-  #geometry(id, place) {
-    const { api, model } = this, geometry = api.GetGeometry(model, id);
-    const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize());
-    const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
-    const positions = [];
-    for (let v = 0; v + 5 < vertices.length; v += 6) positions.push(...transformed(place, ...vertices.subarray(v, v + 3)));
-    geometry.delete();
-    const sound = positions.every(Number.isFinite) && indices.every((index) => index < positions.length / 3);
-    return sound ? { positions, indices } : { positions: [], indices: [] };
-  }
-
   // -1 if the product has no colour of its own: web-ifc makes that white.
-  #material(colour) {
+  material(colour) {
     if (colour.every((value) => value === 1)) return -1;
     const key = colour.join(" ");
     if (this.materialOf.has(key)) return this.materialOf.get(key);
@@ -161,32 +71,202 @@ export class Building {
     this.materialOf.set(key, index);
     return index;
   }
+}
+
+// Adds one model to a site.
+export class Building {
+  // `place` takes the model, in metres with Y up, to the site.
+  constructor(site, step, place = identity()) {
+    Object.assign(this, { site, step, place, ifc: step.ifc, api: step.api, model: step.model });
+    this.nodeOf = new Map();  // by express id
+    this.meshOf = new Map();  // by content: its index, and the items that have a surface
+    this.parents = this.#parents();
+    this.opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
+    this.twice = [];
+  }
+
+  hasBody(id) {
+    return !NO_BODY.has(this.step.className(id));
+  }
+
+  // Adds a product. `parts`: lists of geometries, one of each of which must have a surface; `isClosed` tells
+  // geometries that have to be. Returns how many have no surface, and how many are open; null if the product is in the site already.
+  add(id, parts, isClosed) {
+    const guid = this.step.args(id)[0], pieces = [];
+    let index = -1, place = null, shown = new Map();
+    const take = (mesh) => {
+      each(mesh.geometries, (part) => pieces.push({
+        geometry: part.geometryExpressID, colour: [part.color.x, part.color.y, part.color.z, part.color.w],
+        place: Array.from(part.flatTransformation),
+      }));
+      const sound = pieces.filter((part) => part.place.every(Number.isFinite));
+      if (sound.length === 0) return;
+      // Equal products share a mesh if their parts lie equally to the first.
+      const back = inverse(sound[0].place);
+      place = back ? sound[0].place : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...sound[0].place.slice(12)];
+      const toFirst = back ?? inverse(place);
+      // web-ifc turns a geometry's faces each time that a product places it mirrored: all places see what is left.
+      const mirrored = new Map();
+      for (const part of sound) if (determinant(part.place) < 0) mirrored.set(part.geometry, !mirrored.get(part.geometry));
+      for (const part of sound) part.turned = mirrored.get(part.geometry) ?? false;
+      for (const part of sound) part.place = product(toFirst, part.place);
+      // An opening is cut out of the geometry itself: only products without one have it in common.
+      ({ index, shown } = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0));
+      this.#extend(index, place);
+    };
+    try {
+      this.api.StreamMeshes(this.model, [id], take);
+    } catch {
+      shown = new Map();  // web-ifc gave the product up
+    }
+    if (index >= 0) {
+      if (guid && this.site.shown.has(guid)) { this.twice.push(id); return null; }
+      this.site.shown.add(guid);
+      this.site.shapes.set(this.node(id), { mesh: index, matrix: product(this.place, place) });
+    }
+    return {
+      empty: parts.filter((ids) => !ids.some((one) => shown.has(one))).length,
+      open: [...shown].filter(([one, share]) => isClosed(one) && share > OPEN).length,
+    };
+  }
+
+  // Whether an opening is cut out of a product or of one that it is a part of.
+  #isOpened(id) {
+    for (let at = id, steps = 0; at !== undefined && steps < 100; at = this.parents.get(at), ++steps) if (this.opened.has(at)) return true;
+    return false;
+  }
+
+  // Parent of each element: its whole, storey or building.
+  #parents() {
+    const { step } = this, parents = new Map();
+    const collect = (name, whole, parts) => {
+      for (const id of step.ids(name)) {
+        const args = step.args(id);
+        for (const part of args[parts] ?? [])
+          if (part?.ref && args[whole]?.ref && !parents.has(part.ref)) parents.set(part.ref, args[whole].ref);
+      }
+    };
+    collect("IFCRELAGGREGATES", 4, 5);
+    collect("IFCRELNESTS", 4, 5);
+    collect("IFCRELCONTAINEDINSPATIALSTRUCTURE", 5, 4);
+    return parents;
+  }
+
+  // Node of an element, below those of its parents.
+  node(id, visiting = new Set()) {
+    if (this.nodeOf.has(id)) return this.nodeOf.get(id);
+    visiting.add(id);
+    const { nodes, roots } = this.site;
+    const args = this.step.args(id), type = this.step.className(id), text = (value) => (typeof value === "string" ? value.replace(/\s+/g, " ").trim() : "");
+    const key = text(args[0]), name = text(args[2]), longName = text(args[LONG_NAME.get(type)]);
+    const vantage = { class: type, ...(name ? { name } : {}), ...(key ? { id: key } : {}) };
+    if (DOORS.has(type)) vantage.door = true;
+    if (longName) vantage.long_name = longName;
+    const index = nodes.push({ name: [type, name, key].filter(Boolean).join(" "), extras: { vantage } }) - 1;
+    this.nodeOf.set(id, index);
+    const parent = this.parents.get(id);
+    if (parent === undefined || visiting.has(parent)) {
+      roots.push(index);
+    } else {
+      const above = nodes[this.node(parent, visiting)];
+      (above.children ??= []).push(index);
+    }
+    return index;
+  }
+
+  #mesh(parts, own) {
+    const key = own + " " + parts.map((part) => [part.geometry, part.turned, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
+    if (this.meshOf.has(key)) return this.meshOf.get(key);
+    const { glb, meshes } = this.site, byMaterial = new Map(), shown = new Map();
+    for (const part of parts) {
+      const geometry = this.#geometry(part.geometry, part.place, part.turned);
+      if (geometry.indices.length === 0) continue;
+      shown.set(part.geometry, missing(geometry));
+      const material = this.site.material(part.colour);
+      if (!byMaterial.has(material)) byMaterial.set(material, []);
+      byMaterial.get(material).push(geometry);
+    }
+    const bounds = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
+    const primitives = [...byMaterial].map(([material, geometries]) => {
+      const { positions, indices } = joined(geometries);
+      const accessor = glb.positions(positions), { min, max } = glb.accessors[accessor];
+      for (let c = 0; c < 3; ++c) bounds.min[c] = Math.min(bounds.min[c], min[c]), bounds.max[c] = Math.max(bounds.max[c], max[c]);
+      return { attributes: { POSITION: accessor }, indices: glb.indices(indices), ...(material >= 0 ? { material } : {}) };
+    });
+    const made = { index: primitives.length === 0 ? -1 : meshes.push({ primitives }) - 1, shown, bounds };
+    this.meshOf.set(key, made);
+    this.boundsOf ??= new Map();
+    this.boundsOf.set(made.index, bounds);
+    return made;
+  }
+
+  #extend(index, place) {
+    if (index < 0) return;
+    const { min, max } = this.boundsOf.get(index), { extent } = this.site, whole = product(this.place, place);
+    for (let k = 0; k < 8; ++k) {
+      const corner = transformed(whole, k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]);
+      for (let c = 0; c < 3; ++c) extent.min[c] = Math.min(extent.min[c], corner[c]), extent.max[c] = Math.max(extent.max[c], corner[c]);
+    }
+  }
+
+  // Vertices come with a normal each, already placed.
+  #geometry(id, place, turned = false) {
+    const { api, model } = this, geometry = api.GetGeometry(model, id);
+    const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
+    const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
+    const positions = new Float64Array(3 * count), m = Float64Array.from(place);
+    let sound = true;
+    for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
+    for (let v = 0; v < count; ++v) {
+      const x = vertices[6 * v], y = vertices[6 * v + 1], z = vertices[6 * v + 2];
+      for (let r = 0; r < 3; ++r) positions[3 * v + r] = m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];
+      sound &&= Number.isFinite(positions[3 * v] + positions[3 * v + 1] + positions[3 * v + 2]);
+    }
+    geometry.delete();
+    if (!sound) return { positions: [], indices: [] };
+    if (determinant(place) < 0 !== turned)  // faces keep their outside
+      for (let i = 0; i + 2 < indices.length; i += 3) [indices[i + 1], indices[i + 2]] = [indices[i + 2], indices[i + 1]];
+    return { positions, indices };
+  }
 
   // Rooms are nodes without a mesh: the extras have their box and outline, in metres, Y up.
-  #addRooms() {
-    const { ifc, api, model } = this;
-    each(api.GetLineIDsWithType(model, ifc.IFCSPACE), (id) => {
-      const triangles = [];
-      each(api.GetFlatMesh(model, id).geometries, (part) => {
-        const { positions, indices } = this.#geometry(part.geometryExpressID, part.flatTransformation);
+  addRooms() {
+    for (const id of this.step.ids("IFCSPACE")) {
+      const guid = this.step.args(id)[0], triangles = [];
+      if (guid && this.site.shown.has(guid)) continue;  // in another file, too
+      this.site.shown.add(guid);
+      each(this.api.GetFlatMesh(this.model, id).geometries, (part) => {
+        const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, Array.from(part.flatTransformation)));
         for (let i = 0; i + 2 < indices.length; i += 3)
-          triangles.push([0, 1, 2].map((k) => positions.slice(3 * indices[i + k], 3 * indices[i + k] + 3)));
+          triangles.push([0, 1, 2].map((k) => Array.from(positions.subarray(3 * indices[i + k], 3 * indices[i + k] + 3))));
       });
-      const { vantage } = this.nodes[this.#node(id)].extras;
+      const { vantage } = this.site.nodes[this.node(id)].extras;
       if (triangles.length > 0) Object.assign(vantage, { box: box(triangles), footprint: footprint(triangles) });
-    });
+    }
   }
+}
 
-  // Notes on parts that were lost.
-  #notes(shown) {
-    const { ifc, api, model } = this, lost = [];
-    each(api.GetLineIDsWithType(model, ifc.IFCELEMENT, true), (id) => {
-      if (shown.has(id) || NO_BODY.has(this.#className(id))) return;
-      const line = api.GetLine(model, id);
-      if (line?.Representation) lost.push(this.nodes[this.#node(id)].name);
-    });
-    if (lost.length === 0) return [];
-    return [`${lost.length} products have a shape of which no surface could be made, and are left out: ` +
-      lost.slice(0, 3).join(", ") + (lost.length > 3 ? ", …" : "")];
+// One list of vertices and triangles of several.
+function joined(geometries) {
+  const sum = (key) => geometries.reduce((all, one) => all + one[key].length, 0);
+  const positions = new Float32Array(sum("positions")), indices = new Uint32Array(sum("indices"));
+  let vertex = 0, index = 0;
+  for (const one of geometries) {
+    positions.set(one.positions, 3 * vertex);
+    for (let i = 0; i < one.indices.length; ++i) indices[index++] = one.indices[i] + vertex;
+    vertex += one.positions.length / 3;
   }
+  return { positions, indices };
+}
+
+// What a surface lacks to be closed, as a share of it: areas as vectors cancel each other all around a solid.
+function missing({ positions: p, indices }) {
+  let x = 0, y = 0, z = 0, all = 0;
+  for (let i = 0; i + 2 < indices.length; i += 3) {
+    const a = 3 * indices[i], b = 3 * indices[i + 1], c = 3 * indices[i + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2], vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    x += nx, y += ny, z += nz, all += Math.hypot(nx, ny, nz);
+  }
+  return all > 0 ? Math.hypot(x, y, z) / all : 0;
 }

@@ -21,10 +21,11 @@ export class Glb {
 
   positions(xyz) {
     const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < xyz.length; ++i) {
-      min[i % 3] = Math.min(min[i % 3], xyz[i]);
-      max[i % 3] = Math.max(max[i % 3], xyz[i]);
-    }
+    for (let c = 0; c < 3; ++c)
+      for (let i = c; i < xyz.length; i += 3) {
+        if (xyz[i] < min[c]) min[c] = xyz[i];
+        if (xyz[i] > max[c]) max[c] = xyz[i];
+      }
     return this.#add(xyz, xyz.length / 3, FLOAT, "VEC3", { min, max });
   }
 

@@ -14,6 +14,11 @@ export function product(a, b) {
   return out;
 }
 
+export const identity = () => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+// Below 0 if it mirrors.
+export const determinant = (m) => m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
+
 // Null if it flattens space.
 export function inverse(m) {
   const minor = (i, j) => {  // of the upper left 3 by 3, row i and column j

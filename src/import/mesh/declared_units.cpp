@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and axes by format, given what assimp 5.2 already applies: it puts COLLADA's unit and axis into the root's
-// transform, turns Z to Y for DXF and 3DS, and leaves FBX unchanged.
+// Units and axes by format, given what assimp 5.2 already applies: it turns Z to Y for DXF and 3DS, and leaves FBX
+// unchanged.
 #include "import/mesh/declared_units.hpp"
 
 #include <assimp/scene.h>
@@ -12,15 +12,9 @@
 namespace vantage::importer {
 namespace {
 
-// Z up becomes Y up; X up as well, by the axes' cyclic order.
-const aiMatrix4x4 kFromZ(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
-const aiMatrix4x4 kFromX(0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
-
 void scale(Declared& declared, double metres) {
   if (!(metres > 0) || !std::isfinite(metres)) return;
-  aiMatrix4x4 factor;
-  factor.a1 = factor.b2 = factor.c3 = static_cast<ai_real>(metres);
-  declared.gltf_from_file = factor * declared.gltf_from_file;
+  for (int c = 0; c < 3; ++c) declared.gltf_from_file[c] = declared.gltf_from_file[c] * metres;
   declared.unit = true;
 }
 
@@ -29,7 +23,7 @@ Declared of_fbx(const aiScene& scene) {
   std::int32_t axis = 1;
   if (scene.mMetaData && scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2) {
     declared.up = true;
-    declared.gltf_from_file = axis == 2 ? kFromZ : axis == 0 ? kFromX : aiMatrix4x4();
+    declared.gltf_from_file = axis == 2 ? from_z_up() : axis == 0 ? from_x_up() : glm::dmat4(1);
   }
   double centimetres = 0;  // assimp has two types for it
   float narrow = 0;
@@ -38,15 +32,6 @@ Declared of_fbx(const aiScene& scene) {
   else if (scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", narrow))
     scale(declared, static_cast<double>(narrow) * 0.01);
   return declared;
-}
-
-// Whether a text has a word within its first part, where headers are.
-bool mentions(const std::filesystem::path& file, const char* word) {
-  std::string head(std::size_t{1} << 16, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
-  return head.find(word) != std::string::npos;
 }
 
 // $INSUNITS of a DXF's header, a group 70 after its name; 0 if there is none.
@@ -69,12 +54,7 @@ int insertion_units(const std::filesystem::path& file) {
 Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format) {
   if (format == "fbx") return of_fbx(scene);
   Declared declared;
-  if (format == "dae") {
-    declared.unit = mentions(file, "<unit");
-    declared.up = mentions(file, "<up_axis");
-  } else if (format == "x3d") {
-    declared.unit = declared.up = true;  // metres and Y up, by its standard
-  } else if (format == "3ds") {
+  if (format == "3ds") {
     declared.up = true;
   } else if (format == "dxf") {
     declared.up = true;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <assimp/matrix4x4.h>
-
 #include <filesystem>
 #include <string>
+
+#include "import/mesh/model.hpp"
 
 struct aiScene;
 
@@ -13,10 +13,10 @@ namespace vantage::importer {
 // Units and axes that a file declares.
 struct Declared {
   bool unit = false, up = false;  // whether it declares them
-  aiMatrix4x4 gltf_from_file;     // to metres and Y up, as far as declared
+  glm::dmat4 gltf_from_file{1};   // to metres and Y up, as far as declared
 };
 
-// `format` by its extension: "fbx", "dae".
+// `format` by its extension: "fbx", "3ds", "dxf".
 Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format);
 
 }  // namespace vantage::importer

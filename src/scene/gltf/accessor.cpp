@@ -15,6 +15,7 @@ std::size_t component_size(int type) {
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
     case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    case TINYGLTF_COMPONENT_TYPE_DOUBLE: return 8;  // KHR_accessor_float64
     default: return 0;
   }
 }
@@ -48,6 +49,7 @@ void convert(int type, const std::uint8_t* at, std::size_t stride, std::size_t n
       return convert<std::uint16_t>(at, stride, n, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return convert<std::uint32_t>(at, stride, n, components, normalized, out);
+    case TINYGLTF_COMPONENT_TYPE_DOUBLE: return convert<double>(at, stride, n, components, false, out);
     default: return convert<float>(at, stride, n, components, false, out);
   }
 }
@@ -158,7 +160,7 @@ void Accessor::read(std::size_t first, std::size_t n, double* out) const {
             element_size_, 1, components_, normalized_, out + (*it - first) * components);
 }
 
-std::vector<std::uint32_t> Accessor::read_indices(std::size_t limit) const {
+std::vector<std::uint32_t> Accessor::read_indices(std::size_t limit, bool restart) const {
   if (!is_index_type(component_type_) || normalized_)
     throw file_.malformed(name_ + " holds indices, so it must be of unsigned integers; its component type is " +
                           std::to_string(component_type_));
@@ -167,7 +169,12 @@ std::vector<std::uint32_t> Accessor::read_indices(std::size_t limit) const {
     for (std::size_t i = 0; i < count_; ++i) out[i] = load_index(component_type_, data_ + i * stride_);
   for (std::size_t i = 0; i < sparse_elements_.size(); ++i)
     out[sparse_elements_[i]] = load_index(component_type_, sparse_values_ + i * element_size_);
-  const auto bad = std::ranges::find_if(out, [&](std::uint32_t index) { return index >= limit; });
+  if (restart) {
+    const std::uint32_t largest = kRestart >> (32 - 8 * component_size(component_type_));
+    std::ranges::replace(out, largest, kRestart);
+  }
+  const auto bad =
+      std::ranges::find_if(out, [&](std::uint32_t index) { return index >= limit && !(restart && index == kRestart); });
   if (bad != out.end())
     throw file_.malformed(name_ + ": index " + std::to_string(*bad) + " at place " + std::to_string(bad - out.begin()) +
                           ", but there are only " + std::to_string(limit) + " vertices");

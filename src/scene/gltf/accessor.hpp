@@ -15,6 +15,9 @@ namespace vantage::gltf {
 // Elements of an accessor without a buffer view, which nothing in the file bounds, at most.
 inline constexpr std::size_t kLargestWithoutBuffer = std::size_t{1} << 26;
 
+// An index that ends a strip or a fan and begins another.
+inline constexpr std::uint32_t kRestart = 0xFFFFFFFF;
+
 class Accessor {
  public:
   // Messages name the reader by `user`, e.g. "mesh 3 POSITION". `components`: allowed sizes, e.g. {3, 4}. Throws Error
@@ -28,8 +31,9 @@ class Accessor {
   // Reads `n` elements from `first` as doubles, components() each. Integers are unchanged, or scaled to [0, 1] or [-1,
   // 1] if the accessor is normalized. REQUIRES: first + n <= count(). Safe from several threads.
   void read(std::size_t first, std::size_t n, double* out) const;
-  // All elements as unsigned integers. Throws Error malformed_file unless it holds unsigned scalars below `limit`.
-  std::vector<std::uint32_t> read_indices(std::size_t limit) const;
+  // All elements as unsigned integers. With `restart`, the largest of its type is one, and becomes kRestart. Throws
+  // Error malformed_file unless it holds unsigned scalars below `limit`.
+  std::vector<std::uint32_t> read_indices(std::size_t limit, bool restart = false) const;
 
   // Number and user of the accessor, for messages.
   const std::string& name() const { return name_; }

@@ -20,35 +20,58 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67, kTileMagic = 0x6D643362, kJsonCh
 constexpr int kDeepestJson = 128;  // readers recurse; real files nest about ten levels
 
 // Extensions that a file may require. Those that change positions are understood; the others only change how surfaces
-// look, or carry information that a survey does not need.
-constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_texture_transform",
-                                            "KHR_node_visibility", "CESIUM_RTC"};
-constexpr std::string_view kWithoutEffect[] = {"KHR_materials_anisotropy",
-                                               "KHR_materials_clearcoat",
-                                               "KHR_materials_diffuse_transmission",
-                                               "KHR_materials_dispersion",
-                                               "KHR_materials_emissive_strength",
-                                               "KHR_materials_ior",
-                                               "KHR_materials_iridescence",
-                                               "KHR_materials_pbrSpecularGlossiness",
-                                               "KHR_materials_sheen",
-                                               "KHR_materials_specular",
-                                               "KHR_materials_transmission",
-                                               "KHR_materials_unlit",
-                                               "KHR_materials_variants",
-                                               "KHR_materials_volume",
-                                               "KHR_lights_punctual",
-                                               "EXT_lights_image_based",
-                                               "EXT_lights_ies",
-                                               "KHR_texture_basisu",
-                                               "EXT_texture_webp",
-                                               "EXT_texture_avif",
-                                               "MSFT_texture_dds",
-                                               "KHR_xmp_json_ld",
+// look or behave, or carry information that a survey does not need. A name that ends in _ stands for all that begin so.
+constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",
+                                            "EXT_mesh_gpu_instancing",
+                                            "KHR_texture_transform",
+                                            "KHR_node_visibility",
+                                            "KHR_mesh_primitive_restart",
+                                            "EXT_mesh_primitive_restart",
+                                            "KHR_accessor_float64",
+                                            "MSFT_lod",
+                                            "CESIUM_RTC"};
+constexpr std::string_view kWithoutEffect[] = {"KHR_materials_",
+                                               "KHR_texture_",
+                                               "EXT_texture_",
+                                               "KHR_lights_",
+                                               "EXT_lights_",
+                                               "KHR_audio_",
+                                               "KHR_node_selectability",
+                                               "KHR_node_hoverability",
+                                               "KHR_interactivity",
+                                               "KHR_physics_rigid_bodies",
+                                               "KHR_implicit_shapes",
+                                               "KHR_collision_shapes",
                                                "KHR_animation_pointer",
+                                               "KHR_techniques_webgl",
+                                               "KHR_xmp",
+                                               "KHR_xmp_json_ld",
                                                "EXT_structural_metadata",
+                                               "EXT_feature_metadata",
                                                "EXT_mesh_features",
-                                               "EXT_instance_features"};
+                                               "EXT_instance_features",
+                                               "EXT_mesh_manifold",
+                                               "EXT_mesh_primitive_edge_visibility",
+                                               "EXT_textureInfo_constant_lod",
+                                               "ADOBE_materials_",
+                                               "AGI_articulations",
+                                               "AGI_stk_metadata",
+                                               "BENTLEY_materials_",
+                                               "CESIUM_primitive_outline",
+                                               "FB_geometry_metadata",
+                                               "GODOT_single_root",
+                                               "GRIFFEL_bim_data",
+                                               "MSFT_packing_",
+                                               "MSFT_texture_dds",
+                                               "NV_materials_",
+                                               "OMI_",
+                                               "VRMC_"};
+
+bool has_no_effect(std::string_view name) {
+  return std::ranges::any_of(kWithoutEffect, [&](std::string_view known) {
+    return known.ends_with('_') ? name.starts_with(known) : name == known;
+  });
+}
 
 std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
   return static_cast<std::uint32_t>(bytes[offset]) | static_cast<std::uint32_t>(bytes[offset + 1]) << 8 |
@@ -298,8 +321,7 @@ void File::check_extensions() const {
       throw malformed("its meshes are compressed with " + name +
                       ", which vantage does not read; export without mesh compression, or decompress it (e.g. with "
                       "gltf-transform)");
-    if (std::ranges::find(kUnderstood, name) == std::end(kUnderstood) &&
-        std::ranges::find(kWithoutEffect, name) == std::end(kWithoutEffect))
+    if (std::ranges::find(kUnderstood, name) == std::end(kUnderstood) && !has_no_effect(name))
       throw malformed("it requires the extension " + quoted(name) + ", which vantage does not know; export without it");
   }
 }
@@ -515,6 +537,14 @@ Bytes File::image(int index, std::vector<std::uint8_t>& own) const {
 std::size_t File::count(const char* array) const {
   const auto elements = json_.find(array);
   return elements != json_.end() && elements->is_array() ? elements->size() : 0;
+}
+
+bool File::uses(std::string_view extension) const {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    if (const auto names = json_.find(list); names != json_.end() && names->is_array())
+      for (const json& name : *names)
+        if (const auto* text = name.get_ptr<const std::string*>(); text && *text == extension) return true;
+  return false;
 }
 
 const nlohmann::json& File::find(const char* array, int index, std::initializer_list<const char*> path) const {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #define TINYGLTF_NO_STB_IMAGE
@@ -40,6 +41,8 @@ class File {
   Bytes view(int index, const std::string& user) const;
   // Encoded bytes of an image, in the file or in `own`. Throws Error: io, malformed_file.
   Bytes image(int index, std::vector<std::uint8_t>& own) const;
+  // Whether the file names an extension among those that it uses.
+  bool uses(std::string_view extension) const;
   // Number of elements in an array of the document, such as "materials".
   std::size_t count(const char* array) const;
   // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null if absent.

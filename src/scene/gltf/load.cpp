@@ -83,7 +83,8 @@ bool is_exact(const File& file, int mesh, std::size_t index) {
   const auto& accessors = file.model().accessors;
   if (position == primitive.attributes.end() || static_cast<std::size_t>(position->second) >= accessors.size())
     return false;
-  return !accessors[static_cast<std::size_t>(position->second)].normalized;
+  const tinygltf::Accessor& accessor = accessors[static_cast<std::size_t>(position->second)];
+  return !accessor.normalized && accessor.componentType != TINYGLTF_COMPONENT_TYPE_DOUBLE;
 }
 
 // Whether the transform turns right-handed axes into left-handed ones.
@@ -177,9 +178,10 @@ class Loader {
   }
 
   void settle_axes() {
-    if (converted_) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
-    std::optional<Unit> unit = options_.unit;
-    std::optional<UpAxis> up = options_.up;
+    // An importer that takes these settings has applied them; it declares no unit where the model tells none.
+    if (converted_ && !declared("unit").empty()) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
+    std::optional<Unit> unit = converted_ ? std::nullopt : options_.unit;
+    std::optional<UpAxis> up = converted_ ? std::nullopt : options_.up;
     try {
       if (const std::string text = declared("unit"); !unit && !text.empty()) unit = unit_from_string(text);
       if (const std::string text = declared("up"); !up && !text.empty()) up = up_axis_from_string(text);
@@ -740,13 +742,13 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
 }  // namespace
 
 Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
-  const importers::Recognised recognised = importers::recognise(file);
+  const importers::Recognised recognised = importers::recognise(file, options.beside);
   const auto settings = importer_settings(options, *recognised.format, file.string());
   if (!recognised.format->importer)
     return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); },
                       file.string(), options, recognised.note);
   const std::vector<std::uint8_t> glb =
-      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes}, settings);
+      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes}, settings, {}, options.beside);
   return load_scene([&](LoadBudget& budget) { return gltf::File(glb, file.string(), budget); }, file.string(), options,
                     recognised.note, takes_setting(*recognised.format, "unit"));
 }

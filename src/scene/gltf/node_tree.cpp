@@ -282,6 +282,33 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   return marks;
 }
 
+namespace {
+// Nodes that MSFT_lod names as coarser levels of others that the scene shows. Files may have them in the scene, too.
+std::vector<bool> coarser_levels(const File& file, const std::vector<int>& roots) {
+  const auto& nodes = file.model().nodes;
+  std::vector<bool> coarser(nodes.size()), reached(nodes.size());
+  if (!file.uses("MSFT_lod")) return coarser;
+  std::vector<int> stack = roots;
+  while (!stack.empty()) {
+    const int node = stack.back();
+    stack.pop_back();
+    if (node < 0 || static_cast<std::size_t>(node) >= nodes.size() || reached[static_cast<std::size_t>(node)]) continue;
+    reached[static_cast<std::size_t>(node)] = true;
+    stack.insert(stack.end(), nodes[static_cast<std::size_t>(node)].children.begin(),
+                 nodes[static_cast<std::size_t>(node)].children.end());
+  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!reached[n] || coarser[n]) continue;
+    const nlohmann::json& ids = file.find("nodes", static_cast<int>(n), {"extensions", "MSFT_lod", "ids"});
+    if (!ids.is_array()) continue;
+    for (const nlohmann::json& id : ids)
+      if (id.is_number_unsigned() && id.get<std::size_t>() < nodes.size() && id.get<std::size_t>() != n)
+        coarser[id.get<std::size_t>()] = true;
+  }
+  return coarser;
+}
+}  // namespace
+
 std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, LoadBudget& budget,
                                       std::vector<std::string>& notes) {
   const tinygltf::Model& model = file.model();
@@ -298,6 +325,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   };
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
   const std::vector<int> roots = root_nodes(file, options);
+  const std::vector<bool> coarser = coarser_levels(file, roots);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
     stack.push_back({*it, -1, origin_of(file) * survey_from_gltf, {}, {}, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
@@ -315,7 +343,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
-  std::size_t skinned = 0, hidden = 0;
+  std::size_t skinned = 0, hidden = 0, levels = 0;
   while (!stack.empty()) {
     Visit visit = std::move(stack.back());
     stack.pop_back();
@@ -332,6 +360,10 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     visited[index] = true;
     if (file.find("nodes", visit.node, {"extensions", "KHR_node_visibility", "visible"}) == false) {
       ++hidden;
+      continue;
+    }
+    if (coarser[index]) {
+      ++levels;
       continue;
     }
     names.push_back(name);
@@ -395,6 +427,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   accuracies.check(names);
   if (hidden > 0)
     notes.push_back(std::to_string(hidden) + " nodes are hidden by the file, and are left out with all below them");
+  if (levels > 0)
+    notes.push_back(std::to_string(levels) + " nodes are coarser levels of detail of others, and are left out");
   if (skinned > 0)
     notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
   return placed;

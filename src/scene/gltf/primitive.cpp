@@ -7,8 +7,8 @@
 namespace vantage::gltf {
 namespace {
 
-// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans restart by repeated indices, which
-// make no triangle.
+// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans restart by kRestart, or by repeated
+// indices, which make no triangle.
 template <class At>
 std::vector<Triangle> triangulate(int mode, std::size_t n, At&& at) {
   std::vector<Triangle> out;
@@ -18,9 +18,13 @@ std::vector<Triangle> triangulate(int mode, std::size_t n, At&& at) {
     for (std::size_t t = 0; t < out.size(); ++t) out[t] = {at(3 * t), at(3 * t + 1), at(3 * t + 2)};
     return out;
   }
-  for (std::size_t i = 0; i + 2 < n; ++i) {
-    const Triangle t = mode == TINYGLTF_MODE_TRIANGLE_FAN ? Triangle{at(i + 1), at(i + 2), at(0)}
-                                                          : Triangle{at(i), at(i + 1 + i % 2), at(i + 2 - i % 2)};
+  std::size_t first = 0;  // of the strip or fan
+  for (std::size_t last = 0; last < n; ++last) {
+    if (at(last) == kRestart) first = last + 1;
+    if (last < first + 2) continue;
+    const std::size_t i = last - 2, odd = (i - first) % 2;
+    const Triangle t = mode == TINYGLTF_MODE_TRIANGLE_FAN ? Triangle{at(i + 1), at(i + 2), at(first)}
+                                                          : Triangle{at(i), at(i + 1 + odd), at(i + 2 - odd)};
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) out.push_back(t);
   }
   return out;
@@ -99,7 +103,9 @@ std::unique_ptr<Primitive> read_primitive(const File& file, int mesh, std::size_
   std::size_t corners = out->position->count();
   if (primitive.indices >= 0) {
     const Accessor accessor(file, primitive.indices, out->name + " indices", {1});
-    const auto indices = accessor.read_indices(out->position->count());
+    const bool restart = primitive.mode != TINYGLTF_MODE_TRIANGLES &&
+                         (file.uses("KHR_mesh_primitive_restart") || file.uses("EXT_mesh_primitive_restart"));
+    const auto indices = accessor.read_indices(out->position->count(), restart);
     corners = indices.size();
     out->triangles = triangulate(primitive.mode, corners, [&](std::size_t i) { return indices[i]; });
   } else {

@@ -27,6 +27,20 @@ TEST_F(ImportCommandTest, WritesAGlb) {
   EXPECT_EQ(scene.bounds().max.z, 3);  // Y up in both
 }
 
+TEST_F(ImportCommandTest, TakesTheUnitAndTheAxisAndWritesMetres) {
+  write("plan.obj",
+        "o wall\nv 0 0 0\nv 4000 0 0\nv 4000 0 3000\nv 0 0 3000\nf 1 2 3 4\no floor\nv 0 5000 0\nf 1 2 5\n");
+  json_of({"import", path("plan.obj"), "--unit", "mm", "--up", "z", "-o", path("plan.glb")});
+  const Scene scene = Scene::load(path("plan.glb"));
+  EXPECT_NEAR(scene.bounds().max.x, 4, 1e-6);
+  EXPECT_NEAR(scene.bounds().max.y, 5, 1e-6);
+  EXPECT_NEAR(scene.bounds().max.z, 3, 1e-6);
+  json_of({"import", path("plan.obj"), "--unit", "cm", "--up", "x", "-o", path("turned.glb")});
+  const Scene turned = Scene::load(path("turned.glb"));
+  EXPECT_NEAR(turned.bounds().max.z, 40, 1e-6);
+  EXPECT_NEAR(turned.bounds().min.x, -50, 1e-6);
+}
+
 TEST_F(ImportCommandTest, OtherCommandsTakeModelsAsTheyAre) {
   const auto json = json_of({"scan", path("site.obj"), "--station", "2,-2,1.5", "--step", "2", "--engine", "embree"});
   EXPECT_GT(json["points"].get<int>(), 0);

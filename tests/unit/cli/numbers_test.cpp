@@ -37,6 +37,10 @@ const std::vector<std::string> kNumbers{"nan",
                                         "1e308",
                                         "-1e308",
                                         "1e309",
+                                        "1e30",
+                                        "-1e30",
+                                        "1e-310",
+                                        "-5e-324",
                                         "5e-324",
                                         "1e-400",
                                         "0",
@@ -359,6 +363,41 @@ TEST_F(NumbersThatAreTaken, EndInFiniteResultsOrOneError) {
     }
   }
   EXPECT_GT(runs, 60u);
+}
+
+class PositionsThatAreTaken : public NumbersThatAreTaken {
+ protected:
+  void expect_ended(const std::vector<std::string>& words) {
+    std::string all;
+    for (const std::string& word : words) all += word + " ";
+    SCOPED_TRACE(all);
+    const Outcome outcome = run_program(words, at_most_a_minute);
+    expect_refused(outcome, 2, "");
+    EXPECT_NE(outcome.err.find("within 1000 km of the scene"), std::string::npos) << outcome.err;
+  }
+  std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) const {
+    const auto station = std::find(words.begin(), words.end(), "--station");
+    if (station != words.end()) words.erase(station, station + 2);
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  static inline const std::vector<std::string> kFar{"2e6", "-1e18", "1e30", "1e308", "9223372036854775808"};
+};
+
+TEST_F(PositionsThatAreTaken, EndInOneErrorThatSaysWhere) {
+  for (const std::string& far : kFar) {
+    write("far.csv", "x,y,z\n0," + far + ",1.5\n");
+    write("front.json", R"({"front":[{"stations":[{"position":[)" + far + R"(,0,1.5]}]}]})");
+    for (const char* command : {"evaluate", "scan", "panorama"}) {
+      expect_ended(with(quick(command), {"--station", "0,0," + far}));
+      expect_ended(with(quick(command), {"--stations", path("far.csv")}));
+      expect_ended(with(quick(command), {"--stations", path("front.json")}));
+    }
+    expect_ended(with(quick("plan"), {"--keep=" + far + ",0,1.5"}));
+    expect_ended(with(quick("plan"), {"--start=" + far + ",0,1.5"}));
+    expect_ended(with(quick("evaluate"), {"--enter=" + far + ",1,1", "--station", "8,0,1.5", "--station", "0,8,1.5"}));
+  }
+  expect_ended(with(quick("evaluate"), {"--enter=1e160,1,1", "--station", "8,0,1.5", "--station", "0,8,1.5"}));
 }
 
 }  // namespace

@@ -127,6 +127,9 @@ TEST(Parse, Durations) {
   EXPECT_EQ(parse_duration("2h", "--max-time"), 7200);
   for (const char* text : {"0", "-1s", "soon", "h", "1d"})
     EXPECT_NE(refusal([&] { parse_duration(text, "--max-time"); }), "accepted") << text;
+  EXPECT_EQ(parse_duration("+90 s", "--max-time"), 90);
+  EXPECT_EQ(refusal([&] { parse_duration("5parsec", "--max-time"); }),
+            "--max-time: '5parsec' is no time; write a number and s, min or h: 90s, 15min or 2h");
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <semaphore>
+#include <thread>
 
 namespace vantage {
 namespace {
@@ -34,6 +36,19 @@ TEST(Deadline, FollowsTheOtherToken) {
     EXPECT_TRUE(deadline->stop().stop_requested());
     EXPECT_FALSE(deadline->passed());
   }
+}
+
+TEST(Deadline, IsMoved) {
+  Deadline sooner(1e6, {}), later(0.05, {}), unlimited(0, {});
+  sooner.move(1e-3);
+  later.move(1e6);
+  unlimited.move(1e-3);
+  wait_for(sooner.stop());
+  EXPECT_TRUE(sooner.passed());
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(later.stop().stop_requested());
+  EXPECT_GT(later.seconds_left(), 9e5);
+  EXPECT_TRUE(std::isinf(unlimited.seconds_left()));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "scene/scene_data.hpp"
 #include "support/boxes_on_ground.hpp"
@@ -74,7 +75,7 @@ struct Bench {
     Network stations;
     const State state = session.state();
     for (const auto& s : state["network"]["stations"])
-      stations.push_back({.position = {s["head"][0], s["head"][1], s["head"][2]}, .active = s["active"]});
+      stations.push_back({.position = {s["position"][0], s["position"][1], s["position"][2]}, .active = s["active"]});
     return stations;
   }
   State finished() const { return vantage::finished(session); }
@@ -98,15 +99,20 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
     const Estimate overlap = overlap_estimate(counts, voxels);
     EXPECT_GT(covered.value, 0);
     EXPECT_EQ(state["network"]["values"]["coverage"]["value"], covered.value);
-    EXPECT_EQ(state["network"]["values"]["coverage"]["error"], covered.standard_error);
+    EXPECT_EQ(state["network"]["values"]["coverage"]["standard_error"], covered.standard_error);
     EXPECT_EQ(state["network"]["values"]["overlap"]["value"], overlap.value);
-    EXPECT_EQ(state["network"]["values"]["overlap"]["error"], overlap.standard_error);
+    EXPECT_EQ(state["network"]["values"]["overlap"]["standard_error"], overlap.standard_error);
     Simulator all = surroundings_of(bench.simulator);
     const ScanOverlapMatrix links = scan_overlap_matrix(
         all.evaluate_sampled({&network, 1}, {.voxels = std::min(bench.options.link_voxels, all.voxel_count())})
             .front());
     EXPECT_GT(state["network"]["links"].size(), 0u);
-    for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
+    for (const auto& link : state["network"]["links"]) {
+      EXPECT_EQ(link["value"], links(link["a"], link["b"]));
+      const double share = link["value"], of = link["voxels"];
+      EXPECT_GT(of, 0);
+      EXPECT_NEAR(link["error"], std::sqrt(share * (1 - share) / of), 1e-12);
+    }
   }
   bench.session.change({{"do", "exact"}});
   const State state = bench.finished();
@@ -114,7 +120,7 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
   const Network network = bench.network();
   EXPECT_EQ(state["network"]["values"]["coverage"]["value"],
             coverage(bench.simulator.evaluate(network), bench.simulator.goal_density()));
-  EXPECT_EQ(state["network"]["values"]["coverage"]["error"], 0);
+  EXPECT_EQ(state["network"]["values"]["coverage"]["standard_error"], 0);
   const ScanOverlapMatrix links = scan_overlap_matrix(surroundings_of(bench.simulator).evaluate(network));
   EXPECT_GT(state["network"]["links"].size(), 0u);
   for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
@@ -183,8 +189,8 @@ TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
   const State after = bench.finished();
   EXPECT_EQ(after["message"], "improved");
   EXPECT_EQ(after["ids"], before["ids"]);
-  EXPECT_EQ(after["network"]["stations"][1]["head"], before["network"]["stations"][1]["head"]);
-  EXPECT_NE(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
+  EXPECT_EQ(after["network"]["stations"][1]["position"], before["network"]["stations"][1]["position"]);
+  EXPECT_NE(after["network"]["stations"][0]["position"], before["network"]["stations"][0]["position"]);
   EXPECT_GT(after["network"]["coverage"], before["network"]["coverage"]);
   EXPECT_LE(after["network"]["parts"], before["network"]["parts"]);
   bench.session.change({{"do", "undo"}});
@@ -280,19 +286,19 @@ TEST(EditSession, HasTheFiguresOfAReport) {
   EXPECT_FALSE(sampled["hidden"].is_null());
   EXPECT_GT(sampled["network"]["captured"], 0.3);
   EXPECT_EQ(sampled["network"]["captured"], estimate.value("capture"));
-  EXPECT_EQ(sampled["network"]["values"]["capture"]["error"], estimate.values.at("capture").standard_error);
+  EXPECT_EQ(sampled["network"]["values"]["capture"]["standard_error"], estimate.values.at("capture").standard_error);
   const Evaluation registered = evaluate_stations(
       parts, stations, {.sample_voxels = 1000, .registration = RegistrationOptions{}, .attainable = nullptr});
   EXPECT_EQ(sampled["network"]["values"]["registration"]["value"], registered.value("registration"));
-  EXPECT_GT(sampled["network"]["values"]["registration"]["error"], 0);
+  EXPECT_GT(sampled["network"]["values"]["registration"]["standard_error"], 0);
 
   const State exact = hall.change({{"do", "exact"}});
   const Evaluation whole =
       hall.site.evaluate(stations, {.registration = RegistrationOptions{}, .attainable = &attainable});
   EXPECT_EQ(exact["network"]["captured"], whole.value("capture"));
   EXPECT_EQ(exact["network"]["values"]["registration"]["value"], whole.value("registration"));
-  EXPECT_EQ(exact["network"]["seconds_on_site"], 60 * whole.visit->minutes);
-  EXPECT_EQ(sampled["network"]["seconds_on_site"], 60 * whole.visit->minutes);
+  EXPECT_EQ(exact["network"]["minutes_on_site"], whole.visit->minutes);
+  EXPECT_EQ(sampled["network"]["minutes_on_site"], whole.visit->minutes);
   const auto lines = summary_lines(whole);
   ASSERT_EQ(exact["network"]["summary"].size(), lines.size());
   for (std::size_t k = 0; k < lines.size(); ++k) EXPECT_EQ(exact["network"]["summary"][k]["text"], lines[k].text);
@@ -302,7 +308,7 @@ TEST(EditSession, PutsAStationWhereItMayStand) {
   Hall hall({.voxels = 300, .cells = 200, .attainable_voxels = 0});
   State state = hall.add(-0.3, -1);  // beside the middle wall
   const auto head = [&](std::size_t k) {
-    const auto& h = state["network"]["stations"][k]["head"];
+    const auto& h = state["network"]["stations"][k]["position"];
     return Vec3{h[0], h[1], h[2]} - test::origin;
   };
   EXPECT_EQ(state["network"]["stations"][0]["status"], "ok");
@@ -368,7 +374,7 @@ TEST(EditSession, ImprovingMendsLinksFirst) {
   hall.change({{"do", "lock"}, {"id", 1}, {"locked", true}});
   after = hall.change({{"do", "improve"}});
   EXPECT_EQ(after["network"]["parts"], 1);
-  EXPECT_EQ(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
+  EXPECT_EQ(after["network"]["stations"][0]["position"], before["network"]["stations"][0]["position"]);
 }
 
 TEST(EditSession, AScanMakesItsStationATakenOne) {
@@ -391,7 +397,7 @@ TEST(EditSession, AScanMakesItsStationATakenOne) {
   const auto& taken = state["network"]["stations"][0];
   EXPECT_EQ(taken["name"], "S2");
   EXPECT_EQ(taken["existing"], true);
-  EXPECT_EQ(taken["head"], json({998.3, 2001.2, 50.0}));
+  EXPECT_EQ(taken["position"], json({998.3, 2001.2, 50.0}));
   EXPECT_EQ(state["network"]["stations"][1]["name"], "S1");
   EXPECT_EQ(state["locked"], json({true, false}));
   EXPECT_EQ(state["undo"], false);

@@ -61,7 +61,7 @@ TEST(CoordinateSystem, MayComeAsText) {
   EXPECT_NE(refusal("EPSG:25832x").find("as EPSG:25832"), std::string::npos);
   EXPECT_NE(refusal("25832").find("EPSG:25832"), std::string::npos);
   EXPECT_NE(refusal("GEOGCS[\"WGS 84\"]").find("angles"), std::string::npos);
-  EXPECT_NE(refusal("PROJCRS[\"x\"]").find("version 1"), std::string::npos);
+  EXPECT_NE(refusal("PROJCRS[\"x\"]").find("no well-known text"), std::string::npos);
   EXPECT_NE(refusal("PROJCS[\"x\",UNIT[\"foot\",0.3048]]").find("its unit is 0.3048 m"), std::string::npos);
   EXPECT_NE(refusal("PROJCS[\"x\",UNIT[\"metre\",1]").find("brackets"), std::string::npos);
   EXPECT_NE(refusal("FOO[\"x\"]").find("PROJCS["), std::string::npos);
@@ -74,6 +74,45 @@ TEST(CoordinateSystem, IsOneInMetres) {
   EXPECT_EQ(text.find('\n'), std::string::npos);
   EXPECT_NE(refusal("EPSG:4326").find("angles"), std::string::npos);
   EXPECT_NE(refusal("EPSG:2263").find("unit"), std::string::npos) << "feet";
+}
+
+// Version 2 becomes version 1, which LAS needs; plan and heights may be two codes.
+TEST(CoordinateSystem, MayBeOfVersionTwoAndHaveHeights) {
+  const std::string text = coordinate_system(
+      "PROJCRS[\"Own / UTM 32\",BASEGEOGCRS[\"ETRS89\",DATUM[\"European Terrestrial Reference System 1989\","
+      "ELLIPSOID[\"GRS 1980\",6378137,298.257222101,LENGTHUNIT[\"metre\",1]]]],CONVERSION[\"UTM zone 32N\","
+      "METHOD[\"Transverse Mercator\",ID[\"EPSG\",9807]],PARAMETER[\"Longitude of natural origin\",9],"
+      "PARAMETER[\"Scale factor at natural origin\",0.9996],PARAMETER[\"False easting\",500000]],CS[Cartesian,2],"
+      "AXIS[\"easting\",east],AXIS[\"northing\",north],LENGTHUNIT[\"metre\",1]]");
+  EXPECT_TRUE(text.starts_with("PROJCS[\"Own / UTM 32\",")) << text;
+  EXPECT_NE(text.find("\"central_meridian\",9]"), std::string::npos) << text;
+  const std::string heights = coordinate_system("EPSG:26918+5703");
+  EXPECT_TRUE(heights.starts_with("COMPD_CS[")) << heights;
+  EXPECT_NE(heights.find("VERT_CS[\"NAVD88 height\""), std::string::npos) << heights;
+  EXPECT_NE(refusal("EPSG:26918+").find("no coordinate system"), std::string::npos);
+}
+
+// The frame of a survey is metres east, north and up.
+TEST(CoordinateSystem, HasTheAxesOfTheSurvey) {
+  for (const char* code : {"EPSG:5513", "EPSG:2065", "EPSG:8352", "EPSG:8044", "EPSG:8045", "EPSG:2048"})
+    EXPECT_NE(refusal(code).find("its axes point"), std::string::npos) << code << ": " << refusal(code);
+  EXPECT_NE(refusal("EPSG:4978").find("middle of the earth"), std::string::npos);
+  EXPECT_NE(refusal("EPSG:26918+6360").find("unit of its heights is 0.3048"), std::string::npos)
+      << refusal("EPSG:26918+6360");
+  EXPECT_NE(refusal("EPSG:5705").find("no projected system"), std::string::npos) << "heights alone";
+  EXPECT_NE(refusal("EPSG:9518").find("angles"), std::string::npos) << "with heights";
+  for (const char* code : {"EPSG:5514", "EPSG:31467", "EPSG:3031", "EPSG:32661"})
+    EXPECT_EQ(refusal(code), "accepted") << code;
+  // Text of version 1 has no axes of Krovak's; its code tells them.
+  EXPECT_NE(
+      refusal("PROJCS[\"S-JTSK / Krovak\",GEOGCS[\"S-JTSK\",DATUM[\"S_JTSK\",SPHEROID[\"Bessel 1841\",6377397.155,"
+              "299.1528128]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Krovak\"],"
+              "PARAMETER[\"latitude_of_center\",49.5],PARAMETER[\"longitude_of_center\",24.8333333333333],"
+              "PARAMETER[\"azimuth\",30.2881397527778],PARAMETER[\"pseudo_standard_parallel_1\",78.5],"
+              "PARAMETER[\"scale_factor\",0.9999],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],"
+              "UNIT[\"metre\",1],AUTHORITY[\"EPSG\",\"5513\"]]")
+          .find("its axes point"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -100,11 +100,12 @@ const std::vector<Change<SceneOptions>> kScene{
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false},
+    {"beside", [](SceneOptions& o) { o.beside = {"structure.ifc"}; }, false},
     {"wall_layers", [](SceneOptions& o) { o.wall_layers = {"A-WALL"}; }, false},
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
     {"shared_meshes", [](SceneOptions& o) { o.shared_meshes = SharedMeshes::always; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SceneOptions>() == 20);
+static_assert(member_count<SceneOptions>() == 21);
 
 struct Alone final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }
@@ -188,13 +189,14 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }},
     // Targets are of the answer, and decide nothing in its search.
     {"targets", [](SurveyProblem& p) { p.targets = 4; }, false},
+    {"existing_names", [](SurveyProblem& p) { p.existing_names = {"A"}; }, false, false},
     {"existing_targets",
      [](SurveyProblem& p) {
        p.existing_targets = {{.name = "C1", .centre = {1, 2, 3}, .control_m = 0.002}};
      },
      false},
     {"target", [](SurveyProblem& p) { p.target.diameter_m = 0.2; }, false}};
-static_assert(member_count<SurveyProblem>() == 17);
+static_assert(member_count<SurveyProblem>() == 18);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},

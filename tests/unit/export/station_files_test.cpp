@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "export/xml_text.hpp"
 #include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
@@ -186,6 +187,14 @@ TEST(StationFiles, RefusesWrongUse) {
   EXPECT_THROW(write_stations(folder / "a.shp", stations, kNames, {}, site), Error);
   EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, area()), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+// XML 1.0 has neither control characters nor U+FFFE and U+FFFF, and no text has what is no UTF-8.
+TEST(XmlText, HasNothingThatXmlRefuses) {
+  EXPECT_EQ(xml_text("a<b>&\x01\x1F\tc"), "a&lt;b&gt;&amp;c");
+  EXPECT_EQ(xml_text("\xEF\xBF\xBE|\xEF\xBF\xBF|\xEF\xBF\xBD"), "\xEF\xBF\xBD|\xEF\xBF\xBD|\xEF\xBF\xBD");
+  EXPECT_EQ(xml_text("\xED\xA0\x80"), "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD") << "an unpaired surrogate";
+  EXPECT_EQ(xml_text("T\xFCr T\xC3\xBCr \xF0\x9F\x9A\xAA"), "T\xEF\xBF\xBDr T\xC3\xBCr \xF0\x9F\x9A\xAA");
 }
 
 }  // namespace

@@ -390,9 +390,8 @@ TEST_F(FloorPlanTest, DamagedFilesGiveASceneOrOneError) {
     std::string content = whole;
     if (k % 3 == 0)
       content.resize(random() % content.size());
-    else
-      for (std::uint32_t flips = 1 + random() % 8; flips > 0; --flips)
-        content[random() % content.size()] ^= static_cast<char>(1U << (random() % 8));
+    else  // one bit; more are nearly always told
+      content[random() % content.size()] ^= static_cast<char>(1U << (random() % 8));
     const auto file = write(std::to_string(k) + ".dxf", content);
     try {
       load_within(file, 5);

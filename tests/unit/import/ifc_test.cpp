@@ -5,6 +5,7 @@
 #include <random>
 
 #include "ifc_house.hpp"
+#include "import/import.hpp"
 #include "import_fixture.hpp"
 #include "vantage/export.hpp"
 #include "vantage/missed.hpp"
@@ -246,6 +247,66 @@ TEST_F(IfcTest, WhatHasNoShapeIsRefused) {
   const auto unknown =
       write("unknown.ifc", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC9'));\nENDSEC;\nDATA;\nENDSEC;\n");
   expect_error(Errc::malformed_file, "unknown.ifc: it cannot be read as IFC", [&] { Scene::load(unknown); });
+}
+
+// Text of a house with a map conversion at its end.
+std::string mapped_house(const IfcHouse& house = {}) {
+  std::string text = ifc_house(house);
+  text.insert(text.rfind("ENDSEC;"),
+              "#9001=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n"
+              "#9002=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,#9001);\n"
+              "#9003=IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,$,$);\n"
+              "#9004=IFCMAPCONVERSION(#9003,#9002,500000.,5400000.,120.,1.,0.,0.001);\n");
+  return text;
+}
+
+TEST_F(IfcTest, MapConversionsReachTheSitesCoordinateSystem) {
+  const auto file = write("house.ifc", mapped_house());
+  const Site site = Site::open(file, SiteOptions{});
+  expect_house(site.scene(), {500'000, 5'400'000, 120});
+  EXPECT_EQ(site.crs(), "EPSG:25832");
+  EXPECT_EQ(Site::open(file, {.crs = "EPSG:25833"}).crs(), "EPSG:25833") << "what is given goes first";
+  EXPECT_TRUE(has_note(site.scene(), "EPSG:25832"));
+  ASSERT_EQ(site.scene().rooms().size(), 2u);
+  EXPECT_NEAR(site.scene().rooms()[0].box.min.y, 5'400'000.2, 1e-3);
+}
+
+TEST_F(IfcTest, SeveralFilesAreOneSite) {
+  const auto first = write("both/a.ifc", ifc_house());
+  const auto second = write("both/b.ifc", ifc_house({IfcVersion::ifc2x3, IfcUnit::metre, {20, 0, 0}}));
+  const Scene one = Scene::load(first), folder = Scene::load(first.parent_path());
+  const Scene both = Scene::load(first, {.beside = {second.string()}});
+  // Products of one GlobalId are one product: the second house is the first one.
+  EXPECT_EQ(both.triangle_count(), one.triangle_count());
+  EXPECT_EQ(folder.triangle_count(), one.triangle_count());
+  EXPECT_TRUE(has_note(both, "in another file of the site, too"));
+  std::string other = ifc_house({IfcVersion::ifc4, IfcUnit::metre, {20, 0, 0}});
+  for (std::size_t at = 0; (at = other.find("'0Vantage", at)) != std::string::npos; ++at) other[at + 1] = '1';
+  write("both/b.ifc", other);
+  const Scene two = Scene::load(first.parent_path());
+  EXPECT_EQ(two.triangle_count(), 2 * one.triangle_count());
+  EXPECT_NEAR(two.bounds().max.x, 28.6, 1e-3);
+  const auto drawing = write("plan.glb", "glTF");
+  expect_error(Errc::malformed_file, "several files are one site if",
+               [&] { Scene::load(first, {.beside = {drawing.string()}}); });
+}
+
+TEST_F(IfcTest, UnitsAreAskedAndAnswered) {
+  std::string text = ifc_house();
+  const auto at = text.find("IFCUNITASSIGNMENT");
+  const auto hash = text.rfind('#', at);
+  const std::string units = text.substr(hash, text.find('=', hash) - hash);
+  text.replace(text.find("," + units + ")"), units.size() + 1, ",$");
+  const auto file = write("house.ifc", text);
+  const std::string asked = expect_error(Errc::malformed_file, "it states no unit of length; give the setting unit",
+                                         [&] { Scene::load(file); });
+  EXPECT_NE(asked.find("mm for millimetres (8.60 x 4.40 x 2.90 m)"), std::string::npos) << asked;
+  expect_house(Scene::load(file, {.unit = Unit::millimetre}), {0, 0, 0});
+}
+
+TEST_F(IfcTest, TheDraftOfIfc5IsNamed) {
+  const auto file = write("house.ifcx", R"({"header": {"id": "house", "ifcxVersion": "ifcx_alpha"}, "data": []})");
+  expect_error(Errc::malformed_file, "this is IFC 5 (ifcx)", [&] { Scene::load(file); });
 }
 
 TEST_F(IfcTest, DamagedOnesGiveASceneOrOneError) {

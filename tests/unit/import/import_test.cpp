@@ -2,9 +2,16 @@
 // The library's handling of importers, played by scripts: errors, and the cache.
 #include "import/import.hpp"
 
+#include <linux/landlock.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <stop_token>
 #include <thread>
 
 #include "import_fixture.hpp"
@@ -35,13 +42,13 @@ class ImporterTest : public ImportTest {
       for (const auto& entry : std::filesystem::directory_iterator(cache())) out.push_back(entry.path());
     return out;
   }
-  void use_copier() const { use_script("cat $(dirname $0)/scene.glb"); }
+  void use_copier() const { use_script("exec cat ${0%/*}/scene.glb"); }
 
   const std::filesystem::path model_ = write("model.obj", kObj);
 };
 
 TEST_F(ImporterTest, GetsFormatAndFile) {
-  use_script("test \"$1\" = obj && test \"$2\" = " + model_.string() + " && cat $(dirname $0)/scene.glb");
+  use_script("test \"$1\" = obj && test \"$2\" = " + model_.string() + " && exec cat ${0%/*}/scene.glb");
   EXPECT_EQ(import(model_), glb("triangle"));
 }
 
@@ -49,10 +56,10 @@ TEST_F(ImporterTest, GlbIsKeptByContent) {
   use_copier();
   EXPECT_EQ(import(model_), glb("triangle"));
   ASSERT_EQ(entries().size(), 1u);
-  std::ofstream(entries().front(), std::ios::binary) << glb("kept");
-  EXPECT_EQ(import(model_), glb("kept"));
-  EXPECT_EQ(import(write("copy/other_name.obj", kObj)), glb("kept"));
-  EXPECT_EQ(import(write("model.obj", std::string(kObj) + "f 3 2 1\n")), glb("triangle"));
+  write("importers/scene.glb", glb("another"));
+  EXPECT_EQ(import(model_), glb("triangle"));
+  EXPECT_EQ(import(write("copy/other_name.obj", kObj)), glb("triangle"));
+  EXPECT_EQ(import(write("model.obj", std::string(kObj) + "f 3 2 1\n")), glb("another"));
   EXPECT_EQ(entries().size(), 2u);
 }
 
@@ -72,12 +79,96 @@ TEST_F(ImporterTest, BrokenEntryIsMadeAnew) {
   use_copier();
   import(model_);
   const auto entry = entries().front();
-  for (const std::string& broken : {std::string(), std::string("text"), glb("triangle").substr(0, 100)}) {
+  const auto content = [&] {
+    std::ifstream stream(entry, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string whole = content();
+  EXPECT_EQ(whole.find(glb("triangle")), 0u);
+  std::string changed = whole;
+  changed[glb("triangle").size() - 1] ^= 1;
+  for (const std::string& broken :
+       {std::string(), std::string("text"), whole.substr(0, 100), glb("kept"), changed,
+        whole.substr(0, whole.size() - 1), glb("kept") + whole.substr(glb("triangle").size())}) {
     std::ofstream(entry, std::ios::binary) << broken;
     EXPECT_EQ(import(model_), glb("triangle"));
+    EXPECT_EQ(content(), whole);
   }
-  std::ifstream stream(entry, std::ios::binary);
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), glb("triangle"));
+}
+
+TEST_F(ImporterTest, EntriesAreForTheirUserAlone) {
+  use_copier();
+  import(model_);
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(entries().front()).permissions(), perms::owner_read | perms::owner_write);
+}
+
+// Each would hold up the program itself, which reads a model for its key.
+TEST_F(ImporterTest, WhatAModelNamesIsReadWithinBounds) {
+  use_copier();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto sparse = folder_.path() / "sparse.mtl";
+  std::ofstream(sparse) << "newmtl a\n";
+  std::filesystem::resize_file(sparse, std::uintmax_t{1} << 40);
+  std::string twice;
+  for (int k = 0; k < 20'000; ++k) twice += "mtllib table.mtl\n";
+  write("table.mtl", std::string(1 << 20, '#'));
+  for (const std::string& tables :
+       {std::string("mtllib /dev/zero\n"), std::string("mtllib ../../../../../../dev/zero\n"), twice,
+        std::string("mtllib sparse.mtl\n"), "mtllib " + std::string(50'000'000, 'a') + "\n"})
+    EXPECT_EQ(import(write("model.obj", kObj + tables)), glb("triangle"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+TEST_F(ImporterTest, ReadingForTheKeyIsStopped) {
+  use_copier();
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_TRUE(
+      importers::as_glb(model_, *importers::recognise(model_).format, {}, {}, {.report = {}, .stop = stop.get_token()})
+          .empty());
+}
+
+TEST_F(ImporterTest, ReadsItsModelAndTheTablesItNamesAlone) {
+  const bool landlock = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) > 0;
+  write("key", "secret");
+  write("colours.mtl", "newmtl red\n");
+  write("others/far.mtl", "newmtl blue\n");
+  std::filesystem::create_symlink(folder_ / "others/far.mtl", folder_ / "near.mtl");
+  const auto model = write("site/model.obj", std::string("mtllib colours.mtl\nmtllib ../key\nmtllib far.mtl\n") + kObj);
+  write("site/colours.mtl", "newmtl red\n");
+  write("site/other.obj", "other");
+  std::filesystem::create_symlink(folder_ / "others/far.mtl", folder_ / "site/far.mtl");
+  for (const auto& [file, may] : {std::pair{"site/model.obj", true},
+                                  {"site/colours.mtl", true},
+                                  {"site/other.obj", false},
+                                  {"site/far.mtl", false},
+                                  {"key", false}}) {
+    use_script("read line <" + (folder_ / file).string() + " && exec cat ${0%/*}/scene.glb; exit 3");
+    if (may || !landlock)
+      EXPECT_EQ(import(model), glb("triangle")) << file;
+    else
+      expect_error(Errc::malformed_file, "exit code", [&] { import(model); });
+    std::filesystem::remove_all(cache());
+  }
+}
+
+TEST_F(ImporterTest, WhatIsNoFileInAFolderIsNamed) {
+  const auto scans = folder_.path() / "scans";
+  write("scans/a.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const auto refused = [&](const std::string& words) {
+    expect_error(Errc::io, words, [&] { importers::files_of(scans); });
+    std::filesystem::remove(scans / "b.xyz");
+  };
+  std::filesystem::create_symlink("/dev/zero", scans / "b.xyz");
+  refused("b.xyz: this is a link to /dev/zero, which is a device");
+  std::filesystem::create_symlink("gone.xyz", scans / "b.xyz");
+  refused("b.xyz: this is a link to gone.xyz, where there is nothing");
+  std::filesystem::create_directory(scans / "b.xyz");
+  refused("b.xyz: this is a folder");
+  ASSERT_EQ(mkfifo((scans / "b.xyz").c_str(), 0600), 0);
+  refused("b.xyz: this is a pipe");
+  EXPECT_EQ(importers::files_of(scans).size(), 1u);
 }
 
 TEST_F(ImporterTest, WorksWithoutACache) {
@@ -116,10 +207,10 @@ TEST_F(ImporterTest, FailuresAreOneClearError) {
   failing("echo 'libassimp.so.5: cannot open shared object file' >&2; exit 127", Errc::io,
           "cannot be started: libassimp.so.5: cannot open shared object file; install vantage again");
   failing("echo no GLB", Errc::malformed_file, "gave no GLB");
-  failing("head -c 200 $(dirname $0)/scene.glb", Errc::malformed_file, "gave no GLB");
-  failing("sleep 60", Errc::malformed_file, "took more than 1 s", {.wall_s = 1});
+  failing("exec head -c 200 ${0%/*}/scene.glb", Errc::malformed_file, "gave no GLB");
+  failing("exec sleep 60", Errc::malformed_file, "took more than 1 s", {.wall_s = 1});
   failing("while :; do :; done", Errc::malformed_file, "took more than 1 s of computing", {.cpu_s = 1});
-  failing("cat $(dirname $0)/scene.glb", Errc::malformed_file, "would take more than", {.output = 100});
+  failing("exec cat ${0%/*}/scene.glb", Errc::malformed_file, "would take more than", {.output = 100});
 }
 
 TEST_F(ImporterTest, OneThatMayNotRunIsToldFromADamagedFile) {

@@ -2,8 +2,12 @@
 // `PlanConfig::max_seconds` limits the whole call of plan().
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <stop_token>
+#include <utility>
+#include <vector>
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
@@ -56,6 +60,59 @@ TEST_F(TimeLimit, EndsTheSearchAndConfirmsWhatItFound) {
   EXPECT_LE(longest, 2);
   ASSERT_FALSE(result.front.empty());
   for (const PlanEntry& entry : result.front) EXPECT_TRUE(entry.exact) << "there was a fifth of the time for it";
+}
+
+TEST_F(TimeLimit, LeavesTheCallerWhatItAsksFor) {
+  std::vector<std::pair<std::size_t, double>> asked;
+  Site few_rays = site(test::coarse_scanner(5));
+  const PlanResult result =
+      vantage::plan(few_rays, coverage_overlap_fix(3),
+                    {.population = 10, .iterations = 100'000'000, .sample_voxels = 200, .max_seconds = 6},
+                    {.seconds_after = [&](std::size_t stations, double seconds_a_station) {
+                      asked.emplace_back(stations, seconds_a_station);
+                      return 2.9 + static_cast<double>(stations) * seconds_a_station;
+                    }});
+  EXPECT_EQ(result.stop_reason, StopReason::max_time);
+  EXPECT_LT(result.seconds, 4);
+  ASSERT_GT(asked.size(), 2u) << "at the beginning, before the search, and after it";
+  EXPECT_EQ(asked.front(), (std::pair<std::size_t, double>{0, 0}));
+  for (const auto& [stations, seconds] : std::span(asked).subspan(1)) {
+    EXPECT_EQ(stations, 3u);
+    EXPECT_GT(seconds, 0);
+  }
+  for (const PlanEntry& entry : result.front) EXPECT_TRUE(entry.exact);
+}
+
+// As if the time were over after one network.
+TEST_F(TimeLimit, CountsTheAnswerFirst) {
+  Site few_rays = site(test::coarse_scanner(5));
+  std::stop_source abort;
+  int asked = 0;  // at the beginning, before the search, and once the first network is counted
+  const PlanResult result =
+      vantage::plan(few_rays, coverage_overlap_fix(3),
+                    {.population = 10, .iterations = 20, .sample_voxels = 100, .max_seconds = 1000},
+                    {.abort = abort.get_token(), .seconds_after = [&](std::size_t, double) {
+                       if (++asked == 3) abort.request_stop();
+                       return 0.0;
+                     }});
+  ASSERT_GT(result.front.size(), 1u);
+  EXPECT_EQ(std::ranges::count(result.front, true, &PlanEntry::exact), 1);
+  const PlanEntry& entry = result.front[answer(result)];
+  EXPECT_TRUE(entry.exact);
+  EXPECT_TRUE(entry.visit);
+}
+
+TEST_F(TimeLimit, LeavesNothingUnknownThatPositionsTell) {
+  SurveyProblem problem = coverage_fix(3);
+  problem.requirements = {make_requirement("apart>=0.5", problem.settings())};
+  std::stop_source abort;
+  abort.request_stop();
+  const PlanResult result = plan(problem, {.iterations = 3, .sample_voxels = 100}, {.abort = abort.get_token()});
+  ASSERT_FALSE(result.front.empty());
+  for (const PlanEntry& entry : result.front) {
+    EXPECT_FALSE(entry.exact);
+    EXPECT_TRUE(std::isfinite(entry.value("apart")));
+  }
 }
 
 TEST_F(TimeLimit, IsNotBlamedForAStopByTheCaller) {

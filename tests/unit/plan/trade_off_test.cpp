@@ -28,7 +28,7 @@ TEST(TradeOff, NetworksAreLinkedAndCaptureMoreTheMoreStationsTheyHave) {
   const auto candidates = test::floor_candidates(10);
   look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
   choose(choice, {}, {});
-  const auto networks = trade_off_networks(choice, {});
+  const auto networks = trade_off_networks(choice, {}, {});
   ASSERT_GE(networks.size(), choice.placed());
   EXPECT_EQ(networks.front().chosen.size(), 1u);
   EXPECT_GT(networks.back().chosen.size(), choice.placed());

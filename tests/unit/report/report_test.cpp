@@ -58,7 +58,7 @@ TEST(Report, HasTheNumbersOfThePlan) {
     for (const char* name : {"coverage", "overlap"}) EXPECT_EQ(network["values"][name]["value"], entry.value(name));
     ASSERT_EQ(network["stations"].size(), entry.stations.size());
     for (std::size_t s = 0; s < entry.stations.size(); ++s)
-      EXPECT_EQ(network["stations"][s]["head"][0], entry.stations[s].position.x);
+      EXPECT_EQ(network["stations"][s]["position"][0], entry.stations[s].position.x);
     for (const auto& link : network["links"]) {
       const double overlap = entry.overlap_matrix(link["a"], link["b"]);
       EXPECT_EQ(link["value"], overlap);

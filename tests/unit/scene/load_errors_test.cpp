@@ -189,7 +189,8 @@ TEST(LoadErrors, ExtensionsThatAreRequired) {
   }
   expect_malformed([](GlbBuilder& b) { b.json["extensionsRequired"] = {7}; }, {"extensionsRequired"});
   GlbBuilder fine = square();
-  fine.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_mesh_quantization"};
+  fine.json["extensionsRequired"] = {"KHR_materials_unlit",    "KHR_texture_transform", "KHR_mesh_quantization",
+                                     "KHR_node_selectability", "KHR_node_hoverability", "EXT_texture_webp"};
   fine.json["extensionsUsed"] = {"ACME_secret_mesh"};
   const TemporaryFolder folder;
   fine.write_glb(folder / "scene.glb");

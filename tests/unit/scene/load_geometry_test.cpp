@@ -442,5 +442,53 @@ TEST(LoadGeometry, ATwentyThousandTriangleFileOfManyNodesKeepsTheirOrder) {
   EXPECT_EQ(scene.meshes()[1999].name, "n1999");
 }
 
+// Two strips, or fans, that a restart index parts.
+TEST(LoadGeometry, RestartIndicesBeginAnotherStripOrFan) {
+  for (const char* extension : {"KHR_mesh_primitive_restart", "EXT_mesh_primitive_restart"})
+    for (const int mode : {5, 6})
+      for (const int type : {kUnsignedByte, kUnsignedShort, kUnsignedInt}) {
+        GlbBuilder builder;
+        const int points = builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0});
+        const std::vector<std::uint32_t> wide{0, 1, 2, 0xFFFFFFFF, 2, 3, 4};
+        const std::vector<std::uint16_t> middle(wide.begin(), wide.end());
+        const std::vector<std::uint8_t> narrow(wide.begin(), wide.end());
+        const int indices = type == kUnsignedByte    ? builder.accessor(narrow, type, "SCALAR")
+                            : type == kUnsignedShort ? builder.accessor(middle, type, "SCALAR")
+                                                     : builder.accessor(wide, type, "SCALAR");
+        builder.node(
+            {{"mesh", builder.mesh({{"attributes", {{"POSITION", points}}}, {"indices", indices}, {"mode", mode}})}});
+        EXPECT_THROW(load(builder), Error);  // glTF itself has no restarts
+        builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {extension};
+        const Scene scene = load(builder);
+        ASSERT_EQ(scene.triangle_count(), 2u);
+        for (std::uint32_t t = 0; t < 2; ++t) EXPECT_NEAR(normal(scene, t).y, -1, 1e-6);
+      }
+}
+
+TEST(LoadGeometry, PositionsMayBeDoubles) {
+  GlbBuilder builder;
+  const std::vector<double> points{500'000.123, 10, -4'500'000.456, 500'010, 10, -4'500'000, 500'000, 20, -4'500'000};
+  builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", builder.accessor(points, 5130, "VEC3")}}}})}});
+  builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_accessor_float64"};
+  const Scene scene = load(builder);
+  expect_near(corners(scene, 0)[0], {500'000.123, 4'500'000.456, 10});
+  EXPECT_TRUE(scene.notes().empty());
+}
+
+// Levels may be roots of the scene, too, and a level may be all that a scene shows.
+TEST(LoadGeometry, CoarserLevelsOfDetailAreLeftOut) {
+  GlbBuilder builder;
+  const int fine = builder.triangle("fine"), coarse = builder.triangle("coarse"), coarser = builder.triangle("coarser");
+  builder.json["nodes"][static_cast<std::size_t>(fine)]["extensions"]["MSFT_lod"]["ids"] = {coarse, coarser};
+  builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"MSFT_lod"};
+  const Scene scene = load(builder);
+  ASSERT_EQ(scene.meshes().size(), 1u);
+  EXPECT_EQ(scene.meshes()[0].name, "fine");
+  ASSERT_FALSE(scene.notes().empty());
+  EXPECT_EQ(scene.notes()[0], "2 nodes are coarser levels of detail of others, and are left out");
+  builder.json["scenes"][0]["nodes"] = {coarse};
+  EXPECT_EQ(load(builder).meshes()[0].name, "coarse");
+}
+
 }  // namespace
 }  // namespace vantage

@@ -196,6 +196,40 @@ TEST(SharedMeshes, DistancesAndClashesAreTheSame) {
   EXPECT_GT(near, 500u);
 }
 
+// A ball around a point is as large in the frame of a mesh as its scale makes it.
+TEST(SharedMeshes, DistancesToScaledMeshesAreTheSame) {
+  GlbBuilder builder = site();
+  const auto add = [&](const char* name, const std::vector<double>& at, const std::vector<double>& scale) {
+    builder.child(0, {{"name", name},
+                      {"mesh", 0},
+                      {"translation", at},
+                      {"rotation", {0.182574, 0.365148, 0.547723, 0.730297}},
+                      {"scale", scale}});
+  };
+  add("in centimetres", {1, 4, 3}, {0.01, 0.01, 0.01});
+  add("in millimetres", {-2, 4, 1}, {0.001, 0.001, 0.001});
+  add("uneven", {2, 5, -3}, {0.002, 0.3, 0.05});
+  add("large", {0, 30, 0}, {40, 40, 40});
+  const Scene once = loaded(builder, SharedMeshes::always), each = loaded(builder, SharedMeshes::never);
+  const MeshTree a(once.data()), b(each.data());
+  std::size_t near = 0;
+  for (const glm::dvec3& glTF :
+       {glm::dvec3{1, 4, 3}, glm::dvec3{-2, 4, 1}, glm::dvec3{2, 5, -3}, glm::dvec3{0, 30, 0}}) {
+    const glm::dvec3 survey(4123.7 + glTF.x, 887.4 - glTF.z, 31.2 + glTF.y);
+    const glm::dvec3 middle = survey - to_glm(each.data().origin);
+    for (int k = 0; k < 300; ++k) {
+      const auto share = [&](double step) { return std::fmod(0.5 + k * step, 1.0) - 0.5; };
+      const glm::dvec3 p = middle + 2.0 * glm::dvec3(share(0.754877666), share(0.569840291), share(0.419716041));
+      ASSERT_EQ(a.distance(p, 2), b.distance(p, 2)) << "point " << k;
+      ASSERT_EQ(a.within(p, 0.3), b.within(p, 0.3)) << "point " << k;
+      ASSERT_EQ(a.within_of_segment(p, p + glm::dvec3{0.3, 0.2, 1}, 0.2),
+                b.within_of_segment(p, p + glm::dvec3{0.3, 0.2, 1}, 0.2));
+      near += a.within(p, 0.3);
+    }
+  }
+  EXPECT_GT(near, 10u) << "points near a mesh, and far from all";
+}
+
 TEST(SharedMeshes, AGroundIsTheSame) {
   const Scene once = loaded(site(), SharedMeshes::always), each = loaded(site(), SharedMeshes::never);
   const auto area = [](const Scene& scene) {

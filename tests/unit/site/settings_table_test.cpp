@@ -57,7 +57,8 @@ TEST(SettingTables, NameASettingThatCannotBeRead) {
     return std::string();
   };
   EXPECT_EQ(refused(site_settings(), "height", "tall", SiteOptions()), "height: 'tall' is not a number");
-  EXPECT_EQ(refused(site_settings(), "spacing", "0", SiteOptions()), "spacing: '0' must be above 0");
+  EXPECT_EQ(refused(site_settings(), "spacing", "0", SiteOptions()),
+            "spacing: '0' must be at least 1e-06 and at most 1e+09");
   EXPECT_EQ(refused(question_settings(), "capture", "2", SurveyQuestion()),
             "capture: '2' must be at least 0 and at most 1");
   EXPECT_EQ(refused(plan_settings(), "exact", "perhaps", PlanConfig()), "exact: 'perhaps' is neither true nor false");

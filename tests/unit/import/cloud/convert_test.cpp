@@ -194,6 +194,65 @@ TEST_F(ConvertTest, TheSamePointsGiveTheSameBytes) {
   EXPECT_EQ(importer::convert_cloud({file}, "e57"), importer::convert_cloud({file}, "e57"));
 }
 
+// A point every 4 cm on the six faces of a room.
+std::string room_text(double per_metre, const Vec3& size, const Vec3& at = {}) {
+  std::string text;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> within(-0.5, 0.5);
+  constexpr double kStep = 0.04;
+  const double s[]{size.x, size.y, size.z}, o[]{at.x, at.y, at.z};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {0.0, s[axis]})
+      for (double u = 0.5 * kStep; u < s[(axis + 1) % 3]; u += kStep)
+        for (double v = 0.5 * kStep; v < s[(axis + 2) % 3]; v += kStep) {
+          double p[3];
+          p[axis] = side, p[(axis + 1) % 3] = u + kStep * within(random),
+          p[(axis + 2) % 3] = v + kStep * within(random);
+          for (int k = 0; k < 3; ++k) text += std::to_string((p[k] + o[k]) * per_metre) + (k < 2 ? " " : "\n");
+        }
+  return text;
+}
+
+TEST_F(ConvertTest, AUnitThatNobodyToldIsRecognisedOrAsked) {
+  const Vec3 size{7, 5, 2.8};
+  for (const auto& [unit, per_metre] : {std::pair{"m", 1.0}, {"cm", 100.0}, {"mm", 1000.0}, {"in", 1 / 0.0254}}) {
+    const auto file = write(std::string("room_") + unit + ".xyz", room_text(per_metre, size));
+    try {
+      const Box box = scene_of(file, "xyz").bounds();
+      EXPECT_NEAR(box.max.x - box.min.x, 7, 0.3) << unit;
+      EXPECT_NEAR(box.max.z - box.min.z, 2.8, 0.3) << unit;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("the setting unit"), std::string::npos) << unit << error.what();
+    }
+    const auto told = importer::convert_cloud({file}, "xyz", {.unit_m = 1 / per_metre});
+    const auto glb = folder_.path() / "told.glb";
+    std::ofstream(glb, std::ios::binary) << told;
+    EXPECT_NEAR(Scene::load(glb).bounds().max.y, 5, 0.2) << unit;
+  }
+  // Metres are not asked.
+  EXPECT_NEAR(scene_of(folder_.path() / "room_m.xyz", "xyz").bounds().max.x, 7, 0.2);
+}
+
+TEST_F(ConvertTest, NationalMillimetresAndDegreesAreKnown) {
+  const Scene scene = scene_of(write("a.xyz", room_text(1000, {7, 5, 2.8}, {500'000, 5'400'000, 300})), "xyz");
+  EXPECT_NEAR(scene.bounds().min.y, 5'400'000, 0.2);
+  EXPECT_NEAR(scene.bounds().max.x, 500'007, 0.2);
+  std::string degrees;
+  for (int k = 0; k < 3000; ++k)
+    degrees += std::to_string(9 + 1e-6 * (k % 60)) + " " + std::to_string(48 + 1e-6 * (k % 50)) + " " +
+               std::to_string(300 + 0.001 * (k % 2800)) + "\n";
+  expect_refused_for("look like degrees", [&] { importer::convert_cloud({write("b.xyz", degrees)}, "xyz"); });
+}
+
+TEST_F(ConvertTest, AnotherAxisMayPointUp) {
+  const auto file = write("a.xyz", room_text(1, {7, 2.8, 5}));
+  const auto glb = folder_.path() / "up.glb";
+  std::ofstream(glb, std::ios::binary) << importer::convert_cloud({file}, "xyz", {.unit_m = 1, .up = 'y'});
+  const Box box = Scene::load(glb).bounds();
+  EXPECT_NEAR(box.max.z - box.min.z, 2.8, 0.2);
+  EXPECT_NEAR(box.min.y, -5, 0.2);
+}
+
 TEST_F(ConvertTest, AMachineAloneHasNoGround) {
   std::string text;
   for (double y = 0; y < 2; y += 0.01)

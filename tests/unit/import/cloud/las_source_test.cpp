@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cloud_files.hpp"
+#include <cstdlib>
+
+#include "las_file.hpp"
+#include "laz_files.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage::test {
@@ -7,57 +10,6 @@ namespace {
 
 using LasSourceTest = CloudTest;
 using importer::open_las;
-
-constexpr std::size_t kRecords[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-
-struct Las {
-  int minor = 2, format = 0;
-  std::size_t spare = 0;  // bytes behind each record, as users may add
-  std::string records = {};
-  std::uint32_t vlrs = 0;
-  std::string vlr_bytes = {};
-  std::uint64_t count = 0;
-
-  void add(std::int32_t x, std::int32_t y, std::int32_t z, int kind = 2, bool withheld = false) {
-    std::string record;
-    put(record, x), put(record, y), put(record, z);
-    record.resize(kRecords[format] + spare, '\0');
-    if (format >= 6)
-      record[15] = withheld ? 4 : 0, record[16] = static_cast<char>(kind);
-    else
-      record[15] = static_cast<char>(kind | (withheld ? 0x80 : 0));
-    records += record;
-    ++count;
-  }
-  void vlr(std::uint16_t id, const std::string& body) {
-    vlr_bytes.append(2, '\0');
-    std::string user = "LASF_Projection";
-    user.resize(16, '\0');
-    vlr_bytes += user;
-    put(vlr_bytes, id), put(vlr_bytes, static_cast<std::uint16_t>(body.size()));
-    vlr_bytes.append(32, '\0');
-    vlr_bytes += body;
-    ++vlrs;
-  }
-  std::string bytes() const {
-    const std::size_t header = minor >= 4 ? 375 : 227;
-    std::string h = "LASF";
-    h.resize(24, '\0');
-    h += '\1', h += static_cast<char>(minor);
-    h.resize(94, '\0');
-    put(h, static_cast<std::uint16_t>(header)), put(h, static_cast<std::uint32_t>(header + vlr_bytes.size()));
-    put(h, vlrs);
-    h += static_cast<char>(format);
-    put(h, static_cast<std::uint16_t>(kRecords[format & 0x3F] + spare));
-    put(h, minor >= 4 ? 0U : static_cast<std::uint32_t>(count));
-    h.resize(131, '\0');
-    for (int axis = 0; axis < 3; ++axis) put(h, 0.01);
-    for (const double offset : {1000.0, 2000.0, 0.0}) put(h, offset);
-    h.resize(header, '\0');
-    if (minor >= 4) std::memcpy(h.data() + 247, &count, sizeof count);
-    return h + vlr_bytes + records;
-  }
-};
 
 TEST_F(LasSourceTest, EveryPointFormat) {
   for (int format = 0; format <= 10; ++format) {
@@ -90,29 +42,196 @@ TEST_F(LasSourceTest, ReadsWhatVantageWrites) {
   expect_at(points[1], 500'004.25, 5'000'005, 6, 1e-4);
 }
 
-TEST_F(LasSourceTest, UnitsAndSystems) {
-  const auto with = [&](std::uint16_t id, const std::string& body) {
+// Keys of GeoTIFF; a pair of a key and a double goes to the record of doubles.
+std::string keys(const std::vector<std::pair<std::uint16_t, std::uint16_t>>& values, std::uint16_t doubles = 0) {
+  std::string body;
+  for (const std::uint16_t word :
+       {std::uint16_t{1}, std::uint16_t{1}, std::uint16_t{0}, static_cast<std::uint16_t>(values.size())})
+    put(body, word);
+  for (const auto& [key, value] : values) {
+    const bool size = doubles > 0 && key == doubles;
+    for (const std::uint16_t word : {key, static_cast<std::uint16_t>(size ? 34736 : 0), std::uint16_t{1}, value})
+      put(body, word);
+  }
+  return body;
+}
+
+std::string projected(const std::string& unit, const std::string& height = {}) {
+  const std::string plan =
+      "PROJCS[\"Own\",GEOGCS[\"NAD83\",DATUM[\"North_American_Datum_1983\",SPHEROID[\"GRS "
+      "1980\",6378137,298.257222101]],"
+      "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],"
+      "PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",-75],PARAMETER[\"scale_factor\",0.9996],"
+      "PARAMETER[\"false_easting\",1000],PARAMETER[\"false_northing\",0]," +
+      unit + "]";
+  if (height.empty()) return plan;
+  return "COMPD_CS[\"Both\"," + plan + ",VERT_CS[\"Heights\",VERT_DATUM[\"Own\",2005]," + height + "]]";
+}
+
+constexpr const char* kMetre = "UNIT[\"metre\",1]";
+constexpr const char* kSurveyFoot = "UNIT[\"US survey foot\",0.304800609601219]";
+constexpr double kFoot_m = 1200.0 / 3937;
+
+class LasSystems : public LasSourceTest {
+ protected:
+  std::unique_ptr<importer::PointSource> with(std::uint16_t id, const std::string& body, bool extended = false) const {
     Las las;
-    las.vlr(id, body);
-    las.add(0, 0, 100);
+    if (extended) las = {.minor = 4, .format = 6};
+    if (extended)
+      las.evlr(id, body);
+    else
+      las.vlr(id, body);
+    las.add(0, 0, 100);  // 1000, 2000, 1
     return open_las(write("a.las", las.bytes()));
-  };
-  auto keys = [](std::uint16_t key, std::uint16_t value) {
-    std::string body;
-    for (const std::uint16_t word : {1, 1, 0, 1}) put(body, word);
-    put(body, key), put(body, std::uint16_t{0}), put(body, std::uint16_t{1}), put(body, value);
-    return body;
-  };
-  expect_at(points_of(*with(34735, keys(3076, 9002)))[0], 304.8, 609.6, 0.3048);
-  EXPECT_EQ(with(34735, keys(3072, 25832))->crs(), "EPSG:25832");
-  const auto survey_feet = with(2112, "PROJCS[\"a\",UNIT[\"US survey foot\",0.3048006096]]");
-  expect_at(points_of(*survey_feet)[0], 1200000.0 / 3937, 2400000.0 / 3937, 1200.0 / 3937);
-  EXPECT_EQ(survey_feet->crs(), "");
-  EXPECT_EQ(survey_feet->notes().size(), 1u);
-  const std::string metres = "PROJCS[\"Left\",UNIT[\"metre\",1]]";
+  }
+  void expect(std::uint16_t id, const std::string& body, double plan_m, double height_m, bool extended = false) const {
+    const auto source = with(id, body, extended);
+    EXPECT_TRUE(source->metric());
+    expect_at(points_of(*source).at(0), 1000 * plan_m, 2000 * plan_m, height_m, 1e-5);
+  }
+};
+
+TEST_F(LasSystems, EachAxisHasItsUnit) {
+  expect(2112, projected(kSurveyFoot), kFoot_m, kFoot_m);
+  expect(2112, projected(kSurveyFoot, kMetre), kFoot_m, 1);
+  expect(2112, projected(kMetre, kSurveyFoot), 1, kFoot_m);
+  expect(2112, projected(kMetre, kSurveyFoot), 1, kFoot_m, true);
+  expect(2112, projected(kMetre, "UNIT[\"metre\",1],AXIS[\"Depth\",DOWN]"), 1, -1);
+  expect(2112, "LOCAL_CS[\"plant\",LOCAL_DATUM[\"local\",0],UNIT[\"millimetre\",0.001]]", 0.001, 0.001);
+  expect(34735, keys({{1024, 1}, {3072, 25832}}), 1, 1);
+  expect(34735, keys({{1024, 1}, {3072, 2263}}), kFoot_m, kFoot_m);
+  expect(34735, keys({{1024, 1}, {3072, 2263}}), kFoot_m, kFoot_m, true);
+  expect(34735, keys({{1024, 1}, {3072, 26918}, {3076, 9001}, {4096, 6360}, {4099, 9003}}), 1, kFoot_m);
+  expect(34735, keys({{1024, 1}, {3072, 26918}, {4096, 6360}}), 1, kFoot_m);
+  expect(34735, keys({{1024, 1}, {3072, 26918}, {4099, 9002}}), 1, 0.3048);
+  expect(34735, keys({{1024, 1}, {3072, 2263}, {4096, 5703}}), kFoot_m, 1);
+  expect(34735, keys({{1024, 1}, {3072, 32767}, {3076, 9002}}), 0.3048, 0.3048);
+}
+
+TEST_F(LasSystems, UnitsMayBeSizes) {
+  Las las;
+  las.vlr(34735, keys({{1024, 1}, {3072, 32767}, {3076, 32767}, {3077, 1}}, 3077));
+  std::string sizes;
+  put(sizes, 7.0), put(sizes, 0.5);
+  las.vlr(34736, sizes);
+  las.add(0, 0, 100);
+  expect_at(points_of(*open_las(write("a.las", las.bytes()))).at(0), 500, 1000, 0.5);
+}
+
+TEST_F(LasSystems, AreKeptInMetres) {
+  EXPECT_EQ(with(34735, keys({{3072, 25832}}))->crs(), "EPSG:25832");
+  const std::string metres = projected(kMetre);
   EXPECT_EQ(with(2112, metres)->crs(), metres);
-  expect_refused_for("degrees", [&] { with(34735, keys(1024, 2)); });
-  expect_refused_for("degrees", [&] { with(2112, "GEOGCS[\"WGS 84\"]"); });
+  EXPECT_EQ(with(2112, metres, true)->crs(), metres);
+  const auto feet = with(2112, projected(kSurveyFoot));
+  EXPECT_EQ(feet->notes().size(), 1u);
+  EXPECT_NE(feet->crs().find("\"false_easting\",304.8006"), std::string::npos) << feet->crs();
+  EXPECT_NE(feet->crs().find("UNIT[\"metre\",1"), std::string::npos) << feet->crs();
+  EXPECT_EQ(feet->crs(), coordinate_system(feet->crs()));
+  const auto high = with(34735, keys({{3072, 26918}, {4096, 6360}}));
+  EXPECT_EQ(high->crs(), coordinate_system(high->crs()));
+  EXPECT_TRUE(with(2112, "LOCAL_CS[\"plant\",UNIT[\"metre\",1]]")->crs().empty());
+}
+
+TEST_F(LasSystems, TheHeaderTellsWhichCounts) {
+  for (const bool by_text : {false, true}) {
+    Las las{.flags = static_cast<std::uint16_t>(by_text ? 16 : 0)};
+    las.vlr(2112, projected(kMetre));
+    las.vlr(34735, keys({{3072, 2263}}));
+    las.add(0, 0, 100);
+    expect_at(points_of(*open_las(write("a.las", las.bytes()))).at(0), by_text ? 1000 : 1000 * kFoot_m,
+              by_text ? 2000 : 2000 * kFoot_m, by_text ? 1 : kFoot_m, 1e-6);
+  }
+}
+
+TEST_F(LasSystems, WithoutMetresAreRefused) {
+  const char* const wgs84 =
+      "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
+      "UNIT[\"degree\",0.0174532925199433]]";
+  expect_refused_for("degrees", [&] { with(34735, keys({{1024, 2}})); });
+  expect_refused_for("degrees", [&] { with(2112, wgs84); });
+  expect_refused_for("degrees", [&] {
+    with(2112, std::string("COMPD_CS[\"a\",") + wgs84 + ",VERT_CS[\"h\",VERT_DATUM[\"h\",2005],UNIT[\"metre\",1]]]",
+         true);
+  });
+  expect_refused_for("middle of the earth", [&] { with(34735, keys({{1024, 3}})); });
+  expect_refused_for("point south and west", [&] { with(34735, keys({{1024, 1}, {3072, 5513}})); });
+  // What says nothing of lengths leaves them open.
+  EXPECT_FALSE(with(2112, "a note")->metric());
+  EXPECT_EQ(with(2112, "a note")->notes().size(), 1u);
+  EXPECT_FALSE(with(34735, keys({{1024, 1}}))->metric());
+}
+
+TEST_F(LasSourceTest, Version5) {
+  Las las{.minor = 5, .format = 7};
+  las.add(100, 200, 300);
+  las.vlr(2112, projected(kMetre));
+  const auto source = open_las(write("a.las", las.bytes()));
+  expect_at(points_of(*source).at(0), 1001, 2002, 3);
+  EXPECT_TRUE(source->metric());
+}
+
+std::string bytes_of_base64(std::string_view text) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int have = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
+    if ((have += 6) >= 8) bytes += static_cast<char>(bits >> (have -= 8));
+  }
+  return bytes;
+}
+
+class LazSourceTest : public LasSourceTest {
+ protected:
+  LazSourceTest() { setenv("VANTAGE_IMPORTERS", VANTAGE_IMPORTERS_FOLDER, 1); }
+  ~LazSourceTest() override { unsetenv("VANTAGE_IMPORTERS"); }
+};
+
+TEST_F(LazSourceTest, EveryPointFormat) {
+  for (const LazFile& laz : kLazFiles) {
+    const auto source = open_las(write("a.laz", bytes_of_base64(laz.base64)));
+    for (int again = 0; again < 2; ++again) {
+      const auto points = points_of(*source);
+      std::size_t at = 0;
+      for (int k = 0; k < 40; ++k) {
+        if (k % 9 == 4 || k == 5) continue;  // noise, withheld
+        ASSERT_LT(at, points.size()) << laz.format;
+        expect_at(points[at++], 1000 + k, 2000 + 0.01 * (7 * k * k - 200), 0.01 * (k * 37 % 101), 1e-9);
+      }
+      EXPECT_EQ(at, points.size()) << laz.format;
+    }
+  }
+}
+
+TEST_F(LazSourceTest, DamagedOnesAreRefusedOrRead) {
+  const std::string sound = bytes_of_base64(kLazFiles[3].base64);
+  for (std::size_t length = 400; length < sound.size(); length += 397)
+    expect_refused_for("", [&] { points_of(*open_las(write("b.laz", sound.substr(0, length)))); });
+  for (std::size_t at = 375; at < sound.size(); at += 311) {
+    std::string bytes = sound;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
+    try {
+      points_of(*open_las(write("c.laz", bytes)));
+    } catch (const importer::Refused& why) {
+      EXPECT_FALSE(std::string(why.what()).empty());
+    }
+  }
+  // An announced number that the chunks do not hold.
+  std::string more = sound;
+  more[107] = 41;
+  expect_refused_for("truncated", [&] { points_of(*open_las(write("d.laz", more))); });
+  std::string old = sound;
+  old[104] = static_cast<char>(0x80 | 4), old[105] = 57;
+  expect_refused_for("waveforms", [&] { open_las(write("e.laz", old)); });
+}
+
+TEST_F(LazSourceTest, WhatIsMissingIsNamed) {
+  setenv("VANTAGE_IMPORTERS", folder_.path().c_str(), 1);
+  const auto file = write("a.laz", bytes_of_base64(kLazFiles[0].base64));
+  expect_refused_for("setup.sh --laz", [&] { points_of(*open_las(file)); });
 }
 
 TEST_F(LasSourceTest, SaysWhatIsWrong) {
@@ -127,10 +246,10 @@ TEST_F(LasSourceTest, SaysWhatIsWrong) {
     bytes[at] = value;
     return bytes;
   };
-  refused(changed(104, static_cast<char>(0x80)), "compressed (LAZ)");
+  refused(changed(104, static_cast<char>(0x80)), "compressed, and it does not say how");
   refused(changed(104, 11), "format 11");
   refused(changed(105, 19), "too short");
-  refused(changed(25, 5), "LAS 1.5");
+  refused(changed(25, 6), "LAS 1.6");
   refused(changed(107, 9), "truncated");
   refused(changed(107, 0), "no point");
   for (std::size_t length = 0; length < sound.size(); length += 5)

@@ -71,6 +71,29 @@ TEST_F(PcdSourceTest, TextBinaryAndCompressed) {
   check(points_of(*open_pcd(write("c.pcd", header("binary_compressed") + compressed(all, pack(all))))));
 }
 
+TEST_F(PcdSourceTest, AViewpointMovesTheScan) {
+  const std::string numbers = "1 2 3 200 0 1 0 -1 7\n";
+  std::string with = header("ascii", 1) + numbers;
+  const std::string none = "VIEWPOINT 0 0 0 1 0 0 0";
+  const auto view = [&](const std::string& text) {
+    std::string all = with;
+    return open_pcd(write("a.pcd", all.replace(all.find(none), none.size(), "VIEWPOINT " + text)));
+  };
+  // A quarter turn around x: y goes to z. The quaternion need not be of length 1.
+  const auto moved = view("10 20 30 2 2 0 0");
+  const auto points = points_of(*moved);
+  expect_at(points.at(0), 11, 17, 32);
+  EXPECT_LT((points[0].normal - Eigen::Vector3f(0, 0, 1)).norm(), 1e-6F);
+  EXPECT_TRUE(moved->scans().at(0).posed);
+  EXPECT_EQ(moved->scans()[0].position, Eigen::Vector3d(10, 20, 30));
+  const auto still = view("0 0 0 1 0 0 0");
+  expect_at(points_of(*still).at(0), 1, 2, 3);
+  EXPECT_FALSE(still->scans().at(0).posed);
+  EXPECT_FALSE(view("0 0 0 -1 0 0 0")->scans().at(0).posed);
+  expect_refused_for("seven numbers", [&] { view("0 0 0 1 0 0"); });
+  expect_refused_for("quaternion", [&] { view("0 0 0 0 0 0 0"); });
+}
+
 TEST_F(PcdSourceTest, LzfRepeats) {
   using namespace std::string_literals;
   EXPECT_EQ(importer::unpack_lzf("\2abc"s, 3), "abc");

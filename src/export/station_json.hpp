@@ -1,13 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// A station's setup in JSON: its turn, and its scanner so far that the station can be read again.
+// A station in JSON, by the same keys in front.json, --json, the editor's file and its page, and the report.
 #pragma once
 
 #include <span>
+#include <string>
 
+#include "vantage/placement.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/station_setup.hpp"
 
 namespace vantage {
+
+// {name, position, ground, uv, status, existing}: position of the head, survey frame, metres; null where there is no
+// ground.
+template <class Json>
+Json station_json(const PlacedStation& station, const std::string& name) {
+  const auto point = [](const Vec3& p) { return Json{p.x, p.y, p.z}; };
+  const bool placed = station.status != StationStatus::hole;
+  return {{"name", name},
+          {"position", placed ? point(station.position) : Json()},
+          {"ground", placed ? point(station.ground) : Json()},
+          {"uv", {station.uv.u, station.uv.v}},
+          {"status", to_string(station.status)},
+          {"existing", station.existing}};
+}
 
 // Adds {heading, tilt, scanner, step}, as the columns of stations.csv; and, if the scanner is another than the first,
 // with another view, {zenith_step, horizontal, vertical, zenith_start, nearest, farthest}. Degrees and metres. `step`

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scene/scene_data.hpp"
 #include "support/boxes_on_ground.hpp"
@@ -86,15 +87,13 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   ASSERT_FALSE(result.front.empty());
   EXPECT_EQ(result.evaluations, 48u);
   const PlanEntry& entry = result.front[answer(result)];
-  VoxelField seen;
-  survey.simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &seen});
-  EXPECT_TRUE(write_plan(folder / "out", result, survey.site, &seen).empty());
+  EXPECT_TRUE(write_plan(folder / "out", result, survey.site).left_out.empty());
   const std::size_t chosen = answer(result);
   ASSERT_EQ(chosen, answer(result));
 
-  for (const char* name :
-       {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",
-        "stations.dxf", "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg"})
+  for (const char* name : {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv",
+                           "stations.csv", "stations.dxf", "front.png", "front.svg", "hypervolume.png",
+                           "hypervolume.svg", "plan.png", "plan.svg", "missed.csv", "missed.ply", "missed.png"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 
   // stations.csv
@@ -251,14 +250,54 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   EXPECT_NE(test::content(folder / "out/front.csv").find(",exact_walk,"), std::string::npos);
   EXPECT_NE(test::content(folder / "out/front.svg").size(), 0u);
 
-  // Once the time is over, only plan.png is drawn of the plan, and no picture of an earlier one stays.
+  // A stop leaves out what takes long, and no picture of an earlier plan stays.
   EXPECT_TRUE(std::filesystem::exists(folder / "out/plan.svg"));
   std::stop_source late;
   late.request_stop();
-  EXPECT_EQ(write_plan(folder / "out", result, survey.site, nullptr, late.get_token()),
-            std::vector<std::string>{"plan.svg"});
-  EXPECT_FALSE(std::filesystem::exists(folder / "out/plan.svg"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "out/plan.png"));
+  std::vector<std::string> left_out{"missed.csv", "missed.ply", "missed.png", "plan.svg"};
+  if (why_no_report().empty()) left_out.insert(left_out.end(), {"report.html", "report.pdf"});
+  EXPECT_EQ(write_plan(folder / "out", result, survey.site, {}, {.stop = late.get_token()}).left_out, left_out);
+  for (const std::string& name : left_out) EXPECT_FALSE(std::filesystem::exists(folder / "out" / name)) << name;
+  for (const char* name : {"plan.png", "coverage.ply"})  // the answer kept its points when it was confirmed
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+}
+
+std::set<std::string> files_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+// The surveyor's question on the cube, with existing stations that have names.
+PlanResult surveyed(Survey& survey, std::size_t iterations, double max_seconds) {
+  SurveyQuestion question{.capture = 0.8, .link = 0.05};
+  question.existing = {kPlace + Vec3{-3, 0, 1.2}};
+  question.existing_names = {"gate"};
+  return plan(survey.site, question,
+              {.population = 8, .iterations = iterations, .sample_voxels = 200, .max_seconds = max_seconds, .seed = 3});
+}
+
+TEST(WritePlan, APlanThatTheTimeEndedHasTheFilesOfAFinishedOne) {
+  const test::TemporaryFolder folder;
+  Survey survey;
+  const PlanResult finished = surveyed(survey, 2, 0), ended = surveyed(survey, 100'000'000, 5);
+  EXPECT_EQ(ended.stop_reason, StopReason::max_time);
+  EXPECT_NE(finished.stop_reason, StopReason::max_time);
+  for (const PlanResult* result : {&finished, &ended}) {
+    const PlanEntry& entry = result->front[answer(*result)];
+    EXPECT_TRUE(entry.exact);
+    EXPECT_TRUE(entry.links());
+    EXPECT_TRUE(entry.registration);
+    EXPECT_TRUE(entry.visit);
+    EXPECT_GT(result->trade_off.size(), 1u);
+    EXPECT_EQ(std::ranges::count(result->trade_off, true, &TradeOffPoint::answer), 1);
+    EXPECT_NE(trade_off_text(*result).find("<- the plan"), std::string::npos);
+  }
+  EXPECT_EQ(ended.trade_off.size(), finished.trade_off.size());
+  EXPECT_TRUE(write_plan(folder / "finished", finished, survey.site).left_out.empty());
+  EXPECT_TRUE(write_plan(folder / "ended", ended, survey.site).left_out.empty());
+  EXPECT_EQ(files_in(folder / "ended"), files_in(folder / "finished"));
+  EXPECT_NE(test::content(folder / "ended/stations.csv").find("gate"), std::string::npos);
 }
 
 TEST(WritePlan, StationsAreTheSameWhereMeshesAreShared) {

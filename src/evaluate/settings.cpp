@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/setting_table.hpp"
+#include "vantage/on_site.hpp"
+#include "vantage/targets.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr Interval minutes{.low = 0, .high = 1e6};
+
+}  // namespace
+
+const SettingTable<OnSiteOptions>& on_site_settings() {
+  static const SettingTable<OnSiteOptions> table =
+      SettingRows<OnSiteOptions>()
+          .group("Problem")
+          .number("set-up", "MIN", "Minutes at each station besides the scan itself", &OnSiteOptions::set_up_min,
+                  minutes)
+          .number("photos", "MIN", "Minutes at each station for pictures, where the scanner takes some",
+                  &OnSiteOptions::photos_min, not_negative)
+          .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
+                  &OnSiteOptions::walking_m_per_s, measurable)
+          .take();
+  return table;
+}
+
+const SettingTable<TargetOptions>& target_settings() {
+  using Options = TargetOptions;
+  static const SettingTable<Options> table = [] {
+    return SettingRows<Options>()
+        .group("Targets")
+        .number("target-diameter", "M", "Diameter of a target, a sphere or checkerboard", &Options::diameter_m,
+                {.low = 0.01, .high = 2})
+        .number("target-height", "M", "Height of a proposed target's centre above the ground", &Options::height_m,
+                {.low = 0.05, .high = 10})
+        .number("target-sigma", "M", "Standard deviation of a target's centre in a scan, besides range noise",
+                &Options::sigma_m, {.low = 1e-5, .high = 0.1})
+        .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
+                "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
+                [](Options& options, const std::string& text, const std::string& what) {
+                  options.wanted = named(what, [&] { return accuracy_class_from_string(text); });
+                })
+        .take();
+  }();
+  return table;
+}
+
+}  // namespace vantage

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entities of an open IFC model as plain values: references are {ref}, typed values {typed}, numbers are numbers,
+// enumerations and strings are strings, and omitted attributes null.
+
+const [STRING, TYPED, ENUM, REAL, REF, INTEGER] = [1, 2, 3, 4, 5, 10];
+
+const MOST = 100_000;
+
+const decode = (token) => {
+  if (token === null || token === undefined) return null;
+  if (Array.isArray(token)) return token.map(decode);
+  switch (token.type) {
+    case REF: return { ref: token.value };
+    case REAL: return Number(token.value);
+    case TYPED: {
+      const number = typeof token.value === "string" ? Number(token.value) : NaN;
+      return { typed: token.typecode, value: Array.isArray(token.value) ? decode(token.value) : Number.isNaN(number) ? token.value : number };
+    }
+    default: return token.value ?? null;
+  }
+};
+
+// Numbers are written as reals; these mark the others.
+export const integer = (value) => ({ type: INTEGER, value });
+export const enumeration = (value) => ({ type: ENUM, value });
+export const measure = (label, internalValue) => ({ type: TYPED, label, valueType: REAL, internalValue });
+const encode = (value) => {
+  if (value === null || value === undefined) return null;
+  if (Array.isArray(value)) return value.map(encode);
+  if (typeof value === "object" && value.ref) return { type: REF, value: value.ref };
+  return typeof value === "string" ? { type: STRING, value } : value;
+};
+
+export class Step {
+  #names = new Map();
+  #read = new Map();  // attributes of entities, as many as MOST
+
+  constructor(ifc, api, model) {
+    Object.assign(this, { ifc, api, model });
+  }
+
+  // Numbers of all entities of these types, by their names in capitals; types that the schema lacks have none.
+  ids(...names) {
+    const all = [];
+    for (const name of names) {
+      const found = this.api.GetLineIDsWithType(this.model, this.ifc[name]);
+      for (let i = 0; i < found.size(); ++i) if (this.type(found.get(i)) === name) all.push(found.get(i));
+    }
+    return all;
+  }
+  // Those of a type and all below it.
+  kinds(name) {
+    const found = this.api.GetLineIDsWithType(this.model, this.ifc[name], true), all = [];
+    for (let i = 0; i < found.size(); ++i) all.push(found.get(i));
+    return all;
+  }
+
+  // Name in capitals; "" if there is no such entity.
+  type(id) {
+    const code = this.api.GetLineType(this.model, id);
+    if (!code) return "";
+    if (!this.#names.has(code)) this.#names.set(code, this.api.GetNameFromTypeCode(code));
+    return this.#names.get(code).toUpperCase();
+  }
+  // As people write it: IfcWall.
+  className(id) {
+    this.type(id);
+    return this.#names.get(this.api.GetLineType(this.model, id)) ?? "";
+  }
+
+  // Attributes in the order of the schema, which are not to be changed; [] if there is no such entity.
+  args(id) {
+    const known = this.#read.get(id);
+    if (known) return known;
+    const args = decode(this.api.GetRawLineData(this.model, id)?.arguments ?? []);
+    if (this.#read.size >= MOST) this.#read.clear();
+    this.#read.set(id, args);
+    return args;
+  }
+
+  // Replaces an entity, or makes it.
+  write(id, name, args) {
+    const is = this.type(id);
+    this.#read.delete(id);
+    if (is && is !== name) this.api.DeleteLine(this.model, id);
+    this.api.WriteRawLineData(this.model, { ID: id, type: this.ifc[name], arguments: args.map(encode) });
+  }
+  add(name, args) {
+    const id = this.api.GetMaxExpressID(this.model) + 1;
+    this.write(id, name, args);
+    return { ref: id };
+  }
+  // Changes some attributes of an entity, by their places.
+  change(id, changes) {
+    this.#read.delete(id);
+    const { type, arguments: raw } = this.api.GetRawLineData(this.model, id);
+    this.api.WriteRawLineData(this.model, { ID: id, type, arguments: raw.map((token, i) => (i in changes ? encode(changes[i]) : this.#kept(token))) });
+  }
+  // Makes an entity what another one is.
+  copy(from, to) {
+    this.#read.delete(to);
+    const { type, arguments: raw } = this.api.GetRawLineData(this.model, from);
+    if (this.type(to)) this.api.DeleteLine(this.model, to);
+    this.api.WriteRawLineData(this.model, { ID: to, type, arguments: raw.map((token) => this.#kept(token)) });
+  }
+  // What was read as it has to be given to write it.
+  #kept(token) {
+    if (Array.isArray(token)) return token.map((one) => this.#kept(one));
+    if (token?.type === REAL) return Number(token.value);
+    if (token?.type !== TYPED) return token ?? null;
+    const { typecode, value } = token, number = typeof value === "string" ? Number(value) : NaN;
+    const label = this.api.GetNameFromTypeCode(typecode).toUpperCase();
+    if (typeof value === "number") return { type: TYPED, label, valueType: INTEGER, value };
+    return Number.isNaN(number) ? { type: TYPED, label, valueType: STRING, value } : measure(label, number);
+  }
+
+  // A product as messages name it: class, name and GlobalId.
+  label(id) {
+    const [guid, , name] = this.args(id);
+    return [this.className(id), (typeof name === "string" ? name : "").replace(/\s+/g, " ").trim(), guid].filter(Boolean).join(" ");
+  }
+}

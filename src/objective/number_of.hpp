@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "vantage/error.hpp"
+#include "vantage/objective.hpp"
+
+namespace vantage {
+
+// The value of an objective. Throws Error invalid_argument if that is NaN, which no network can be ranked by.
+inline double number_of(const Objective& objective, const MeasuredNetwork& network) {
+  const double value = objective.value(network);
+  if (std::isnan(value))
+    throw Error(Errc::invalid_argument, "objective \"" + objective.name + "\": its value is NaN for a network of " +
+                                            std::to_string(network.stations.size()) +
+                                            " stations; it must be a number for every network");
+  return value;
+}
+
+}  // namespace vantage

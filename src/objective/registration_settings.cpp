@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/setting_table.hpp"
+#include "vantage/measure.hpp"
+
+namespace vantage {
+
+const SettingTable<RegistrationOptions>& registration_settings() {
+  static const SettingTable<RegistrationOptions> table = [] {
+    using Options = RegistrationOptions;
+    const Options usual;
+    return SettingRows<Options>()
+        .group("Registration")
+        .number_in(
+            "registration-rho", "M",
+            otherwise("Modelling error of a scan's surface besides range noise, the same over a patch, in metres",
+                      usual.model.rho_m),
+            [](Options & o) -> auto& { return o.model.rho_m; }, {.low = 1e-6, .high = 1})
+        .number_in("registration-patch", "M", otherwise("Side of such a patch, in metres", usual.model.patch_m),
+                   [](Options & o) -> auto& { return o.model.patch_m; }, {.low = 1e-3, .high = 100})
+        .number("registration-position", "M", "Standard deviation of a head's position before registration, in metres",
+                &Options::position_m, {.low = 1e-6, .high = 1e4})
+        .degrees("registration-heading",
+                 otherwise("Standard deviation of a scan's heading before registration, in degrees",
+                           usual.heading.in_degrees()),
+                 &Options::heading, {.low = 1e-6, .high = 180})
+        .degrees("registration-tilt",
+                 otherwise("Standard deviation of a scan's tilts, from its compensator, in degrees; 0: exactly level, "
+                           "some degrees: not levelled",
+                           usual.tilt.in_degrees()),
+                 &Options::tilt, {.low = 0, .high = 180})
+        .custom("registration-surfaces", "surveyed|all",
+                "Surfaces that scans register on: surveyed ones, or all; surveyed otherwise",
+                [](Options& options, const std::string& text, const std::string& what) {
+                  if (text != "all" && text != "surveyed")
+                    throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither surveyed nor all");
+                  options.surfaces = text == "all" ? RegistrationSurfaces::all : RegistrationSurfaces::surveyed;
+                })
+        .take();
+  }();
+  return table;
+}
+
+}  // namespace vantage

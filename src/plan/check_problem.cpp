@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/check_problem.hpp"
+
+#include "core/parse.hpp"
+#include "core/site_reach.hpp"
+#include "scene/scene_data.hpp"
+#include "vantage/question.hpp"
+
+namespace vantage {
+
+void check_problem(const Site& site, const SurveyProblem& problem) {
+  const Vec3 origin = site.scene().data().origin;
+  check_settings(on_site_settings(), problem.on_site);
+  check_settings(registration_settings(), problem.registration);
+  check_settings(target_settings(), problem.target);
+  check_number(problem.link_overlap, "link-overlap", any_share);
+  if (problem.attainable) check_number(*problem.attainable, "attainable", {.low = 0, .high = 1, .low_included = false});
+  if (problem.heights_m)
+    for (const double height : *problem.heights_m)
+      check_number(height, "heights", {.low = 0, .high = kSiteReach_m, .low_included = false});
+  for (const Requirement& requirement : problem.requirements)
+    check_number(requirement.limit, "the limit of " + requirement.objective.name);
+  for (std::size_t k = 0; k < problem.existing.size(); ++k)
+    require_in_reach(problem.existing[k], origin, "existing station " + std::to_string(k + 1) + " stands");
+  for (const Target& target : problem.existing_targets)
+    require_in_reach(target.centre, origin, "target \"" + target.name + "\" is");
+  if (problem.on_site.entrance) require_in_reach(*problem.on_site.entrance, origin, "the entrance is");
+}
+
+void check_search(const Site& site, const PlanConfig& config) {
+  check_settings(plan_settings(), config);
+  for (const Vec3& head : config.start) require_in_reach(head, site.scene().data().origin, "start: a head is");
+}
+
+}  // namespace vantage

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/complete_front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plan/answer_targets.hpp"
+#include "plan/fewest_choice.hpp"
+#include "plan/trade_off.hpp"
+
+namespace vantage {
+namespace {
+
+// The front of more entries than this has its rounds worked out for the answer alone.
+constexpr std::size_t kMostRounds = 16;
+
+// A station of a confirmed network may see more of a voxel than any candidate did.
+void take_in_confirmed(PlanResult& result, PlanContext& context, Simulator& simulator, const Progress& progress) {
+  std::vector<Network> networks;
+  for (const PlanEntry& entry : result.front)
+    if (entry.exact) networks.push_back(to_network(entry.stations));
+  if (networks.empty()) return;
+  AttainableCounts raised = context.confirmed;
+  for (const Network& network : networks)
+    if (!raise_attainable(raised, simulator, network, progress)) return;
+  const std::vector<Estimate> shares = captured_shares(simulator, raised, networks, progress);
+  if (shares.empty()) return;
+  context.confirmed = std::move(raised);
+  std::size_t k = 0;
+  for (PlanEntry& entry : result.front) {
+    if (!entry.exact) continue;
+    entry.values.at("capture") = shares[k++];
+    entry.attainable = context.confirmed.coverage();
+  }
+  result.exact_hypervolume = judge_by_every_ray(result.front, result.problem, context.measures());
+}
+
+void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& progress) {
+  const std::size_t chosen = answer(result), kept = result.problem.existing.size();
+  const auto visit = [&](PlanEntry& entry) {
+    entry.visit = context.on_site().visit(std::span(entry.stations).subspan(kept));
+  };
+  visit(result.front[chosen]);
+  if (result.front.size() > kMostRounds) return;
+  for (PlanEntry& entry : result.front)
+    if (!entry.visit && !progress.stopped()) visit(entry);
+}
+
+// The answer takes its place in the trade-off, as it was confirmed: alone, if the time was over before others were
+// estimated.
+void put_answer_in_trade_off(PlanResult& result) {
+  const PlanEntry& entry = result.front[answer(result)];
+  const auto captured = entry.values.find("capture");
+  const bool known = captured != entry.values.end() && std::isfinite(captured->second.value);
+  if (!result.problem.fewest || !known || (result.trade_off.empty() && !fewest_asked(result.problem).captured)) return;
+  TradeOffPoint point{.stations = entry.stations, .values = entry.values, .answer = true};
+  if (entry.visit) point.minutes_on_site = entry.visit->minutes;
+  const auto stations = [](const TradeOffPoint& p) { return p.stations.size(); };
+  const auto at = std::ranges::lower_bound(result.trade_off, entry.stations.size(), {}, stations);
+  if (at != result.trade_off.end() && at->stations.size() == entry.stations.size())
+    *at = std::move(point);
+  else
+    result.trade_off.insert(at, std::move(point));
+  mark_knee(result.trade_off);
+}
+
+}  // namespace
+
+void complete_front(PlanResult& result, PlanContext& context, Site& site, const Progress& progress) {
+  const SurveyProblem& problem = result.problem;
+  if (needs_attainable(problem)) {
+    take_in_confirmed(result, context, site.simulator(), progress);
+    result.attainable = context.confirmed.coverage();
+  }
+  for (PlanEntry& entry : result.front) {
+    if (result.attainable && result.candidates) entry.attainable_growth = result.candidates->growth();
+    if (!problem.existing_names.empty())
+      entry.names = problem.existing_names, entry.names.resize(entry.stations.size());
+    entry.accuracy_class = problem.target.wanted;
+  }
+  if (result.front.empty()) return;
+  work_out_rounds(result, context, progress);
+  put_answer_in_trade_off(result);
+  add_targets(result, site, context.measures(), progress);
+}
+
+}  // namespace vantage
