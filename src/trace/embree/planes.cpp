@@ -2,6 +2,9 @@
 #include "trace/embree/planes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -44,11 +47,31 @@ Planes::Ball Planes::ball_of(const std::array<Float3, 3>& corners) {
 
 double Planes::within(std::uint32_t triangle, const Float3& o, const Float3& d, double t) const {
   const auto corners = scene_->corners(triangle);
-  const Vec3 way = widen(d) * (1 / dot(widen(d), widen(d)));
-  const double a = dot(widen(corners[0]) - widen(o), way), b = dot(widen(corners[1]) - widen(o), way),
-               c = dot(widen(corners[2]) - widen(o), way);
-  const double nearest = std::min({a, b, c}), farthest = std::max({a, b, c});
-  return t > nearest ? std::min(t, farthest) : nearest;  // NaN becomes the nearest
+  const Vec3 direction = widen(d), way = direction * (1 / dot(direction, direction));
+  std::array<Vec3, 3> across;  // from the ray to the corners
+  std::array<double, 3> along;
+  double farthest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 v = widen(corners[k]) - widen(o);
+    along[k] = dot(v, way);
+    across[k] = v - direction * along[k];
+    farthest = std::max(farthest, std::sqrt(dot(v, v)));
+  }
+  // A needle that points at the head has no edge that Embree could tell a ray from, and rays far beside it come as hits
+  // if they are traced together with others that pass its box.
+  double beside = std::numeric_limits<double>::infinity(), longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = across[k], ab = across[(k + 1) % 3] - a;
+    const double all = dot(ab, ab);
+    const Vec3 nearest = a + ab * (all > 0 ? std::clamp(-dot(a, ab) / all, 0.0, 1.0) : 0.0);
+    beside = std::min(beside, std::sqrt(dot(nearest, nearest)));
+    longest = std::max(longest, std::sqrt(all));
+  }
+  const Vec3 twice_area = cross(across[1] - across[0], across[2] - across[0]);
+  const double thick = longest > 0 ? std::sqrt(dot(twice_area, twice_area)) / longest : 0;  // rays in it are no further
+  if (beside > thick + 0x1p-12 * farthest) return std::numeric_limits<double>::infinity();
+  const auto [first, last] = std::minmax({along[0], along[1], along[2]});
+  return t > first ? std::min(t, last) : first;  // NaN becomes the first
 }
 
 }  // namespace vantage

@@ -32,8 +32,8 @@ class Planes {
 
   // Distances along n directions, in double and rounded once. Only additions, multiplications and a division are used,
   // so every processor gets the same bits. The plane says nothing about a ray that nearly lies in it; its distance is
-  // clamped to the triangle's extent along the ray. REQUIRES: plane == seen(triangle, o). Inlined, to be compiled for
-  // the caller's target.
+  // clamped to the triangle's extent along the ray, or infinite if it passes beside. REQUIRES: plane ==
+  // seen(triangle, o). Inlined, to be compiled for the caller's target.
   template <unsigned n>
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {

@@ -164,6 +164,8 @@ TEST_F(Plan, RayQueriesGiveTheSameFrontAgain) {
     *std::find(arguments.begin(), arguments.end(), "embree") = "ray_query";
     auto front = json_of(arguments);
     drop_times(front);
+    EXPECT_GT(front["work"]["sampled_rays"], 0);
+    front["work"].erase("sampled_rays");  // groups of threads end their walks in any order
     return front;
   };
   const auto first = by_ray_query("first");

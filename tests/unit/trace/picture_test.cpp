@@ -141,6 +141,18 @@ TEST(Picture, RaysOutsideTheEndsHaveNoHit) {
   EXPECT_LT(compared.hits, compared.rays);
 }
 
+// Rays beside a needle that points at the head hit it or do not, in Embree, as the rays beside them decide.
+TEST(Picture, ANeedleThatPointsAtTheHeadIsNotHitFromBeside) {
+  Scanner with = scanner(0.7);
+  with.min_range_m = 0;
+  with.max_range_m = 3;
+  const Corners needle{
+      {-3.92903209f, -1, -2.9979279f}, {-3.87088799f, -1.97177601f, 0}, {-3.89996004f, -1.485888f, -1.49896395f}};
+  const Compared compared = compare(scene_of(needle, with), {{-3.98717618f, -0.0282239914f, -5.99585581f}});
+  EXPECT_EQ(compared.differ, 0u);
+  EXPECT_LT(compared.hits, 4u);
+}
+
 // A float of one of many sizes, or a round one: many scenes have corners that lie exactly above each other.
 float coordinate() {
   const int kind = *rc::gen::inRange(0, 4);
