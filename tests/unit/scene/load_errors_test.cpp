@@ -232,7 +232,7 @@ TEST(LoadErrors, WrongTypes) {
                    {"accessor 0", "2 components", "3 are needed"});
   expect_malformed([](GlbBuilder& b) { b.json["accessors"][0]["type"] = "MAT4"; }, {"accessor 0"});
   expect_malformed([](GlbBuilder& b) { b.json["accessors"][0]["type"] = "VEC9"; }, {"VEC9"});
-  expect_malformed([](GlbBuilder& b) { b.json["accessors"][0]["componentType"] = 5130; }, {"accessor 0", "5130"});
+  expect_malformed([](GlbBuilder& b) { b.json["accessors"][0]["componentType"] = 5124; }, {"accessor 0", "5124"});
   expect_malformed(
       [](GlbBuilder& b) {
         b.json["accessors"][3]["componentType"] = 5126;

@@ -470,7 +470,7 @@ TEST(LoadGeometry, PositionsMayBeDoubles) {
   const std::vector<double> points{500'000.123, 10, -4'500'000.456, 500'010, 10, -4'500'000, 500'000, 20, -4'500'000};
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", builder.accessor(points, 5130, "VEC3")}}}})}});
   builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_accessor_float64"};
-  const Scene scene = load(builder);
+  const Scene scene = load(builder, {.unit = Unit::metre, .up = UpAxis::y});
   expect_near(corners(scene, 0)[0], {500'000.123, 4'500'000.456, 10});
   EXPECT_TRUE(scene.notes().empty());
 }
