@@ -868,6 +868,7 @@ class Site:
         target_sigma: Setting = None,
         accuracy_class: Setting = None,
         capture: Setting = None,
+        pays: Setting = None,
         link: Setting = None,
         apart: Setting = None,
         max_time_on_site: Setting = None,

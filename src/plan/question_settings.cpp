@@ -34,6 +34,10 @@ const SettingTable<SurveyQuestion>& question_settings() {
           .number("capture", "SHARE",
                   otherwise("Least share of what is attainable that the survey captures", default_capture),
                   &Question::capture, any_share)
+          .number("pays", "M2",
+                  "Instead of --capture: the fewest stations after which a further one would capture less new surface "
+                  "than so many square metres (25 is usual; docs/method.md)",
+                  &Question::pays_m2, positive)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "
                             "that the other sees too, over all surfaces",
