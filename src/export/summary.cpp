@@ -47,9 +47,10 @@ std::string captured_text(const Evaluation& evaluation) {
   const auto capture = evaluation.values.find("capture");
   if (capture == evaluation.values.end() || std::isnan(capture->second.value))
     return text.empty() ? "not known: the time was over first" : text;
+  // The share of the site comes second: much of it, such as roofs and undersides, nobody can capture.
   const double own = capture->second.standard_error;
-  return (text.empty() ? "about " : text + ", ") + percent(capture->second.value) +
-         (own > 0 ? " ± " + percent(own) : "") + " of what is attainable" + known_to(evaluation.attainable_growth);
+  return (text.empty() ? "about " : "") + percent(capture->second.value) + (own > 0 ? " ± " + percent(own) : "") +
+         " of what is attainable" + known_to(evaluation.attainable_growth) + (text.empty() ? "" : "; " + text);
 }
 
 std::string links_text(const StationLinks& links, const std::vector<std::string>& names) {
