@@ -1116,6 +1116,7 @@ class SurveyProblem:
         targets: Optional[int] = None,
         existing_targets: Iterable[Target] = (),
         fewest: bool = False,
+        pays_m2: Optional[float] = None,
         attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
         requirements: Iterable[Union[str, Requirement]] = (),
@@ -1134,6 +1135,7 @@ class SurveyProblem:
     targets: Optional[int]
     existing_targets: Tuple[Target, ...]
     fewest: bool
+    pays_m2: Optional[float]
     attainable: Optional[float]
     @property
     def objectives(self) -> Tuple[Objective, ...]: ...
