@@ -126,7 +126,8 @@ struct Requirement {
   Objective objective;
   Bound bound = Bound::at_least;
   double limit = 0;
-  /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN.
+  /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN. A share of what is
+  /// attainable holds from half of the last digit that is printed (0.05 %), since it is not known any better.
   double missed_by(double measured) const;
 };
 std::string to_string(const Requirement&);               ///< "coverage >= 0.9"

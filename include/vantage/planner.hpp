@@ -54,6 +54,9 @@ struct SurveyProblem {
   /// requirements on `coverage`, `capture`, `link` and `apart`. The second finds the best network of that number by the
   /// objectives under all requirements.
   bool fewest = false;
+  /// Instead of a share of what is attainable: each station has to capture so much surface that the others do not, in
+  /// m². A plan finds the number after which a further one would not, and requires what so many can `capture`.
+  std::optional<double> pays_m2 = {};
   /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
   /// `capture` is asked for. A plan finds it anew, whatever is given.
   std::optional<double> attainable = std::nullopt;
@@ -163,6 +166,14 @@ struct PlanIteration {
   double seconds = 0;  ///< Since the start; not reproducible.
 };
 
+/// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
+struct StationsThatPay {
+  double least_m2 = 0;       ///< What each has to capture besides the others.
+  std::size_t stations = 0;  ///< Further stations that do.
+  double capture = 0;        ///< Share of what is attainable that so many can have: what the plan then requires.
+  double next_m2 = 0;        ///< What a further one would capture.
+};
+
 struct PlanResult {
   SurveyProblem problem;  ///< The problem, and the settings of its search.
   PlanConfig config;
@@ -181,6 +192,7 @@ struct PlanResult {
   /// Attainable coverage of the candidates and the stations of the front, the denominator of `capture`. Measured on
   /// voxels by which nothing was chosen, unless the site has few. Empty if `capture` is not used.
   std::optional<Estimate> attainable = std::nullopt;
+  std::optional<StationsThatPay> pays = {};  ///< Where `SurveyProblem::pays_m2` decides the number.
   /// Stations against what they capture, from one to a few beyond the answer, if `capture` decides their number.
   /// Estimated on the voxels of `attainable`, except for the answer.
   std::vector<TradeOffPoint> trade_off;

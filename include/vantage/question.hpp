@@ -21,6 +21,7 @@ inline constexpr double default_capture = 0.9, default_apart_m = 1;
 struct SurveyQuestion {
   std::optional<std::string> problem = {};     ///< "survey", or one of `problem_names()`.
   std::optional<double> capture = {};          ///< Least share of attainable coverage.
+  std::optional<double> pays_m2 = {};          ///< Instead: as `SurveyProblem::pays_m2`.
   std::optional<double> link = {};             ///< Least scan overlap of the links that connect all stations.
   std::optional<double> apart_m = {};          ///< Least distance between two stations.
   std::optional<double> minutes_on_site = {};  ///< Upper limit.

@@ -42,6 +42,7 @@ struct SettingRow {
   bool repeated = false;                      ///< Takes any number of values, each given on its own.
   bool by_scene = false;                      ///< A scene may carry a default for it.
   bool by_preset = false;                     ///< A scanner's preset gives it, which overrides a scene's default.
+  bool advanced = false;                      ///< For special cases: lists of settings may leave it out.
   std::vector<std::string> excludes = {};     ///< Settings that exclude it.
 };
 template <class Options>

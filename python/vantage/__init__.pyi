@@ -868,6 +868,7 @@ class Site:
         target_sigma: Setting = None,
         accuracy_class: Setting = None,
         capture: Setting = None,
+        pays: Setting = None,
         link: Setting = None,
         apart: Setting = None,
         max_time_on_site: Setting = None,
@@ -1115,6 +1116,7 @@ class SurveyProblem:
         targets: Optional[int] = None,
         existing_targets: Iterable[Target] = (),
         fewest: bool = False,
+        pays_m2: Optional[float] = None,
         attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
         requirements: Iterable[Union[str, Requirement]] = (),
@@ -1133,6 +1135,7 @@ class SurveyProblem:
     targets: Optional[int]
     existing_targets: Tuple[Target, ...]
     fewest: bool
+    pays_m2: Optional[float]
     attainable: Optional[float]
     @property
     def objectives(self) -> Tuple[Objective, ...]: ...

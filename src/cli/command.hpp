@@ -4,10 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/console.hpp"
+#include "cli/help.hpp"
 #include "ranks/ranks.hpp"
 
 namespace vantage::cli {
@@ -30,8 +34,10 @@ struct Stopped {};
 // A subcommand whose options live as long as the program; `run` is called after parsing and returns the exit code.
 template <class Options>
 void add_command(CLI::App& app, Program& program, const char* name, const char* help,
-                 int (*run)(CLI::App&, Options&, Program&)) {
+                 int (*run)(CLI::App&, Options&, Program&), std::vector<std::string> examples = {}) {
   CLI::App* command = app.add_subcommand(name, help);
+  command->set_help_all_flag("--help-all", "Print this help message with all options and exit");
+  set_examples(*command, std::move(examples));
   auto options = std::make_shared<Options>();
   options->add(*command);
   command->callback([command, options, run, &program] {

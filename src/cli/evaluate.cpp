@@ -380,8 +380,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
 }  // namespace
 
 void add_evaluate(CLI::App& app, Program& program) {
-  add_command<EvaluateCommandOptions>(app, program, "evaluate", "Coverage and overlap of a network of stations",
-                                      evaluate);
+  add_command<EvaluateCommandOptions>(
+      app, program, "evaluate", "Coverage and overlap of a network of stations", evaluate,
+      {"vantage evaluate site.glb --stations hall/front.json --exact --picture hall.png",
+       "vantage evaluate site.glb --station 2,3,1.6 --station 9,3,1.6 --attainable"});
 }
 
 }  // namespace vantage::cli

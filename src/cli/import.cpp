@@ -115,9 +115,8 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
   }
   ProgressLine line(program.console, "reading " + options.file);
-  auto glb =
-      importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
-                        {.report = [&](double done) { line.update(done); }, .stop = program.stop}, read.beside);
+  auto glb = importers::as_glb(options.file, format, {.memory = options.site.memory_bytes}, settings,
+                               {.report = [&](double done) { line.update(done); }, .stop = program.stop}, read.beside);
   if (glb.empty()) throw Stopped{};
   if ((read.unit || read.up) && !takes_setting(format, "unit"))
     glb = in_metres(glb, read.unit.value_or(Unit::metre), read.up.value_or(UpAxis::y));
@@ -146,7 +145,8 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
 }  // namespace
 
 void add_import(CLI::App& app, Program& program) {
-  add_command<ImportOptions>(app, program, "import", "Convert a model of another format to glTF", import_model);
+  add_command<ImportOptions>(app, program, "import", "Convert a model of another format to glTF", import_model,
+                             {"vantage import site.ifc -o site.glb"});
 }
 
 }  // namespace vantage::cli

@@ -204,7 +204,8 @@ int next(CLI::App& command, NextOptions& options, Program& program) {
 }  // namespace
 
 void add_next(CLI::App& app, Program& program) {
-  add_command<NextOptions>(app, program, "next", "Where to stand next, by the scans that were taken", next);
+  add_command<NextOptions>(app, program, "next", "Where to stand next, by the scans that were taken", next,
+                           {"vantage next site.glb --scans day --stations hall/front.json"});
 }
 
 }  // namespace vantage::cli

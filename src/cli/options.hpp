@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/help.hpp"
 #include "cli/parse.hpp"
 #include "vantage/error.hpp"
 #include "vantage/settings.hpp"
@@ -46,6 +47,7 @@ void add_settings(CLI::App& app, const SettingTable<Options>& table, Options& op
                           : row.repeated   ? add_values(app, name, row.unit, row.help, set)
                                            : add_value(app, name, row.unit, row.help, set);
     option->group(group.empty() ? row.group : group);
+    if (row.advanced) set_advanced(app, option);
   }
   for (const SettingRow<Options>& row : table)
     for (const std::string& other : row.excludes)

@@ -58,20 +58,20 @@ struct PlanOptions {
         targets_from)
         ->group("Targets");
     add_settings(command, plan_settings(), config);
-    add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
-               [this](const std::string& text, const std::string& what) { start.push_back(parse_station(text, what)); })
-        ->group("Search");
-    add_value(command, "--seed-with", "greedy|exact",
-              "Start from a choice among candidates: a greedy one, or the best by branch and bound",
-              [this](const std::string& text, const std::string& what) {
-                if (text != "greedy" && text != "exact")
-                  throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither greedy nor exact");
-                seed_with = text;
-              })
-        ->group("Search");
-    add_value(command, "--seed-time", "T", "Time for the exact choice: 90, 90s or 2min; 1min otherwise",
-              [this](const std::string& text, const std::string& what) { seed_seconds = parse_duration(text, what); })
-        ->group("Search");
+    const auto advanced = [&command](CLI::Option* option) { set_advanced(command, option->group("Search")); };
+    advanced(add_values(
+        command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
+        [this](const std::string& text, const std::string& what) { start.push_back(parse_station(text, what)); }));
+    advanced(add_value(command, "--seed-with", "greedy|exact",
+                       "Start from a choice among candidates: a greedy one, or the best by branch and bound",
+                       [this](const std::string& text, const std::string& what) {
+                         if (text != "greedy" && text != "exact")
+                           throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither greedy nor exact");
+                         seed_with = text;
+                       }));
+    advanced(add_value(
+        command, "--seed-time", "T", "Time for the exact choice: 90, 90s or 2min; 1min otherwise",
+        [this](const std::string& text, const std::string& what) { seed_seconds = parse_duration(text, what); }));
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -plan otherwise", output)
         ->group("Results");
     command.add_flag("--force", force, "Overwrite the results of another run")
@@ -344,7 +344,13 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
 }  // namespace
 
 void add_plan(CLI::App& app, Program& program) {
-  add_command<PlanOptions>(app, program, "plan", "Search for the best networks of stations", plan_survey);
+  add_command<PlanOptions>(
+      app, program, "plan",
+      "Find where to stand: the fewest linked stations that capture enough of a site, or a front of networks",
+      plan_survey,
+      {"vantage plan site.ifc --scanner rtc360@6mm --spacing 0.02",
+       "vantage plan site.glb --capture 0.95 --max-time 10min -o hall",
+       "vantage plan site.glb --stations 12    the most that twelve stations can capture"});
 }
 
 }  // namespace vantage::cli

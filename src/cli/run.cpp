@@ -36,6 +36,7 @@ std::string typed(int argc, char** argv) {
 }  // namespace
 
 void add_commands(CLI::App& app, Program& program) {
+  use_help_text(app);
   app.set_version_flag("--version", std::string("vantage ") + version());
   app.require_subcommand(0, 1);
   add_info(app, program);

@@ -200,7 +200,8 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
 }  // namespace
 
 void add_scan(CLI::App& app, Program& program) {
-  add_command<ScanCommandOptions>(app, program, "scan", "Simulate stations and write their points", scan);
+  add_command<ScanCommandOptions>(app, program, "scan", "Simulate stations and write their points", scan,
+                                  {"vantage scan site.glb --stations hall/stations.csv --output hall.e57"});
 }
 
 }  // namespace vantage::cli

@@ -45,6 +45,7 @@ class SettingRows {
   }
   // These change the last row.
   SettingRows& by_scene() { return last().by_scene = true, *this; }
+  SettingRows& advanced() { return last().advanced = true, *this; }
   SettingRows& by_preset() { return last().by_preset = true, *this; }
   SettingRows& checked(std::function<void(const Options&, const std::string& what)> check) {
     return last().check = std::move(check), *this;
@@ -185,6 +186,7 @@ class SettingRows {
           inner(options.*part, what);
         };
       last().group = row.group, last().repeated = row.repeated, last().excludes = row.excludes;
+      last().advanced = row.advanced;
     }
     return *this;
   }

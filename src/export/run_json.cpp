@@ -312,6 +312,11 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
                           {"candidates", result.candidates->stations().size()},
                           {"candidates_ended", result.candidates->ended()}};
   }
+  if (result.pays)
+    json["pays"] = {{"least_m2", result.pays->least_m2},
+                    {"stations", result.pays->stations},
+                    {"capture", result.pays->capture},
+                    {"next_m2", result.pays->next_m2}};
   if (!result.trade_off.empty()) json["trade_off"] = trade_off_json(result.trade_off);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};

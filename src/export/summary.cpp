@@ -47,9 +47,10 @@ std::string captured_text(const Evaluation& evaluation) {
   const auto capture = evaluation.values.find("capture");
   if (capture == evaluation.values.end() || std::isnan(capture->second.value))
     return text.empty() ? "not known: the time was over first" : text;
+  // The share of the site comes second: much of it, such as roofs and undersides, nobody can capture.
   const double own = capture->second.standard_error;
-  return (text.empty() ? "about " : text + ", ") + percent(capture->second.value) +
-         (own > 0 ? " ± " + percent(own) : "") + " of what is attainable" + known_to(evaluation.attainable_growth);
+  return (text.empty() ? "about " : "") + percent(capture->second.value) + (own > 0 ? " ± " + percent(own) : "") +
+         " of what is attainable" + known_to(evaluation.attainable_growth) + (text.empty() ? "" : "; " + text);
 }
 
 std::string links_text(const StationLinks& links, const std::vector<std::string>& names) {
@@ -298,6 +299,11 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
 
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
+  if (result.pays)
+    lines.push_back({"pays", "a further station would capture some " + fixed(result.pays->next_m2, 0) +
+                                 " m² that the others do not, and is to capture " + number(result.pays->least_m2) +
+                                 " m²: " + percent(result.pays->capture) +
+                                 " of what is attainable is what was asked for"});
   for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))

@@ -44,6 +44,8 @@ std::string_view trimmed(std::string_view text) {
                                           number(best) + " and worst " + number(worst));
 }
 
+constexpr double kShareKnownTo = 0.0005;
+
 }  // namespace
 
 RequiredInputs required_inputs_of(std::span<const Objective> objectives) {
@@ -72,7 +74,9 @@ double Objective::unscaled(double f) const {
 
 double Requirement::missed_by(double measured) const {
   if (std::isnan(measured)) return std::numeric_limits<double>::infinity();
-  const double short_of = bound == Bound::at_least ? limit - measured : measured - limit;
+  // A share of what is attainable is known to its standard error, which is some tenths of a per cent.
+  const double known_to = objective.needs.attainable ? kShareKnownTo : 0;
+  const double short_of = (bound == Bound::at_least ? limit - measured : measured - limit) - known_to;
   const double width = objective.scale.width();
   return short_of > 0 ? short_of / (width > 0 ? width : 1) : 0;
 }

@@ -15,19 +15,24 @@ const SettingTable<RegistrationOptions>& registration_settings() {
             otherwise("Modelling error of a scan's surface besides range noise, the same over a patch, in metres",
                       usual.model.rho_m),
             [](Options & o) -> auto& { return o.model.rho_m; }, {.low = 1e-6, .high = 1})
+        .advanced()
         .number_in("registration-patch", "M", otherwise("Side of such a patch, in metres", usual.model.patch_m),
                    [](Options & o) -> auto& { return o.model.patch_m; }, {.low = 1e-3, .high = 100})
+        .advanced()
         .number("registration-position", "M", "Standard deviation of a head's position before registration, in metres",
                 &Options::position_m, {.low = 1e-6, .high = 1e4})
+        .advanced()
         .degrees("registration-heading",
                  otherwise("Standard deviation of a scan's heading before registration, in degrees",
                            usual.heading.in_degrees()),
                  &Options::heading, {.low = 1e-6, .high = 180})
+        .advanced()
         .degrees("registration-tilt",
                  otherwise("Standard deviation of a scan's tilts, from its compensator, in degrees; 0: exactly level, "
                            "some degrees: not levelled",
                            usual.tilt.in_degrees()),
                  &Options::tilt, {.low = 0, .high = 180})
+        .advanced()
         .custom("registration-surfaces", "surveyed|all",
                 "Surfaces that scans register on: surveyed ones, or all; surveyed otherwise",
                 [](Options& options, const std::string& text, const std::string& what) {
@@ -35,6 +40,7 @@ const SettingTable<RegistrationOptions>& registration_settings() {
                     throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither surveyed nor all");
                   options.surfaces = text == "all" ? RegistrationSurfaces::all : RegistrationSurfaces::surveyed;
                 })
+        .advanced()
         .take();
   }();
   return table;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <tuple>
 
 #include "core/text.hpp"
@@ -36,6 +37,14 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   double sum = 0;
   for (const double f : scaled_objectives(problem, entry.x, values)) sum += std::isnan(f) ? 1 : f * f;
   return std::sqrt(sum);
+}
+
+// Says nothing of more stations, where as many as were wanted could be placed.
+Requirement without_more_stations(Requirement requirement) {
+  constexpr std::string_view kMore = "allow more stations, or ";
+  std::string& advice = requirement.objective.advice;
+  if (advice.starts_with(kMore)) advice.erase(0, kMore.size());
+  return requirement;
 }
 
 }  // namespace
@@ -79,7 +88,7 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     const double value = entry.value(objective.name);
     if (requirement.missed_by(value) == 0) continue;
     const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
-    help.push_back(advice(requirement, value, ended_early));
+    help.push_back(advice(all_placed ? requirement : without_more_stations(requirement), value, ended_early));
     if (objective.kind != Objective::Kind::coverage || ended_early) continue;
     if (all_placed)
       help.back() += "; it takes more stations than " + std::to_string(problem.stations_max);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/check_problem.hpp"
 
+#include <algorithm>
+
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
+#include "plan/limits.hpp"
 #include "scene/scene_data.hpp"
+#include "vantage/error.hpp"
 #include "vantage/question.hpp"
 
 namespace vantage {
@@ -14,6 +18,12 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
   check_settings(registration_settings(), problem.registration);
   check_settings(target_settings(), problem.target);
   check_number(problem.link_overlap, "link-overlap", any_share);
+  if (problem.pays_m2) {
+    check_number(*problem.pays_m2, "pays", positive);
+    if (!problem.fewest || std::ranges::none_of(problem.requirements, requires_capture))
+      throw Error(Errc::invalid_argument,
+                  "pays: decides what the fewest stations have to capture; require some capture");
+  }
   if (problem.attainable) check_number(*problem.attainable, "attainable", {.low = 0, .high = 1, .low_included = false});
   if (problem.heights_m)
     for (const double height : *problem.heights_m)

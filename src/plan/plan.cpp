@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,11 +13,13 @@
 #include "plan/check_problem.hpp"
 #include "plan/complete_front.hpp"
 #include "plan/drop_networks.hpp"
+#include "plan/limits.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/plan_time.hpp"
 #include "plan/somewhere_to_stand.hpp"
 #include "plan/spread_positions.hpp"
+#include "plan/what_pays.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -128,6 +133,35 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
   return candidates;
 }
 
+// Requires what the stations that pay can capture, in place of the share that the problem gives.
+std::optional<StationsThatPay> require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
+                                                 const Candidates& candidates, const Progress& progress) {
+  if (!problem.pays_m2 || candidates.coverage().size() == 0) return std::nullopt;
+  Simulator& simulator = site.simulator();
+  const SampledCoverage& known = candidates.coverage();
+  SampledCoverage kept =
+      sample_coverage(simulator, existing_stations(context.oracle(), problem.existing, problem.existing_setups),
+                      known.sample_voxels(), progress);
+  std::vector<std::size_t> existing(kept.size());
+  std::iota(existing.begin(), existing.end(), std::size_t{0});
+  kept.append(known);
+  CoverageMatrix weighted = kept.matrix();
+  weighted.set_goals(context.chosen.counts());
+  // Square metres are those of all surfaces alike, whatever their voxels weigh.
+  CoverageMatrix even(std::vector<std::uint32_t>(weighted.elements(), 1), weighted.goal());
+  even.set_goals(context.chosen.counts());
+  for (std::size_t k = 0; k < weighted.candidates(); ++k) even.add(weighted.column(k));
+  const double element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(weighted.elements());
+  const CoverProblem asked{.matrix = even, .existing = std::move(existing), .most = problem.stations_max};
+  StationsThatPay pays = stations_that_pay(asked, weighted, element_m2, *problem.pays_m2);
+  // Down, and with digits that a surveyor reads.
+  constexpr double kDigits = 1000;
+  pays.capture = std::floor(pays.capture * kDigits) / kDigits;
+  for (Requirement& requirement : problem.requirements)
+    if (requires_capture(requirement)) requirement.limit = pays.capture;
+  return pays;
+}
+
 // Counts one station with every ray, by which the watch learns how long that takes.
 void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   const std::vector<PlacedStation> one =
@@ -161,6 +195,8 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;
   if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);
+  std::optional<StationsThatPay> pays;
+  if (candidates) pays = require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.stop});
   problem = settled(std::move(problem));
   context.ask(problem);
   PlanResult result;
@@ -184,6 +220,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   }
   if (result.stop_reason == StopReason::cancelled && time.search_ended()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
+  result.pays = pays;
   complete_front(result, context, site, {.report = {}, .stop = watch.abort});
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;

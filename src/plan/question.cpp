@@ -61,16 +61,19 @@ SurveyProblem of_objectives(const SurveyQuestion& question, std::array<std::size
 
 SurveyProblem fewest(const SurveyQuestion& question, std::array<std::size_t, 2> stations, double least, double apart) {
   // So many stations and no share of what is attainable: as much of it as they can.
-  const bool most = question.stations && stations[0] == stations[1] && !question.capture && question.objectives.empty();
+  const bool most = question.stations && stations[0] == stations[1] && !question.capture && !question.pays_m2 &&
+                    question.objectives.empty();
   SurveyProblem asked = fewest_stations(most ? 0 : question.capture.value_or(default_capture),
                                         question.link.value_or(default_link), stations[0], stations[1], apart);
   if (most) asked.objectives = {make_objective("capture", asked.settings())};
+  asked.pays_m2 = question.pays_m2;
   if (question.objectives.empty()) return asked;
   std::vector<Requirement> required = std::move(asked.requirements);
   asked = of_objectives(question, stations, least);
   asked.requirements = std::move(required);
   asked.name = kSurvey;
   asked.fewest = true;
+  asked.pays_m2 = question.pays_m2;
   return asked;
 }
 
@@ -151,6 +154,11 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   check_settings(question_settings(), question);
   const bool survey = question.asks_for_fewest();
   const auto stations = station_range(question);
+  if (question.pays_m2 && question.capture)
+    throw Error(Errc::invalid_argument, "pays and capture both decide the number of stations; give one of them");
+  if (question.pays_m2 && !survey)
+    throw Error(Errc::invalid_argument,
+                "pays: goes with the fewest stations, without a problem of its own; leave one out");
   if (!question.objectives.empty() && question.problem && !survey)
     throw Error(Errc::invalid_argument, "objectives: " + *question.problem + " has its own; give one of them");
   if (!survey && question.objectives.empty()) site.detect_every_echo();

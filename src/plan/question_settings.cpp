@@ -34,6 +34,10 @@ const SettingTable<SurveyQuestion>& question_settings() {
           .number("capture", "SHARE",
                   otherwise("Least share of what is attainable that the survey captures", default_capture),
                   &Question::capture, any_share)
+          .number("pays", "M2",
+                  "Instead of --capture: the fewest stations after which a further one would capture less new surface "
+                  "than so many square metres (25 is usual; docs/method.md)",
+                  &Question::pays_m2, positive)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "
                             "that the other sees too, over all surfaces",
@@ -84,10 +88,12 @@ const SettingTable<SurveyQuestion>& question_settings() {
                    &Question::heights_m, 2, not_negative)
           .number("link-overlap", "W", otherwise("Least overlap of a link, 0 to 1", default_link_overlap),
                   &Question::link_overlap, any_share)
+          .advanced()
           .number("min-overlap", "W",
                   "Least overlap of the links that connect all stations: sets link-overlap to W and requires "
                   "parts<=1",
                   &Question::min_overlap, any_share)
+          .advanced()
           .optional("fitness", "L1,L2,L3",
                     "Search one network of the largest fitness: weights of coverage, number and visibility, such as "
                     "0.4,0.4,0.2",
@@ -96,6 +102,7 @@ const SettingTable<SurveyQuestion>& question_settings() {
                       const auto weights = parse_numbers(text, what, 3, 3, not_negative);
                       return FitnessWeights{weights[0], weights[1], weights[2]};
                     })
+          .advanced()
           .checked([](const Question& q, const std::string& what) {
             if (q.fitness)
               for (const double weight : {q.fitness->coverage, q.fitness->station_count, q.fitness->visibility})
@@ -130,16 +137,22 @@ const SettingTable<PlanConfig>& plan_settings() {
           .count("population", "M",
                  "Networks per iteration; with one objective 10, or 20 if the number is searched; else 100",
                  &Config::population, 2, 100'000)
+          .advanced()
           .count("iterations", "K", "Iterations of M networks each; depends on the site, or 100 for problems by name",
                  &Config::iterations, 1, 100'000'000)
+          .advanced()
           .count("batch", "B", "Networks that the steady state asks for at once; depends on the engine by default",
                  &Config::batch, 1, 100'000)
+          .advanced()
           .count("redraws", "N", "Attempts to redraw stations in holes or clashes; 8 otherwise", &Config::redraws, 0,
                  10'000)
+          .advanced()
           .count("stagnation", "K", "Stop when nothing has improved for K iterations", &Config::stagnation_iterations,
                  1, 100'000'000)
+          .advanced()
           .number("sigma", "S", "First step, as a share of the search area", &Config::sigma0,
                   {.low = 0, .high = 10, .low_included = false})
+          .advanced()
           .custom("scheme", "SCHEME", "Scheme of MO-CMA-ES: steady-state or generational",
                   [](Config& c, const std::string& text, const std::string& what) {
                     if (text != "steady-state" && text != "generational")
@@ -148,6 +161,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                     c.scheme = text == "generational" ? MoCmaEsConfig::Scheme::generational
                                                       : MoCmaEsConfig::Scheme::steady_state;
                   })
+          .advanced()
           .custom("max-time", "T", "Time limit of the whole plan: 90, 90s, 15min or 2h",
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.max_seconds = parse_duration(text, what);
@@ -157,6 +171,7 @@ const SettingTable<PlanConfig>& plan_settings() {
               "target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
               &Config::target_hypervolume,
               [](const std::string& text, const std::string& what) { return parse_number(text, what, any_share); })
+          .advanced()
           .checked([](const Config& c, const std::string& what) {
             if (c.target_hypervolume) check_number(*c.target_hypervolume, what, any_share);
           })
@@ -171,6 +186,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                 c.sample_voxels = size.voxels.value_or(0), c.sample_share = size.share;
               },
               [](const Config& c) { return c.sample_voxels > 0 || c.sample_share; })
+          .advanced()
           .checked([](const Config& c, const std::string& what) {
             if (c.sample_share) check_number(*c.sample_share, what, {.low = 0, .high = 1, .low_included = false});
           })
@@ -182,12 +198,14 @@ const SettingTable<PlanConfig>& plan_settings() {
                     [](const std::string& text, const std::string& what) {
                       return static_cast<std::size_t>(parse_count(text, what, 1, 100'000'000));
                     })
+          .advanced()
           .excludes({"exact"})
           .group("Results")
           .custom("save-every", "T", "Time between checkpoints, from which a run can be resumed; 1min otherwise",
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.checkpoint_seconds = parse_duration(text, what);
                   })
+          .advanced()
           .checked(
               [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, any_seconds); })
           .flag("resume", "Continue from the folder's checkpoint", &Config::resume)

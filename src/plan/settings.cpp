@@ -69,6 +69,7 @@ Settings settings(const SurveyProblem& problem) {
   SettingList setups;
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
   if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
+  if (problem.pays_m2) setups.add("pays_m2", *problem.pays_m2, {"pays"});
   // Targets are proposed for the answer of a search, and decide nothing in it.
   if (problem.targets) setups.add("targets", *problem.targets, {"targets", false});
   if (!problem.existing_targets.empty())

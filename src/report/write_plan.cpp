@@ -30,11 +30,9 @@ std::string title_of(const PlanEntry& entry) {
   const double coverage = entry.value("coverage");
   if (const auto capture = entry.values.find("capture"); capture != entry.values.end()) {
     std::string shares;
-    if (!std::isnan(coverage)) shares = fixed(100 * coverage, 1) + " % of the site captured";
-    if (!std::isnan(capture->second.value))
-      shares +=
-          (shares.empty() ? "captured " : ", ") + fixed(100 * capture->second.value, 1) + " % of what is attainable";
-    return title + ": " + (shares.empty() ? "the time was over before anything was measured" : shares);
+    if (!std::isnan(capture->second.value)) shares = fixed(100 * capture->second.value, 1) + " % of what is attainable";
+    if (!std::isnan(coverage)) shares += (shares.empty() ? "" : ", ") + fixed(100 * coverage, 1) + " % of the site";
+    return title + ": " + (shares.empty() ? "the time was over before anything was measured" : "captured " + shares);
   }
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }

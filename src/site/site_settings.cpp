@@ -70,6 +70,7 @@ void add_scene(Rows& rows) {
                [](const std::string& text, const std::string& what) {
                  return static_cast<std::uint32_t>(parse_count(text, what, 1, 255));
                }))
+      .advanced()
       .checked(each_in([](const SiteOptions& o) -> auto& { return o.scene.weights; }, {.low = 1, .high = 255}))
       .repeated(
           "detail", "PATTERN=MM",
@@ -112,19 +113,23 @@ void add_scene(Rows& rows) {
             o.scene.scene_index = parse_count(text, what, 0, 0xFFFFFFFF);
           },
           [](const SiteOptions& o) { return o.scene.scene_index.has_value(); })
+      .advanced()
       .number_in(
           "diffuse", "R", "Diffuse reflection coefficient if the file gives none, 0 to 1",
           [](SiteOptions & o) -> auto& { return o.scene.default_diffuse; }, any_share)
+      .advanced()
       .custom(
           "shared-meshes", "WHEN",
           "Store a mesh that several nodes place once: auto, in scenes of more than 8 million triangles; always; never",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.shared_meshes = named(what, [&] { return shared_meshes_from_string(text); });
           })
+      .advanced()
       .custom("allow-outside", "", "Let the scene name buffers and images outside its own folder",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.scene.allow_outside = parse_flag(text, what);
-              });
+              })
+      .advanced();
 }
 
 void add_scanner(Rows& rows) {
@@ -155,6 +160,7 @@ void add_scanner(Rows& rows) {
       .by_preset()
       .degrees("zenith-start", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
                &SiteOptions::zenith_start, {.low = 0, .high = 180, .high_included = false})
+      .advanced()
       .by_scene()
       .by_preset()
       .number("height", "M", "Height of the scanner's head above the ground", &SiteOptions::height_m, not_negative)
@@ -169,6 +175,7 @@ void add_scanner(Rows& rows) {
       .numbers("beam", "MRAD,MM",
                "Full angle of the beam's divergence, in milliradians, and its diameter at the exit, in millimetres",
                &SiteOptions::beam, 2, not_negative)
+      .advanced()
       .by_scene()
       .by_preset()
       .optional("detection", "M,R",
@@ -183,6 +190,7 @@ void add_scanner(Rows& rows) {
                                                             " ends with " + std::to_string(values[1]));
                   return std::array{values[0], values[1]};
                 })
+      .advanced()
       .checked([](const SiteOptions& o, const std::string& what) {
         if (!o.detection) return;
         check_number((*o.detection)[0], what, not_negative);
@@ -192,12 +200,14 @@ void add_scanner(Rows& rows) {
       .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
               &SiteOptions::points_per_second, measurable)
+      .advanced()
       .by_preset();
 }
 
 void add_measure(Rows& rows) {
   rows.group("Measure")
       .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, measurable)
+      .advanced()
       .by_scene()
       .degrees("incidence",
                "Largest angle between ray and normal of points that count, 90: any; 60 if a detail or an accuracy "
@@ -208,7 +218,8 @@ void add_measure(Rows& rows) {
       .by_scene()
       .flag("spacing-by-detail",
             "Use the detail of nodes as their spacing; the default if details differ and no spacing is given",
-            &SiteOptions::spacing_by_detail);
+            &SiteOptions::spacing_by_detail)
+      .advanced();
 }
 
 void add_placement(Rows& rows) {
@@ -223,6 +234,7 @@ void add_placement(Rows& rows) {
       .number("headroom", "M", "Clear height above walkable ground", &SiteOptions::headroom_m, not_negative)
       .by_scene()
       .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, not_negative)
+      .advanced()
       .by_scene()
       .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
                &SiteOptions::passage_m, 2, measurable)
@@ -245,6 +257,7 @@ void add_placement(Rows& rows) {
       .texts(
           "station-area", "PATTERN", "Nodes to stand on that keep their role, such as surveyed",
           [](SiteOptions & o) -> auto& { return o.scene.station_area; })
+      .advanced()
       .numbers("levels", "LOW,HIGH", "Heights of ground between which stations may stand", &SiteOptions::levels_m, 2,
                any_number)
       .repeated(
@@ -279,6 +292,7 @@ void add_run(Rows& rows) {
                 o.memory_bytes = parse_bytes(text, what);
               })
       .flag("validation", "Check every Vulkan call with the validation layer", &SiteOptions::validation)
+      .advanced()
       .custom(
           "crs", "EPSG:N|FILE",
           "Coordinate system of the scene: EPSG:25832 or the like, or a .prj or .wkt file; point clouds carry it",

@@ -26,7 +26,7 @@ def lines_of(page):
 
 def options_of(command):
     """The options that a command of the program knows; None if it has no such command."""
-    done = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True)
+    done = subprocess.run([PROGRAM, command, "--help-all"], capture_output=True, text=True)
     return set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", done.stdout)) if done.returncode == 0 else None
 
 

@@ -154,8 +154,8 @@ def check_manual(folder):
         zsh = file.read()
     for command in commands:
         options = set(re.findall(r"(?<!\S)(--[a-z][a-z0-9-]*)", "\n".join(
-            re.findall(r"^  ((?:-\w,)?--\S+)", run(folder, command, "--help").replace(",--", ", --"), re.M))))
-        options |= set(re.findall(r"^  -\w,(--[a-z0-9-]+)", run(folder, command, "--help"), re.M))
+            re.findall(r"^  ((?:-\w,)?--\S+)", run(folder, command, "--help-all").replace(",--", ", --"), re.M))))
+        options |= set(re.findall(r"^  -\w,(--[a-z0-9-]+)", run(folder, command, "--help-all"), re.M))
         assert "--help" in options, options
         with gzip.open(os.path.join(MANUAL, f"man1/vantage-{command}.1.gz"), "rt", encoding="utf-8") as file:
             page = file.read()

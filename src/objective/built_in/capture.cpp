@@ -22,7 +22,7 @@ Objective capture(const ObjectiveSettings& settings) {
           .standard_error = [](const MeasuredNetwork& m) { return m.captured.standard_error; },
           .kind = Objective::Kind::coverage,
           .coverage_of_one = settings.attainable,
-          .advice = "allow more stations, or more places to stand",
+          .advice = "allow more stations, or give more places to stand",
           .parameters = "of an attainable coverage of " + number(settings.attainable)};
 }
 

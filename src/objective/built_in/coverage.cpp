@@ -15,7 +15,7 @@ Objective coverage(const ObjectiveSettings&) {
       .standard_error =
           [](const MeasuredNetwork& m) { return coverage_estimate(m.counts, m.goal_density, m.voxels).standard_error; },
       .kind = Objective::Kind::coverage,
-      .advice = "allow more stations, or more places to stand"};
+      .advice = "allow more stations, or give more places to stand"};
 }
 
 }  // namespace vantage::built_in

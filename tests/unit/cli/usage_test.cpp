@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes that users make: each gets one clear line and a stated exit code, and leaves nothing behind.
+#include <sstream>
+
 #include "program.hpp"
 
 namespace vantage::test {
@@ -21,6 +23,25 @@ TEST_F(Usage, HelpAndVersionSucceed) {
     EXPECT_NE(outcome.out, "") << arguments[0];
     EXPECT_EQ(outcome.err, "") << arguments[0];
   }
+}
+
+// What a command does, examples and its own options come first; those of special cases are on a list of their own.
+TEST_F(Usage, HelpBeginsWithWhatAUserLooksFor) {
+  const std::string help = run_program({"plan", "--help"}).out, all = run_program({"plan", "--help-all"}).out;
+  const auto at = [](const std::string& text, const std::string& what) { return text.find(what); };
+  EXPECT_EQ(at(help, "Find where to stand"), 0u);
+  EXPECT_LT(at(help, "vantage plan site.ifc --scanner"), at(help, "--capture SHARE"));
+  EXPECT_LT(at(help, "--capture SHARE"), at(help, "--surveyed PATTERN"));
+  EXPECT_EQ(at(help, "--registration-rho"), std::string::npos);
+  EXPECT_NE(at(help, "vantage plan --help-all"), std::string::npos);
+  EXPECT_NE(at(all, "--registration-rho"), std::string::npos);
+  EXPECT_EQ(at(all, "vantage plan --help-all"), std::string::npos);
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("  vantage")) {
+      EXPECT_LE(line.size(), 120u) << line;
+    }
+  EXPECT_EQ(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--user-size", "0.5", "--json"}).exit_code, 0);
 }
 
 TEST_F(Usage, CommandsAndOptionsMustExist) {

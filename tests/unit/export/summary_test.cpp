@@ -28,10 +28,10 @@ TEST(Summary, TellsTheErrorOfWhatIsAttainable) {
     network.attainable_growth = growth;
     return summary_lines(network).front().text;
   };
-  EXPECT_EQ(captured(0), "50.0 % of the site, 90.0 % of what is attainable");
-  EXPECT_EQ(captured(0.007), "50.0 % of the site, 90.0 % of what is attainable, which is known to 0.7 %");
-  EXPECT_TRUE(captured(0.0001).ends_with("which is known to less than 0.1 %"));
-  EXPECT_EQ(captured(1), "50.0 % of the site, 90.0 % of what is attainable from the few places that were looked at");
+  EXPECT_EQ(captured(0), "90.0 % of what is attainable; 50.0 % of the site");
+  EXPECT_EQ(captured(0.007), "90.0 % of what is attainable, which is known to 0.7 %; 50.0 % of the site");
+  EXPECT_TRUE(captured(0.0001).ends_with("which is known to less than 0.1 %; 50.0 % of the site"));
+  EXPECT_EQ(captured(1), "90.0 % of what is attainable from the few places that were looked at; 50.0 % of the site");
 }
 
 TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
@@ -76,7 +76,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   network.visit = Visit{.minutes = 3 * 60 + 25 + 20 / 60.0};
   EXPECT_EQ(
       summary_text(network),
-      "captured   71.2 % ± 0.4 % of the site, 92.0 % ± 1.0 % of what is attainable\n"
+      "captured   92.0 % ± 1.0 % of what is attainable; 71.2 % ± 0.4 % of the site\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
       "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met with 12.6 mm to spare\n"
       "on site    about 3 h 25 min\n"

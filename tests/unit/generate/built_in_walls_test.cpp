@@ -128,8 +128,10 @@ TEST(BuiltInScenes, AreTheSameBytesEveryTime) {
 
 TEST(BuiltInScenes, TheFilesInDataAreUpToDate) {
   const test::TemporaryFolder folder;
-  const std::pair<const char*, const char*> files[] = {
-      {"three-walls", "three_walls.glb"}, {"four-walls", "four_walls.glb"}, {"industrial", "industrial_20k.glb"}};
+  const std::pair<const char*, const char*> files[] = {{"three-walls", "three_walls.glb"},
+                                                       {"four-walls", "four_walls.glb"},
+                                                       {"industrial", "industrial_20k.glb"},
+                                                       {"office", "office.glb"}};
   for (const auto& [name, file] : files) {
     write_built_in_scene(name, 20'000, folder / file);
     const Scene fresh = Scene::load(folder / file),

@@ -230,6 +230,11 @@ TEST(Requirement, ReadsWhatIsAsked) {
   const Requirement few = make_requirement("stations<=8", {.stations_min = 4, .stations_max = 12});
   EXPECT_EQ(few.missed_by(10), 0.25);
   EXPECT_EQ(few.missed_by(8), 0);
+  // What is attainable is known to some tenths of a per cent: what is printed as the limit meets it.
+  const Requirement share = make_requirement("capture>=0.9");
+  EXPECT_EQ(share.missed_by(0.89998), 0);
+  EXPECT_EQ(share.missed_by(0.8996), 0);
+  EXPECT_GT(share.missed_by(0.8994), 0);
   for (const char* wrong : {"coverage", "coverage>0.9", "coverage=0.9", "coverage>=", "coverage>=x", "coverage>=nan",
                             "cover>=0.9", ">=0.9", "coverage>=0.9 0.8", "coverage>"})
     EXPECT_THROW(make_requirement(wrong), Error) << wrong;

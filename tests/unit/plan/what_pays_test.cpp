@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/what_pays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "vantage/error.hpp"
+#include "vantage/question.hpp"
+
+namespace vantage {
+namespace {
+
+// Candidates that share nothing, one for each number of elements.
+CoverageMatrix apart(const std::vector<std::uint32_t>& sizes, std::uint32_t weight = 1) {
+  std::uint32_t all = 0;
+  for (const std::uint32_t size : sizes) all += size;
+  CoverageMatrix matrix(std::vector<std::uint32_t>(all, weight), 1);
+  std::uint32_t next = 0;
+  for (const std::uint32_t size : sizes) {
+    std::vector<CoverageMatrix::Entry> column;
+    for (std::uint32_t k = 0; k < size; ++k) column.push_back({next++, 1});
+    matrix.add(column);
+  }
+  return matrix;
+}
+
+TEST(WhatPays, EndsWhereAFurtherStationCapturesLess) {
+  const CoverageMatrix matrix = apart({10, 40, 20, 30});
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 9}, matrix, 2, 50);
+  EXPECT_EQ(pays.stations, 2u);
+  EXPECT_DOUBLE_EQ(pays.capture, 0.7);
+  EXPECT_DOUBLE_EQ(pays.next_m2, 40);
+  const StationsThatPay all = stations_that_pay({.matrix = matrix, .most = 9}, matrix, 2, 1);
+  EXPECT_EQ(all.stations, 4u);
+  EXPECT_DOUBLE_EQ(all.capture, 1);
+  EXPECT_DOUBLE_EQ(all.next_m2, 0);
+}
+
+TEST(WhatPays, TakesOneStationWhereNoneDoes) {
+  const CoverageMatrix matrix = apart({3, 2});
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, matrix, 1, 100).stations, 1u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .existing = {1}, .most = 9}, matrix, 1, 100).stations, 0u);
+}
+
+TEST(WhatPays, CountsWhatExistingStationsCapture) {
+  const CoverageMatrix matrix = apart({40, 30, 20, 10});
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .existing = {0}, .most = 9}, matrix, 1, 25);
+  EXPECT_EQ(pays.stations, 1u);
+  EXPECT_DOUBLE_EQ(pays.capture, 0.7);
+}
+
+// A fifth as many stations as there are count together, so one poor step ends nothing.
+TEST(WhatPays, LooksAtAFifthMoreStationsTogether) {
+  std::vector<std::uint32_t> sizes(300, 20);
+  sizes.insert(sizes.end(), 200, 2);
+  const CoverageMatrix matrix = apart(sizes);
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 450}, matrix, 1, 10);
+  EXPECT_GT(pays.stations, 240u);
+  EXPECT_LT(pays.stations, 300u);
+  EXPECT_LT(pays.next_m2, 10);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 100}, matrix, 1, 10).stations, 100u);
+}
+
+// A floor of 12 m by 12 m.
+Site floor_site() {
+  const std::vector<Vec3> corners{{0, 0, 0}, {12, 0, 0}, {12, 12, 0}, {0, 12, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  SiteOptions options;
+  options.engine = Engine::embree;
+  options.user_size_m = 0.5, options.spacing_m = 0.05;
+  return Site(Scene::from_triangles(corners, triangles), options);
+}
+
+TEST(WhatPays, TheNumberOfStationsFollowsIt) {
+  const auto placed = [](double pays_m2) {
+    Site site = floor_site();
+    SurveyQuestion question;
+    question.pays_m2 = pays_m2;
+    question.link = 0;
+    return plan(site, question, {.iterations = 1, .sample_voxels = 500});
+  };
+  const PlanResult few = placed(1000), more = placed(0.5);
+  ASSERT_TRUE(few.pays && more.pays);
+  EXPECT_EQ(few.pays->stations, 1u);
+  EXPECT_GT(more.pays->stations, 1u);
+  EXPECT_GE(more.front.front().stations.size(), few.front.front().stations.size());
+  EXPECT_LT(few.pays->next_m2, 1000);
+  for (const PlanResult* result : {&few, &more})
+    for (const Requirement& requirement : result->problem.requirements)
+      if (requirement.objective.name == "capture") {
+        EXPECT_DOUBLE_EQ(requirement.limit, result->pays->capture);
+      }
+}
+
+TEST(WhatPays, EitherItOrAShareDecides) {
+  Site site = floor_site();
+  const auto code_of = [&](const SurveyQuestion& asked) {
+    try {
+      survey_problem(site, asked);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return Errc{};
+  };
+  SurveyQuestion question;
+  question.pays_m2 = 25, question.capture = 0.8;
+  EXPECT_EQ(code_of(question), Errc::invalid_argument);
+  question.capture.reset();
+  EXPECT_EQ(survey_problem(site, question).pays_m2, 25);
+  question.problem = "coverage-fix";
+  EXPECT_EQ(code_of(question), Errc::invalid_argument);
+  question.problem.reset(), question.pays_m2 = 0;
+  EXPECT_EQ(code_of(question), Errc::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vantage
