@@ -60,7 +60,7 @@ TEST_F(Usage, MistypedNamesGetASuggestion) {
   expect_refused(run_program(coarse("plan", {"--statoins", "4", "-o", path("plan")})), 2,
                  "there is no option --statoins; did you mean --stations?");
   expect_refused(run_program(coarse("plan", {"--min_overlp=0.3"})), 2, "did you mean --min-overlap?");
-  expect_refused(run_program({"evaluate", scene_, "second.glb"}), 2, "'second.glb' is one word too many");
+  expect_refused(run_program({"evaluate", scene_, "second.glb"}), 2, "several files are one site if they are IFC");
   expect_refused(run_program(coarse("plan", {"--problem", "coverge-fix", "--stations", "4", "-o", path("plan")})), 2,
                  "did you mean coverage-fix?");
   expect_refused(run_program(coarse("plan", {"--objectives", "coverage,overlop", "--stations", "4", "-o", path("p")})),
