@@ -13,7 +13,7 @@ namespace vantage {
 namespace {
 
 // After this many stations the gain of one more is looked at alone, after twice as many that of two.
-constexpr std::size_t kTogether = 5;
+constexpr std::size_t kLookedAtTogether = 5;
 constexpr std::size_t kFirstChoice = 64;  // stations; then twice as many
 
 }  // namespace
@@ -38,7 +38,7 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, const CoverageMat
     const std::size_t all = captured_m2.size() - 1;
     const bool ended = all < most || most == problem.most;
     for (std::size_t n = problem.existing.empty() ? 1 : 0; n <= all; ++n) {
-      const std::size_t next = std::max<std::size_t>(1, n / kTogether), last = std::min(n + next, all);
+      const std::size_t next = std::max<std::size_t>(1, n / kLookedAtTogether), last = std::min(n + next, all);
       if (n + next > all && !ended) break;
       found.next_m2 = last > n ? (captured_m2[last] - captured_m2[n]) / static_cast<double>(last - n) : 0;
       if (found.next_m2 >= least_m2) continue;
