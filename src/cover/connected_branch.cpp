@@ -423,13 +423,14 @@ ConnectedBranch Branching::run() {
   for (std::size_t k = 0; k < candidates_; ++k)
     if (problem_.existing.empty() || k == problem_.existing.front()) open.push({first_bound_, k, {}});
   CoverProblem grown = problem_;
+  const ColumnIndex columns(problem_.matrix);
   grown.fewest = grown.most, grown.coverage = 1;
   double left = best_;  // largest bound of parts that were given up
   while (!open.empty() && open.top().bound > best_ + 2 * kProgramSlack && !over()) {
     Part part = open.top();
     open.pop();
     if (part.fixed.empty() && problem_.existing.empty()) {
-      std::vector<std::size_t> around = grow_connected(grown, {part.root});
+      std::vector<std::size_t> around = grow_connected(grown, columns, {part.root});
       offer(std::move(around));
     }
     const std::optional<std::size_t> split = solve(part);

@@ -6,7 +6,6 @@
 #include <span>
 #include <utility>
 
-#include "core/parallel.hpp"
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
 
@@ -20,13 +19,12 @@ using Path = std::vector<std::size_t>;
 
 class Growth {
  public:
-  Growth(const CoverProblem& problem, std::vector<std::size_t> network)
+  Growth(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network)
       : problem_(problem),
         none_(problem.matrix.candidates()),
         free_(free_candidates(problem)),
         network_(std::move(network)),
-        columns_(problem.matrix),
-        gains_(problem.matrix, columns_, network_),
+        gains_(problem.matrix, columns, network_),
         joinable_(problem, network_) {
     const std::size_t existing = problem.existing.size(), most = problem.most;
     most_ = most < none_ - std::min(existing, none_) ? existing + most : none_;
@@ -38,7 +36,7 @@ class Growth {
     const std::size_t fewest = problem_.existing.size() + problem_.fewest;
     bool along_links = problem_.link > 0;
     while (network_.size() < most_) {
-      const bool enough = gains_.cover().value() >= problem_.coverage;
+      const bool enough = gains_.share(gains_.value()) >= problem_.coverage;
       if (enough && network_.size() >= fewest) {
         if (components_of(problem_, network_, problem_.link).count == 1) break;
         const Path path = path_between_components();
@@ -78,7 +76,8 @@ class Growth {
   }
 
   // The gain of a candidate that may stand; 0 of others.
-  double gain(std::size_t k) const { return joinable_.may_stand(k) ? gains_[k] : 0; }
+  CoverUnits units(std::size_t k) const { return joinable_.may_stand(k) ? gains_[k] : 0; }
+  double gain(std::size_t k) const { return gains_.share(units(k)); }
   double gain_along(const Path& path) const;
 
   std::optional<std::size_t> first_candidate() const;
@@ -90,7 +89,6 @@ class Growth {
   const CoverProblem& problem_;
   std::size_t none_;
   std::vector<std::size_t> free_, network_;
-  ColumnIndex columns_;
   CoverGains gains_;
   Joinable joinable_;
   std::size_t most_ = 0;  // largest number in the network
@@ -99,19 +97,16 @@ class Growth {
 // The candidate with the most coverage in the component that covers most as a whole.
 std::optional<std::size_t> Growth::first_candidate() const {
   const Components parts = components_of(problem_, free_, problem_.link);
-  const PartialCover none(problem_.matrix);
   std::optional<std::size_t> best;
   double most = 0;
   for (std::size_t part = 0; part < parts.count; ++part) {
-    PartialCover all(problem_.matrix);
-    std::size_t richest = 0;
-    double gain = -1;
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      if (parts.of[i] != part) continue;
-      all.add(free_[i]);
-      if (const double alone = none.gain(free_[i]); alone > gain) gain = alone, richest = free_[i];
-    }
-    if (const double together = all.value(); !best || together > most) most = together, best = richest;
+    std::vector<std::size_t> members;
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      if (parts.of[i] == part) members.push_back(free_[i]);
+    const double together = parts.count > 1 ? problem_.matrix.coverage(members) : 1;
+    if (best && together <= most) continue;
+    most = together;
+    best = *std::ranges::max_element(members, {}, [&](std::size_t k) { return gains_[k]; });
   }
   return best;
 }
@@ -149,35 +144,37 @@ double Growth::gain_along(const Path& path) const {
 
 // The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
 Path Growth::best_path() const {
-  std::vector<std::size_t> hops(none_, none_), from(none_, none_), next;
+  std::vector<std::size_t> hops(none_, none_), from(none_, none_), reached = network_, next;
   for (const std::size_t k : network_) hops[k] = 0;
+  std::ranges::sort(reached);
   struct End {
     double score;  // upper bound of the path's gain for each candidate
     std::size_t candidate;
   };
   std::vector<End> ends;
+  CoverUnits one_step = 0;  // the largest gain of a candidate that is linked to the network
   for (std::size_t hop = 1; hop <= kLongestPath; ++hop) {
-    // Ways back lead over earlier hops, which stay as they are.
-    parallel::for_all(std::size_t{0}, free_.size(), [&](std::size_t i) {
-      const std::size_t k = free_[i];
-      if (hops[k] < none_ || !joinable_.may_stand(k)) return;
-      for (const StationGraph::Overlap& other : problem_.graph->overlaps(k)) {
-        const std::size_t before = other.candidate;
-        if (hops[before] == hop - 1 && static_cast<double>(other.share) >= problem_.link &&
-            (from[k] == none_ || gain(before) > gain(from[k])) && may_follow(k, before, from))
-          from[k] = before;
-      }
-    });
     next.clear();
-    for (const std::size_t k : free_)
-      if (hops[k] == none_ && from[k] < none_) next.push_back(k);
+    for (const std::size_t before : reached)
+      for (const StationGraph::Overlap& other : problem_.graph->overlaps(before)) {
+        const std::size_t k = other.candidate;
+        if (hops[k] < none_ || static_cast<double>(other.share) < problem_.link || !joinable_.may_stand(k)) continue;
+        if ((from[k] < none_ && units(before) <= units(from[k])) || !may_follow(k, before, from)) continue;
+        if (from[k] == none_) next.push_back(k);
+        from[k] = before;
+      }
+    std::ranges::sort(next);
     if (next.empty()) break;
     for (const std::size_t k : next) {
       hops[k] = hop;
       double sum = 0;
       for (std::size_t at = k; hops[at] > 0; at = from[at]) sum += gain(at);
       if (gain(k) > 0) ends.push_back({sum / static_cast<double>(hop), k});
+      if (hop == 1) one_step = std::max(one_step, units(k));
     }
+    // A longer path gains more for each candidate only if one of them gains more than any that is a step away.
+    if (std::ranges::none_of(free_, [&](std::size_t k) { return hops[k] == none_ && units(k) > one_step; })) break;
+    reached.swap(next);
   }
   const std::size_t tried = std::min(kPathsTried, ends.size());
   std::ranges::partial_sort(ends, ends.begin() + static_cast<std::ptrdiff_t>(tried), [](const End& a, const End& b) {
@@ -234,13 +231,15 @@ Path Growth::path_from(const Components& parts, std::size_t part) const {
 
 }  // namespace
 
-std::vector<std::size_t> grow_connected(const CoverProblem& problem, std::vector<std::size_t> network) {
-  return Growth(problem, std::move(network)).run();
+std::vector<std::size_t> grow_connected(const CoverProblem& problem, const ColumnIndex& columns,
+                                        std::vector<std::size_t> network) {
+  return Growth(problem, columns, std::move(network)).run();
 }
 
-CoverSolution grow_and_swap(const CoverProblem& problem, std::vector<std::size_t> network,
+CoverSolution grow_and_swap(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network,
                             const std::stop_token& stop) {
-  return evaluate_cover(problem, improve_by_swaps(problem, grow_connected(problem, std::move(network)), stop));
+  network = grow_connected(problem, columns, std::move(network));
+  return evaluate_cover(problem, improve_by_swaps(problem, columns, std::move(network), stop));
 }
 
 }  // namespace vantage

@@ -6,13 +6,16 @@
 #include <stop_token>
 #include <vector>
 
-#include "vantage/cover.hpp"
+#include "cover/partial_cover.hpp"
 
 namespace vantage {
 
 // Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.
-std::vector<std::size_t> grow_connected(const CoverProblem& problem, std::vector<std::size_t> network);
+// `columns`: of the problem's matrix.
+std::vector<std::size_t> grow_connected(const CoverProblem& problem, const ColumnIndex& columns,
+                                        std::vector<std::size_t> network);
 // Grows `network` likewise, then improves it by swaps.
-CoverSolution grow_and_swap(const CoverProblem& problem, std::vector<std::size_t> network, const std::stop_token& stop);
+CoverSolution grow_and_swap(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network,
+                            const std::stop_token& stop);
 
 }  // namespace vantage

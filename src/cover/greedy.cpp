@@ -31,7 +31,8 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
   for (const std::size_t k : free_candidates(problem)) queue.push({cover.gain(k), k, chosen.size()});
 
   std::vector<KnownGain> refused;  // not allowed now; may be once the network has grown
-  const auto enough = [&] { return problem.coverage < 1 && cover.value() >= problem.coverage; };
+  double covered = cover.value();
+  const auto enough = [&] { return problem.coverage < 1 && covered >= problem.coverage; };
   while (chosen.size() - problem.existing.size() < problem.most && !queue.empty() && !enough()) {
     const KnownGain best = queue.top();
     queue.pop();
@@ -45,6 +46,7 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
       continue;
     }
     cover.add(best.candidate);
+    covered = cover.value();
     chosen.push_back(best.candidate);
     joinable.add(best.candidate);
     if (problem.link > 0) components = links.emplace(problem, chosen, problem.link).components();

@@ -41,14 +41,14 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
 
 // Adds one candidate at a time, with swaps after each, until the network is feasible. Growth alone can shut itself in:
 // where candidates keep a distance from each other, a chosen one may block the only way to the rest.
-CoverSolution grow_one_by_one(CoverProblem problem, const std::stop_token& stop) {
+CoverSolution grow_one_by_one(CoverProblem problem, const ColumnIndex& columns, const std::stop_token& stop) {
   const std::size_t fewest = problem.fewest,
                     most = std::min({problem.most, problem.matrix.candidates() - problem.existing.size(), kOneByOne});
   CoverSolution best = evaluate_cover(problem, problem.existing);
   for (std::size_t placed = 1; placed <= most && !stop.stop_requested(); ++placed) {
     problem.most = placed, problem.fewest = std::min(fewest, placed);
     const std::size_t before = best.chosen.size();
-    best = grow_and_swap(problem, std::move(best.chosen), stop);
+    best = grow_and_swap(problem, columns, std::move(best.chosen), stop);
     if (best.violation == 0 || best.chosen.size() == before) break;
   }
   return best;
@@ -59,10 +59,12 @@ CoverSolution grow_one_by_one(CoverProblem problem, const std::stop_token& stop)
 ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token stop,
                                    std::optional<CoverSolution> start) {
   check(problem);
-  TabuSearch tabu(problem, stop);
+  const ColumnIndex columns(problem.matrix);
+  const TabuSearch tabu(problem, columns, stop);
   const bool from_start = start.has_value();
-  ConnectedCover found{.best = from_start ? std::move(*start)
-                                          : evaluate_cover(problem, grow_connected(problem, problem.existing))};
+  ConnectedCover found{.best = from_start
+                                   ? std::move(*start)
+                                   : evaluate_cover(problem, grow_connected(problem, columns, problem.existing))};
   CoverSolution& best = found.best;
   const auto placed = [&] { return best.chosen.size() - problem.existing.size(); };
   const auto swap = [&] {
@@ -71,24 +73,33 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
   };
   swap();
   if (from_start && best.violation > 0 && placed() < problem.most && !stop.stop_requested()) {
-    best = evaluate_cover(problem, grow_connected(problem, std::move(best.chosen)));
+    best = evaluate_cover(problem, grow_connected(problem, columns, std::move(best.chosen)));
     swap();
   }
   if (best.violation > 0 && problem.graph && best.chosen.size() <= kOneByOne && !stop.stop_requested()) {
-    CoverSolution other = grow_one_by_one(problem, stop);
+    CoverSolution other = grow_one_by_one(problem, columns, stop);
     if (other.violation < best.violation) best = std::move(other);
   }
   // One fewer while that is no worse, even if the network is not feasible.
   while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {
     const std::vector<std::size_t> places = places_by_loss(problem, best.chosen);
     std::optional<CoverSolution> fewer;
-    for (std::size_t k = 0; k < std::min(kBeginnings, places.size()) && !fewer && !stop.stop_requested(); ++k) {
-      CoverSolution now = evaluate_cover(problem, tabu.run(without(best.chosen, places[k]), problem.link));
-      std::optional<CoverSolution>& nearest = found.one_fewer;
-      if (now.violation <= best.violation)
-        fewer = std::move(now);
-      else if (!nearest || nearest->chosen.size() > now.chosen.size() || nearest->violation > now.violation)
-        nearest = std::move(now);
+    // Most often the first start will do. The others are tried at once.
+    for (std::size_t first = 0, end = 1; first < places.size() && first < kBeginnings && !fewer;
+         first = std::exchange(end, kBeginnings)) {
+      std::vector<std::vector<std::size_t>> starts;
+      for (std::size_t k = first; k < std::min(end, places.size()); ++k)
+        starts.push_back(without(best.chosen, places[k]));
+      for (std::vector<std::size_t>& network : tabu.run(starts, problem.link)) {
+        CoverSolution now = evaluate_cover(problem, std::move(network));
+        std::optional<CoverSolution>& nearest = found.one_fewer;
+        if (now.violation <= best.violation) {
+          fewer = std::move(now);
+          break;
+        }
+        if (!nearest || nearest->chosen.size() > now.chosen.size() || nearest->violation > now.violation)
+          nearest = std::move(now);
+      }
     }
     if (!fewer) break;
     best = std::move(*fewer);
@@ -99,14 +110,18 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
 CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, double enough,
                                    std::stop_token stop) {
   check(problem);
-  TabuSearch tabu(problem, stop);
+  const auto is_weak = [&](const CoverSolution& one) {
+    return problem.graph && one.link < enough && one.chosen.size() > 1;
+  };
   CoverSolution best = std::move(from);
+  if (best.violation == 0 && !is_weak(best)) return best;
+  const ColumnIndex columns(problem.matrix);
+  const TabuSearch tabu(problem, columns, stop);
   if (best.violation > 0) {
     CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, problem.link));
     if (found.violation < best.violation) best = std::move(found);
   }
-  while (problem.graph && best.violation == 0 && best.link < enough && best.chosen.size() > 1 &&
-         !stop.stop_requested()) {
+  while (best.violation == 0 && is_weak(best) && !stop.stop_requested()) {
     CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, std::min(best.link + kLinkStep, enough)));
     if (found.violation > 0 || found.link <= best.link) break;
     best = std::move(found);

@@ -186,6 +186,7 @@ void Joinable::count(std::size_t candidate, int by) {
 std::size_t NetworkLinks::joined(const Components& components, std::size_t candidate, std::size_t without) const {
   std::size_t found = 0;
   const std::span<const std::uint32_t> places = of(candidate);
+  if (components.count == 1) return places.size() > 1 || (places.size() == 1 && places.front() != without) ? 1 : 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] == without) continue;
     const auto same = [&](std::uint32_t before) {

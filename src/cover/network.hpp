@@ -72,7 +72,8 @@ class Joinable {
   void add(std::size_t candidate) { count(candidate, 1); }
   void remove(std::size_t candidate) { count(candidate, -1); }  // REQUIRES: a member
 
-  // Tells whether a candidate is no member, and no member excludes it.
+  // Number of members that a candidate may not stand with: itself, if it is one, and those that exclude it.
+  std::uint32_t against(std::size_t candidate) const { return against_[candidate]; }
   bool may_stand(std::size_t candidate) const { return against_[candidate] == 0; }
   // The same once a member has left, of which it is said whether it excludes the candidate.
   bool may_stand_without(std::size_t candidate, bool leaving_excludes) const {

@@ -2,9 +2,9 @@
 // Coverage of a set of candidates, updated as candidates come and go.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,58 +33,85 @@ class PartialCover {
   std::vector<std::uint64_t> amounts_;
 };
 
-// Candidates of each element: the transposed matrix.
+// Coverage in whole numbers, so that sums of changes are exact: F is units / ColumnIndex::whole().
+using CoverUnits = std::int64_t;
+
+// Candidates of each element: the transposed matrix, with what an element's amounts cover.
 class ColumnIndex {
  public:
   struct Column {
     std::uint32_t candidate, amount;
   };
-  // Keeps a reference to `matrix`.
+  struct Element {
+    CoverUnits whole = 0, each = 0;  // covered, and by a unit of its amount
+    std::uint64_t enough = 0;        // amount that covers it
+    // What so much covers of an element without any, and what is not covered with so much.
+    CoverUnits by(std::uint64_t amount) const { return each * static_cast<CoverUnits>(std::min(amount, enough)); }
+    CoverUnits missing(std::uint64_t amount) const { return std::max(whole - by(amount), CoverUnits{0}); }
+  };
   explicit ColumnIndex(const CoverageMatrix& matrix);
   // Candidates of an element, rising.
   std::span<const Column> of(std::size_t element) const {
     return std::span(columns_).subspan(offsets_[element], offsets_[element + 1] - offsets_[element]);
   }
+  Element element(std::size_t element) const { return elements_[element]; }
+  double whole() const { return whole_; }
 
  private:
-  const CoverageMatrix& matrix_;
   std::vector<std::size_t> offsets_;
   std::vector<Column> columns_;
+  std::vector<Element> elements_;
+  double whole_ = 0;
 };
 
-// A set S with the gains of all candidates to it. A change computes those anew that have an element whose coverage
-// changed.
+// A set S with the gains of all candidates to it. A change costs what the elements of its columns touch: the rows of
+// those whose coverage changes.
 class CoverGains {
  public:
+  // An element that S has another amount of than before.
+  struct Change {
+    std::uint32_t element;
+    std::uint64_t had, has;
+  };
+
   // Keeps references.
   CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen);
-  void add(std::size_t candidate) { change({}, candidate); }
-  void replace(std::size_t leaving, std::size_t joining) { change(leaving, joining); }  // REQUIRES: leaving in S
+  void add(std::size_t candidate);
+  // Returns the elements that count and change, until the next call. REQUIRES: leaving in S
+  std::span<const Change> replace(std::size_t leaving, std::size_t joining);
 
   const PartialCover& cover() const { return cover_; }
-  double operator[](std::size_t candidate) const { return gains_[candidate]; }
+  CoverUnits value() const { return value_; }  // F(S)
+  CoverUnits operator[](std::size_t candidate) const { return gains_[candidate]; }
+  CoverUnits loss(std::size_t member) const;  // F(S) − F(S − member). REQUIRES: in S
+  double share(CoverUnits units) const {
+    return columns_.whole() > 0 ? static_cast<double>(units) / columns_.whole() : 0;
+  }
+
   // Calls gained(k, d) for candidates k whose gain grows by d once `leaving` is not in S, in parts.
   template <class Gained>
   void for_gains_without(std::size_t leaving, const Gained& gained) const {
-    if (matrix_.total_weight() <= 0) return;
     for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {
-      const std::uint64_t has = cover_.amount(one.element), left = has - one.amount;
-      if (static_cast<double>(left) >= matrix_.goal(one.element)) continue;  // covered without it, too
-      const double share = matrix_.weight(one.element) / matrix_.total_weight();
-      const double lost = cover_.covered(one.element, has) - cover_.covered(one.element, left);
-      for (const ColumnIndex::Column& other : columns_.of(one.element))
-        gained(other.candidate, share * (lost - (cover_.covered(one.element, has + other.amount) -
-                                                 cover_.covered(one.element, left + other.amount))));
+      const std::uint64_t has = cover_.amount(one.element);
+      const ColumnIndex::Element element = columns_.element(one.element);
+      const CoverUnits then = element.missing(has - one.amount), now = element.missing(has);
+      if (then == now) continue;  // covered without it, too
+      for (const ColumnIndex::Column& other : columns_.of(one.element)) {
+        const CoverUnits gives = element.by(other.amount);
+        gained(other.candidate, std::min(gives, then) - std::min(gives, now));
+      }
     }
   }
 
  private:
-  void change(std::optional<std::size_t> leaving, std::size_t joining);
+  void change_gains(std::size_t at, std::uint64_t had, std::uint64_t has);
 
   const CoverageMatrix& matrix_;
   const ColumnIndex& columns_;
   PartialCover cover_;
-  std::vector<double> gains_;
+  CoverUnits value_ = 0;
+  std::vector<CoverUnits> gains_;
+  std::vector<Change> changes_;
 };
 
 }  // namespace vantage

@@ -5,9 +5,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "vantage/cover.hpp"
+#include "cover/partial_cover.hpp"
 
 namespace vantage {
+
+// The public call. `columns`: of the problem's matrix.
+std::vector<std::size_t> improve_by_swaps(const CoverProblem& problem, const ColumnIndex& columns,
+                                          std::vector<std::size_t> chosen, const std::stop_token& stop);
 
 // Drops one candidate after the other while the wanted coverage holds: the one with the least loss; if that is too
 // much, swaps make up for it. Deterministic unless stopped. REQUIRES: `chosen` begins with the existing candidates and

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -22,29 +22,29 @@ class TabuSearch {
   // return. A candidate that came may leave again after half as many.
   static constexpr std::size_t kPatience = 40, kTabu = 7;
 
-  // Keeps a reference to the problem.
-  explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
+  // Keeps references. `columns`: of the problem's matrix.
+  TabuSearch(const CoverProblem& problem, const ColumnIndex& columns, std::stop_token stop = {});
 
   // Makes the best swap each time, even to a worse network, and returns the best network found. Ends once nothing is
   // violated. `link` replaces that of the problem.
-  std::vector<std::size_t> run(std::vector<std::size_t> start, double link);
+  std::vector<std::size_t> run(const std::vector<std::size_t>& start, double link) const;
+  // The same from several starts at once: one network for each.
+  std::vector<std::vector<std::size_t>> run(std::span<const std::vector<std::size_t>> starts, double link) const;
 
  private:
   // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
-  struct Leaving;
-  struct Round;
-  struct Scratch;
-  class Ranking;
-  Swap best_swap(State& state) const;
-  Swap best_swap_at(State& state, const Round& round, std::size_t at, Scratch& scratch) const;
-  void replace(State& state, std::size_t at, std::size_t joining) const;
+  class BestSwap;
+  struct Found {
+    std::vector<std::size_t> network;
+    std::uint64_t swaps = 0;
+  };
+  Found search(const std::vector<std::size_t>& start, double link) const;
 
   const CoverProblem& problem_;
+  const ColumnIndex& columns_;
   std::stop_token stop_;
-  std::vector<std::size_t> free_;
-  std::optional<ColumnIndex> columns_;  // made when first needed
 };
 
 }  // namespace vantage

@@ -105,7 +105,8 @@ void look(CandidateTable& table, std::span<const PlacedStation> existing, std::s
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop) {
   if (choice.asked.most_coverage) {
     const CoverProblem problem = cover_problem(choice);
-    choice.network = grow_and_swap(problem, start ? std::move(start->chosen) : problem.existing, stop);
+    choice.network =
+        grow_and_swap(problem, ColumnIndex(problem.matrix), start ? std::move(start->chosen) : problem.existing, stop);
     return;
   }
   ConnectedCover found = min_connected_cover(cover_problem(choice), std::move(stop), std::move(start));

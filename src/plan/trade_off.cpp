@@ -8,6 +8,7 @@
 #include "cover/connected_growth.hpp"
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
+#include "cover/swaps.hpp"
 
 namespace vantage {
 namespace {
@@ -63,6 +64,7 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
   CoverProblem problem = cover_problem(choice);
   problem.coverage = 1;  // as much as there is
   problem.link = choice.asked.link;
+  const ColumnIndex columns(problem.matrix);
   const std::size_t existing = choice.asked.existing;
   const std::vector<std::size_t> numbers = trade_off_numbers(choice.placed(), std::numeric_limits<std::size_t>::max());
   const auto here = std::ranges::find(numbers, choice.placed());
@@ -73,12 +75,12 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
     bool dropped = true;
     while (dropped && now.size() > existing + *number) dropped = drop_one(problem, now);
     if (!dropped) break;
-    now = improve_by_swaps(problem, std::move(now), unimproved);
+    now = improve_by_swaps(problem, columns, std::move(now), unimproved);
     networks.insert(networks.begin(), evaluate_cover(problem, now));
   }
   for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
     problem.most = problem.fewest = *number;
-    CoverSolution more = grow_and_swap(problem, networks.back().chosen, unimproved);
+    CoverSolution more = grow_and_swap(problem, columns, networks.back().chosen, unimproved);
     if (more.chosen.size() == networks.back().chosen.size()) break;
     networks.push_back(std::move(more));
   }

@@ -40,11 +40,12 @@ TEST(CoverGains, KnowsWhatCandidatesGainWithoutOneThatLeaves) {
       Chosen others = chosen;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(at));
       const PartialCover without(matrix, others);
-      std::vector<double> gains(matrix.candidates());
+      std::vector<CoverUnits> gains(matrix.candidates());
       for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = known[k];
-      known.for_gains_without(chosen[at], [&](std::size_t k, double gained) { gains[k] += gained; });
+      known.for_gains_without(chosen[at], [&](std::size_t k, CoverUnits gained) { gains[k] += gained; });
       for (std::size_t k = 0; k < gains.size(); ++k)
-        EXPECT_NEAR(gains[k], without.gain(k), 1e-12) << k << " without " << chosen[at];
+        EXPECT_NEAR(known.share(gains[k]), without.gain(k), 1e-12) << k << " without " << chosen[at];
+      EXPECT_NEAR(known.share(known.loss(chosen[at])), known.cover().loss(chosen[at]), 1e-12);
     }
   }
 }
@@ -65,9 +66,33 @@ TEST(CoverGains, AreThoseOfTheSetAfterEachChange) {
       known.replace(chosen[at], joining);
       chosen[at] = joining;
     }
-    const PartialCover cover(matrix, chosen);
-    for (std::size_t k = 0; k < matrix.candidates(); ++k) EXPECT_EQ(known[k], cover.gain(k));
+    const CoverGains anew(matrix, columns, chosen);
+    EXPECT_EQ(known.value(), anew.value()) << "exactly: rounding must not tell equal candidates apart";
+    EXPECT_NEAR(known.share(known.value()), matrix.coverage(chosen), 1e-12);
+    for (std::size_t k = 0; k < matrix.candidates(); ++k) {
+      EXPECT_EQ(known[k], anew[k]);
+      EXPECT_NEAR(known.share(known[k]), anew.cover().gain(k), 1e-12);
+    }
   }
+}
+
+TEST(CoverGains, OfElementsWithGoalsOfTheirOwn) {
+  CoverageMatrix matrix = random_matrix(15, 60, 4, 0.4, 5);
+  std::vector<double> goals(60);
+  for (std::size_t e = 0; e < goals.size(); ++e) goals[e] = 0.7 * static_cast<double>(e % 9);  // some are 0
+  matrix.set_goals(goals);
+  const ColumnIndex columns(matrix);
+  CoverGains known(matrix, columns, Chosen{1});
+  Chosen chosen{1};
+  for (const std::size_t k : {4u, 9u, 2u}) {
+    const PartialCover cover(matrix, chosen);
+    for (std::size_t j = 0; j < matrix.candidates(); ++j) EXPECT_NEAR(known.share(known[j]), cover.gain(j), 1e-12);
+    known.add(k), chosen.push_back(k);
+  }
+  Chosen all(matrix.candidates());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  const CoverGains whole(matrix, columns, all);
+  EXPECT_NEAR(whole.share(whole.value()), matrix.coverage(all), 1e-12);
 }
 
 }  // namespace

@@ -84,6 +84,7 @@ TEST(TabuSearch, FindsWhatTryingAllSwapsFinds) {
   std::size_t connected = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const Line line(seed);
+    const ColumnIndex columns(line.matrix);
     for (const double link : {0.0, 0.3, 0.6}) {
       SCOPED_TRACE(std::to_string(seed) + ", links of " + std::to_string(link));
       const CoverProblem problem{.matrix = line.matrix,
@@ -95,7 +96,8 @@ TEST(TabuSearch, FindsWhatTryingAllSwapsFinds) {
       Chosen start = problem.existing;
       for (std::size_t k = 3; start.size() < 12; k += 5)
         if (std::ranges::find(start, k) == start.end()) start.push_back(k);
-      const Chosen found = TabuSearch(problem).run(start, link), expected = by_definition(problem, start, link);
+      const Chosen found = TabuSearch(problem, columns).run(start, link),
+                   expected = by_definition(problem, start, link);
       EXPECT_EQ(found, expected);
       connected += link > 0 && components_of(problem, found, link).count == 1;
     }
