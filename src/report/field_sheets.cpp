@@ -65,7 +65,8 @@ class MapSheet {
     return p.x >= window_.min.x && p.x <= window_.max.x && p.y >= window_.min.y && p.y <= window_.max.y;
   }
 
-  void site(const Scene& scene, const SearchArea& area, std::span<const std::uint32_t> surfaces) {
+  void site(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations,
+            std::span<const std::uint32_t> surfaces) {
     const Rect& map = layout_.map;
     const bool smooth = layout_.paper.name == a4().name;
     const std::size_t fine = kPixels * (smooth ? 2 : 1);
@@ -74,7 +75,8 @@ class MapSheet {
                            .pixel_m = 1 / (layout_.points_per_metre() * static_cast<double>(fine)),
                            .columns = static_cast<std::size_t>(map.width) * fine,
                            .rows = static_cast<std::size_t>(map.height) * fine};
-    const SiteMap painted = map_site(scene, area, pixels, level_, 0.75 * static_cast<double>(fine), kFaded, surfaces);
+    const SiteMap painted =
+        map_site(scene, area, pixels, level_, stations, 0.75 * static_cast<double>(fine), kFaded, surfaces);
     if (smooth)
       sheet.canvas->image(map, halve(painted.pixels, pixels.columns), pixels.columns / 2);
     else
@@ -454,7 +456,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     if (stop.stop_requested()) return;
     MapSheet map(layout, tile, level);
     map.clip();
-    map.site(scene, site.area(), surfaces);
+    map.site(scene, site.area(), stations, surfaces);
     if (!level.cut) map.walls(scene.data());
     std::vector<std::size_t> shown;
     if (overview) {
