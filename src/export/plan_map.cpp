@@ -386,7 +386,7 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
 }
 
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel& level, const std::string& title, std::string subtitle) {
+                             const PlanLevel& level, const std::string& title, std::string subtitle, bool brief) {
   const double metre = map.width / window.size().x;  // canvas units
   const std::size_t fine = kPixelsPerUnit * kSupersampling;
   const MapWindow pixels{.x_min = window.min.x,
@@ -395,13 +395,15 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                          .columns = static_cast<std::size_t>(map.width) * fine,
                          .rows = static_cast<std::size_t>(map.height) * fine};
   PlanMapContent content;
-  if (level.cut) {
-    content.cut = true;
+  content.cut = level.cut.has_value();
+  if (brief) {
+    // It is told where the level is shown alone.
+  } else if (level.cut) {
     subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(*level.cut, 2) + " m";
   } else if (subtitle.empty()) {
     subtitle = "Site from above";
   }
-  if (const auto ground = common_ground(view, level); ground && level.only())
+  if (const auto ground = common_ground(view, level); ground && level.only() && !brief)
     subtitle += ", most stations on ground at z = " + fixed(*ground, 2) + " m";
   const auto ticks = [](double length) { return std::max(2, static_cast<int>(length / 95)); };
   const Chart chart(canvas, map,

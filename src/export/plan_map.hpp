@@ -65,9 +65,11 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
                  std::span<const PlacedStation> stations, double line, double paper = 0,
                  std::span<const std::uint32_t> surfaces = {});
 
-// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it.
+// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it. `brief`:
+// the subtitle says all that there is room for.
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel& level, const std::string& title, std::string subtitle);
+                             const PlanLevel& level, const std::string& title, std::string subtitle,
+                             bool brief = false);
 
 inline constexpr double kDisc = 10.5;  // radius of a station's mark
 
