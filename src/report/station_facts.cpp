@@ -37,6 +37,28 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network, cons
   }
 }
 
+// Field software registers a scan to the one before, unless it is told another.
+void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network) {
+  const std::optional<StationLinks> links = network.links();
+  if (!links) return;
+  const auto linked = [&](std::size_t a, std::size_t b) {
+    return links->values(a, b) > 0 && links->values(a, b) >= links->least;
+  };
+  std::vector<std::size_t> before;
+  for (std::size_t k = 0; k < facts.size(); ++k)
+    if (network.stations[k].existing && active(network.stations[k])) before.push_back(k);
+  for (const std::size_t k : visiting_order(facts)) {
+    if (facts[k].visit == 0) continue;
+    if (!before.empty() && !linked(before.back(), k)) {
+      const std::size_t strongest =
+          *std::ranges::max_element(before, {}, [&](std::size_t other) { return links->values(other, k); });
+      facts[k].register_to =
+          linked(strongest, k) ? "register to " + facts[strongest].name : "no link to a station before it";
+    }
+    before.push_back(k);
+  }
+}
+
 // Of each spot, in plan, by walls at nearly its height; none where it is not a number.
 std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, double stays_m, const SceneData& scene) {
   std::map<long, std::vector<std::size_t>> by_height;
@@ -114,6 +136,7 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
     for (const std::size_t k : target.stations)
       facts[k].targets += (facts[k].targets.empty() ? "" : ", ") + target.name;
   add_round(facts, network, simulator);
+  add_register_to(facts, network);
   add_corners(facts, network.stations, simulator.scene().data());
   add_alone(facts, report.options.field, simulator);
   return facts;
