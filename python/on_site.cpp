@@ -72,6 +72,7 @@ void add_visits(py::module_& m) {
       .def_readonly("walk_min", &Visit::walk_min, "Minutes of walking.")
       .def_readonly("minutes", &Visit::minutes, "Scan, set-up, photos and walking together.")
       .def_readonly("unconnected", &Visit::unconnected, "Legs that the search area does not connect.")
+      .def_readonly("unlinked", &Visit::unlinked, "Stations without a link to the one before; 0 if no links are known.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
                std::string(py::str(py::float_(v.minutes))) + " minutes>";

@@ -30,7 +30,7 @@ inline auto members(RegistrationError& e) {
 }
 inline auto members(Visit& v) {
   return std::tie(v.order, v.legs_m, v.paths, v.walk_m, v.scan_min, v.set_up_min, v.photos_min, v.walk_min, v.minutes,
-                  v.unconnected);
+                  v.unconnected, v.unlinked);
 }
 inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
 inline auto members(Work& w) {

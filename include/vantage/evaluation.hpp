@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -105,6 +106,12 @@ struct Evaluation {
 Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,
                          const std::optional<RegistrationOptions>& registration = std::nullopt,
                          std::span<const RegistrationTarget> targets = {});
+/// The round over the stations besides existing ones, along the links if they are known. `most_min` as in
+/// `OnSite::visit()`.
+Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
+               double most_min = std::numeric_limits<double>::infinity());
+/// Minutes that the requirements allow on site; infinity if they set no limit.
+double most_minutes(std::span<const Requirement> requirements);
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements);
 

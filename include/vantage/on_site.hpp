@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,7 +25,9 @@ struct OnSiteOptions {
   double walking_m_per_s = 0.8;  ///< With scanner and tripod in hand.
   /// Length of a path that the search area does not connect, in straight lines between its ends.
   double detour = 1.5;
-  std::optional<Vec3> entrance = std::nullopt;  ///< Ground where people enter and leave; empty: at the first station.
+  /// Ground where people enter and leave; empty: at the station nearest to where a search area found on foot is
+  /// entered, else at the first.
+  std::optional<Vec3> entrance = std::nullopt;
 };
 
 Settings settings(const OnSiteOptions& options);
@@ -40,7 +44,11 @@ struct Visit {
   double scan_min = 0, set_up_min = 0, photos_min = 0, walk_min = 0;
   double minutes = 0;           ///< Scan, set-up, photos and walking together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
+  std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
 };
+
+/// Strength of the link between two stations, by their indices: 0 if they are not linked, else at most 1.
+using LinkStrength = std::function<double(std::size_t, std::size_t)>;
 
 /// Paths over a site, and the time of a round; made by `Site::on_site()`. A graph of at most some 20 000 places lies
 /// over the search area, 0.25 m apart or more. Links connect neighbours that are free at knee and hip height. Safe to
@@ -51,9 +59,12 @@ class OnSite {
   /// invalid_argument for a point that is not within 1000 km of the scene.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
-  /// to three stations elsewhere (Or-opt), until neither helps. Throws Error invalid_argument for a station that is not
-  /// within 1000 km of the scene, and std::out_of_range for a scanner that does not exist.
-  Visit visit(std::span<const PlacedStation> stations) const;
+  /// to three stations elsewhere (Or-opt), until neither helps. With `link`, consecutive stations are linked as far as
+  /// the links allow by a walk that is at most 1.25 times as long, and takes `most_min` or less. The round is begun at
+  /// the end that is nearer to the entrance. Throws Error invalid_argument for a station that is not within 1000 km of
+  /// the scene, and std::out_of_range for a scanner that does not exist.
+  Visit visit(std::span<const PlacedStation> stations, const LinkStrength& link = {},
+              double most_min = std::numeric_limits<double>::infinity()) const;
   /// `Scanner::rays()` / `Scanner::points_per_second`, in minutes. Throws std::out_of_range.
   double minutes_per_scan(std::uint32_t scanner = 0) const;
   const OnSiteOptions& options() const noexcept;

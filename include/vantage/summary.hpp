@@ -62,8 +62,11 @@ std::string lines_text(std::span<const SummaryLine> lines);
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 
 /// Lines for a terminal: the trade-off of a plan as a table of about five lines, with captured share, registration
-/// error and time on site of each number of stations. Empty if the plan has none.
+/// error and time on site of each number of stations, and `registration_jump_text()`. Empty if the plan has none.
 std::string trade_off_text(const PlanResult& result);
+/// A sentence on the number of stations of a trade-off whose scans register much worse than those of fewer stations,
+/// and why; empty if there is none.
+std::string registration_jump_text(std::span<const TradeOffPoint> points);
 
 /// Lines for a terminal: a sentence for each requirement that no network of a front meets, with the nearest value.
 /// Empty if each is met by some network.

@@ -353,8 +353,7 @@ void EditSession::measure(bool quick) {
   if (!quick) {
     evaluation_.moves = station_moves(site_.area(), site_.clash(), simulator_.scanner().height_m, stations);
     if (stations.size() <= kQuickStations && !stations.empty()) {
-      const auto taken = std::ranges::count(stations, true, &PlacedStation::existing);  // they come first
-      evaluation_.visit = on_site_->visit(std::span(stations).subspan(static_cast<std::size_t>(taken)));
+      evaluation_.visit = visit_of(evaluation_, *on_site_);
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
   }

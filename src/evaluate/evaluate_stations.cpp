@@ -159,15 +159,22 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       continue;
     }
     const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::existing));
+    const OverlapMatrix overlap = options.overlap ? overlap_matrix(counts[k]) : OverlapMatrix{};
     std::optional<Visit> visit;
-    if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
+    if (site.on_site)
+      visit = visit_of({.stations = stations[k],
+                        .overlap_matrix = overlap,
+                        .scan_overlap_matrix = counts_around ? scan_overlap_matrix(around[k]) : ScanOverlapMatrix{},
+                        .link_overlap = options.link_overlap,
+                        .link = options.link},
+                       *site.on_site, most_minutes(options.requirements));
     MeasuredNetwork measured{
         .counts = counts[k],
         .stations = stations[k],
         .existing = existing,
         .goal_density = site.simulator.goal_density(),
         .voxels = site.simulator.voxel_count(),
-        .overlap = options.overlap ? overlap_matrix(counts[k]) : OverlapMatrix{},
+        .overlap = overlap,
         .visible_parts = needs.visibility
                              ? visibility_parts([&](const Vec3& a, const Vec3& b) { return site.clash->sees(a, b); },
                                                 site.simulator.scanner().max_range_m, networks[k])

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
 #include "vantage/evaluation.hpp"
 
 namespace vantage {
@@ -9,6 +12,29 @@ Network to_network(std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations)
     network.push_back({.position = station.position, .active = active(station), .setup = station.setup});
   return network;
+}
+
+Visit visit_of(const Evaluation& evaluation, const OnSite& on_site, double most_min) {
+  const auto existing =
+      static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::span<const PlacedStation> placed = std::span(evaluation.stations).subspan(existing);
+  const std::optional<StationLinks> links = evaluation.links();
+  if (!links) return on_site.visit(placed);
+  return on_site.visit(
+      placed,
+      [&](std::size_t a, std::size_t b) {
+        const double value = links->values(existing + a, existing + b);
+        return value >= links->least ? value : 0;
+      },
+      most_min);
+}
+
+double most_minutes(std::span<const Requirement> requirements) {
+  double most = std::numeric_limits<double>::infinity();
+  for (const Requirement& requirement : requirements)
+    if (requirement.objective.needs.time && requirement.bound == Requirement::Bound::at_most)
+      most = std::min(most, requirement.limit);
+  return most;
 }
 
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements) {

@@ -4,7 +4,10 @@
 #include "vantage/on_site.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -27,26 +30,63 @@ void check(const OnSiteOptions& options, const Vec3& origin) {
   if (options.entrance) require_in_reach(*options.entrance, origin, "the entrance is");
 }
 
-// A closed round over the points of a matrix, beginning at point 0.
-class Round {
- public:
-  explicit Round(const std::vector<std::vector<double>>& metres) : metres_(metres) {}
+using Matrix = std::vector<std::vector<double>>;
 
+// A walk from the first point of a matrix to its last, over all others. The matrix is symmetric.
+class Walk {
+ public:
+  explicit Walk(const Matrix& costs) : costs_(costs) {}
+
+  // By nearest neighbour, then improved.
   std::vector<std::size_t> order() {
-    const std::size_t n = metres_.size();
+    const std::size_t n = costs_.size();
     std::vector<bool> seen(n, false);
     order_.assign(1, 0);
-    seen[0] = true;
-    while (order_.size() < n) {
+    seen[0] = seen[n - 1] = true;
+    while (order_.size() + 1 < n) {
       std::size_t next = n;
       for (std::size_t k = 0; k < n; ++k)
-        if (!seen[k] && (next == n || metres_[order_.back()][k] < metres_[order_.back()][next])) next = k;
+        if (!seen[k] && (next == n || costs_[order_.back()][k] < costs_[order_.back()][next])) next = k;
       seen[next] = true;
       order_.push_back(next);
     }
+    order_.push_back(n - 1);
+    return improved(std::move(order_));
+  }
+
+  std::vector<std::size_t> improved(std::vector<std::size_t> order) {
+    order_ = std::move(order);
     while (turn_round() || move_elsewhere()) {
     }
-    return order_;
+    return std::move(order_);
+  }
+
+  // Improves it again and again after four parts of it, chosen at random, changed places (Martin, Otto and Felten:
+  // Large-Step Markov Chains for the Traveling Salesman Problem, 1991),
+  // and calls found(order) for each order on the way.
+  template <class Found>
+  std::vector<std::size_t> searched(std::vector<std::size_t> best, std::size_t times, Found&& found) {
+    best = improved(std::move(best));
+    found(best);
+    std::mt19937_64 random(best.size());
+    for (std::size_t k = 0; k < times && best.size() > 5; ++k) {
+      std::array<std::size_t, 3> at{};
+      for (std::size_t& one : at) one = 1 + random() % (best.size() - 2);
+      std::ranges::sort(at);
+      std::vector<std::size_t> changed = best;
+      const auto place = [&](std::size_t i) { return changed.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::rotate(place(at[0]), place(at[1]), place(at[2]));
+      changed = improved(std::move(changed));
+      found(changed);
+      if (shorter(length(changed), length(best))) best = std::move(changed);
+    }
+    return best;
+  }
+
+  double length(const std::vector<std::size_t>& order) const {
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < order.size(); ++k) sum += costs_[order[k]][order[k + 1]];
+    return sum;
   }
 
  private:
@@ -56,54 +96,104 @@ class Round {
     return then + kGain_m + kGain * now < now;
   }
 
-  double leg(std::size_t at) const { return metres_[order_[at % order_.size()]][order_[(at + 1) % order_.size()]]; }
+  double leg(std::size_t at) const { return costs_[order_[at]][order_[at + 1]]; }
 
   bool turn_round() {
     const std::size_t n = order_.size();
+    bool gained = false;
     for (std::size_t i = 0; i + 2 < n; ++i) {
-      for (std::size_t j = i + 2; j < n; ++j) {
+      for (std::size_t j = i + 2; j + 1 < n; ++j) {
         const double now = leg(i) + leg(j);
-        const double then = metres_[order_[i]][order_[j]] + metres_[order_[i + 1]][order_[(j + 1) % n]];
+        const double then = costs_[order_[i]][order_[j]] + costs_[order_[i + 1]][order_[j + 1]];
         if (!shorter(then, now)) continue;
         std::reverse(order_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                      order_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
-        return true;
+        gained = true;
       }
     }
-    return false;
+    return gained;
   }
 
   bool move_elsewhere() {
     const std::size_t n = order_.size();
-    for (std::size_t count = 1; count <= 3 && count + 1 < n; ++count) {
-      for (std::size_t from = 1; from + count <= n; ++from) {
-        const std::size_t left = n - count;  // stops without those that move
-        const auto rest = [&](std::size_t at) {
-          at %= left;
-          return order_[at < from ? at : at + count];
-        };
-        const std::size_t before = order_[from - 1], first = order_[from], last = order_[from + count - 1],
-                          after = order_[(from + count) % n];
-        const double taken = metres_[before][first] + metres_[last][after];
-        for (std::size_t to = 1; to <= left; ++to) {
-          const std::size_t a = rest(to - 1), b = rest(to);
-          if (!shorter(metres_[a][first] + metres_[last][b] + metres_[before][after], taken + metres_[a][b])) continue;
-          const auto begin = order_.begin();
-          const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
-          if (to < from)
-            std::rotate(at(to), at(from), at(from + count));
-          else
-            std::rotate(at(from), at(from + count), at(to + count));
-          return true;
-        }
-      }
+    bool gained = false;
+    for (std::size_t count = 1; count <= 3 && count + 2 < n; ++count)
+      for (std::size_t from = 1; from + count < n; ++from) gained = move_elsewhere(from, count) || gained;
+    return gained;
+  }
+
+  bool move_elsewhere(std::size_t from, std::size_t count) {
+    const std::size_t left = order_.size() - count;  // stops without those that move
+    const auto rest = [&](std::size_t at) { return order_[at < from ? at : at + count]; };
+    const std::size_t before = order_[from - 1], first = order_[from], last = order_[from + count - 1],
+                      after = order_[from + count];
+    const double taken = costs_[before][first] + costs_[last][after];
+    for (std::size_t to = 1; to < left; ++to) {
+      const std::size_t a = rest(to - 1), b = rest(to);
+      if (!shorter(costs_[a][first] + costs_[last][b] + costs_[before][after], taken + costs_[a][b])) continue;
+      const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+      if (to < from)
+        std::rotate(at(to), at(from), at(from + count));
+      else
+        std::rotate(at(from), at(from + count), at(to + count));
+      return true;
     }
     return false;
   }
 
-  const std::vector<std::vector<double>>& metres_;
+  const Matrix& costs_;
   std::vector<std::size_t> order_;
 };
+
+// Ways between the stops of a round: stations from `first` on, and last the place where the round began.
+struct Round {
+  Matrix metres;
+  std::size_t first = 0;  // 1 after an entrance, which is no station
+  std::size_t stations() const { return metres.size() - 1 - first; }
+};
+
+std::size_t unlinked_in(const std::vector<std::size_t>& order, const Matrix& link, std::size_t first) {
+  std::size_t unlinked = 0;
+  for (std::size_t k = first; k + 2 < order.size(); ++k)
+    if (!(link[order[k] - first][order[k + 1] - first] > 0)) ++unlinked;
+  return unlinked;
+}
+
+// Field software registers each scan to the one before, so that a step to a station without a link to the last one
+// costs as much as a long way. How long is tried: the order with the fewest such steps is taken that is not much longer
+// than the shortest. `link`: strengths of the stations' links. `most_m`: no longer walk is taken for links.
+std::vector<std::size_t> order_along_links(const Round& round, std::vector<std::size_t> shortest, const Matrix& link,
+                                           double most_m) {
+  constexpr double kMostLonger = 1.25;        // of the shortest walk that is found
+  constexpr double kStrength = 0.1;           // of the mean leg, for the strongest link instead of the weakest
+  constexpr double kWork = 2e6, kMost = 100;  // changes of each order
+  const double n = static_cast<double>(round.metres.size());
+  const Walk plain(round.metres);
+  const double least_m = plain.length(shortest);
+  most_m = std::max(least_m, std::min(most_m, kMostLonger * least_m));
+  const auto times = static_cast<std::size_t>(std::clamp(kWork / (n * n), 1.0, kMost));
+  std::vector<std::size_t> best = shortest, last = std::move(shortest);
+  std::size_t unlinked = unlinked_in(best, link, round.first);
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (double unlinked_m = least_m; unlinked_m > 1e-3 * least_m; unlinked_m /= 2) {
+    Matrix costs = round.metres;
+    for (std::size_t i = 0; i < round.stations(); ++i)
+      for (std::size_t j = 0; j < round.stations(); ++j)
+        if (i != j)
+          costs[i + round.first][j + round.first] +=
+              link[i][j] > 0 ? kStrength * least_m / n * (1 - link[i][j]) : unlinked_m;
+    Walk walk(costs);
+    last = walk.searched(std::move(last), times, [&](const std::vector<std::size_t>& order) {
+      const std::size_t left = unlinked_in(order, link, round.first);
+      if (left > unlinked || plain.length(order) > most_m * (1 + 1e-9) + 1e-9) return;
+      const double cost = walk.length(order) - unlinked_m * static_cast<double>(left);
+      if (left == unlinked && cost >= best_cost) return;
+      best = order, best_cost = cost, unlinked = left;
+    });
+    if (unlinked == 0 && unlinked_m < least_m) break;
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -113,6 +203,7 @@ struct OnSite::Impl {
       : options(o),
         origin(centre),
         scan_min(std::move(scans)),
+        entered(area.entries().begin(), area.entries().end()),
         ways(area.mesh(), [clash](const Vec3& a, const Vec3& b) {
           const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
@@ -120,6 +211,7 @@ struct OnSite::Impl {
   OnSiteOptions options;
   Vec3 origin;                   // of the scene
   std::vector<double> scan_min;  // by scanner
+  std::vector<Vec3> entered;     // where the search area is entered, as far as is known
   Ways ways;
 };
 
@@ -140,7 +232,7 @@ std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
 double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
 const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
 
-Visit OnSite::visit(std::span<const PlacedStation> stations) const {
+Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength& link, double most_min) const {
   Visit visit;
   std::vector<Vec3> stops;
   std::vector<std::size_t> station_of;
@@ -153,41 +245,68 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
     station_of.push_back(i);
   }
   if (station_of.empty()) return visit;
-  const std::size_t n = stops.size();
-  std::vector<std::vector<double>> metres(n, std::vector<double>(n, 0));
-  std::vector<std::vector<bool>> connected(n, std::vector<bool>(n, true));
-  const auto ways = impl_->ways.between_all(stops);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const Vec3 apart = stops[j] - stops[i];
-      const std::optional<double>& way = ways[i][j];
-      metres[i][j] = metres[j][i] = way ? *way : options.detour * std::sqrt(dot(apart, apart));
-      connected[i][j] = connected[j][i] = way.has_value();
-    }
+  if (!options.entrance && !impl_->entered.empty()) {
+    const auto away = [&](const Vec3& stop) {
+      return dot(stop - impl_->entered.front(), stop - impl_->entered.front());
+    };
+    const auto nearest = std::ranges::min_element(stops, {}, away) - stops.begin();
+    std::swap(stops.front(), stops[static_cast<std::size_t>(nearest)]);
+    std::swap(station_of.front(), station_of[static_cast<std::size_t>(nearest)]);
   }
-  const std::vector<std::size_t> round = Round(metres).order();
-  const std::size_t first = options.entrance ? 1 : 0;
-  for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
-  if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
-  std::vector<std::vector<Vec3>> paths(n);
-  parallel::for_all(std::size_t{0}, n,
-                    [&](std::size_t k) { paths[k] = impl_->ways.path(stops[round[k]], stops[round[(k + 1) % n]]); });
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t a = round[k], b = round[(k + 1) % n];
-    visit.legs_m.push_back(metres[a][b]);
-    visit.paths.push_back(std::move(paths[k]));
-    visit.walk_m += metres[a][b];
-    if (!connected[a][b]) ++visit.unconnected;
-  }
-  const auto count = static_cast<double>(station_of.size());
   // Sums by scanner, so that equal stations make a product, without rounding of a sum.
   std::vector<double> scans(impl_->scan_min.size());
   for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
   for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];
+  const auto count = static_cast<double>(station_of.size());
   visit.set_up_min = count * options.set_up_min;
   visit.photos_min = count * options.photos_min;
+  const double standing_min = visit.scan_min + visit.set_up_min + visit.photos_min;
+
+  const std::size_t n = stops.size();
+  Round round{.metres = Matrix(n + 1, std::vector<double>(n + 1, 0)), .first = options.entrance ? 1u : 0u};
+  std::vector<std::vector<bool>> connected(n + 1, std::vector<bool>(n + 1, true));
+  const auto ways = impl_->ways.between_all(stops);
+  const auto put = [&](std::size_t i, std::size_t j, double metres, bool known) {
+    round.metres[i][j] = round.metres[j][i] = metres;
+    connected[i][j] = connected[j][i] = known;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Vec3 apart = stops[j] - stops[i];
+      const std::optional<double>& way = ways[i][j];
+      const double metres = way ? *way : options.detour * std::sqrt(dot(apart, apart));
+      put(i, j, metres, way.has_value());
+      if (i == 0) put(n, j, metres, way.has_value());
+    }
+  }
+  std::vector<std::size_t> order = Walk(round.metres).order();
+  if (link) {
+    Matrix strengths(station_of.size(), std::vector<double>(station_of.size(), 0));
+    for (std::size_t i = 0; i < station_of.size(); ++i)
+      for (std::size_t j = 0; j < station_of.size(); ++j)
+        if (i != j) strengths[i][j] = std::clamp(link(station_of[i], station_of[j]), 0.0, 1.0);
+    order =
+        order_along_links(round, std::move(order), strengths, 60 * options.walking_m_per_s * (most_min - standing_min));
+    visit.unlinked = unlinked_in(order, strengths, round.first);
+  }
+  // The scanner is carried out of the site at last, so that the round is the same backwards.
+  if (options.entrance && round.metres[0][order[n - 1]] < round.metres[0][order[1]])
+    std::reverse(order.begin() + 1, order.end() - 1);
+
+  for (std::size_t k = round.first; k < n; ++k) visit.order.push_back(station_of[order[k] - round.first]);
+  if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
+  std::vector<std::vector<Vec3>> paths(n);
+  parallel::for_all(std::size_t{0}, n,
+                    [&](std::size_t k) { paths[k] = impl_->ways.path(stops[order[k]], stops[order[k + 1] % n]); });
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t a = order[k], b = order[k + 1];
+    visit.legs_m.push_back(round.metres[a][b]);
+    visit.paths.push_back(std::move(paths[k]));
+    visit.walk_m += round.metres[a][b];
+    if (!connected[a][b]) ++visit.unconnected;
+  }
   visit.walk_min = visit.walk_m / options.walking_m_per_s / 60;
-  visit.minutes = visit.scan_min + visit.set_up_min + visit.photos_min + visit.walk_min;
+  visit.minutes = standing_min + visit.walk_min;
   return visit;
 }
 

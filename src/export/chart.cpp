@@ -32,11 +32,13 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
 }
 
 std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
+  // What a decimal adds is judged by the distance between ticks: coordinates may be millions of times as large.
+  const double step = ticks.size() > 1 ? std::abs(ticks[1] - ticks[0]) : ticks.empty() ? 1 : std::abs(ticks[0]);
   int digits = 0;
   for (; digits < 9; ++digits) {
     const double scale = std::pow(10.0, digits);
     const bool enough = std::all_of(ticks.begin(), ticks.end(), [&](double t) {
-      return std::abs(t * scale - std::round(t * scale)) < 1e-6 * std::max(1.0, std::abs(t * scale));
+      return std::abs(t * scale - std::round(t * scale)) < 1e-3 * std::min(1.0, step * scale);
     });
     if (enough) break;
   }
@@ -93,11 +95,14 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
   };
   const auto x_labels = labels(x_), y_labels = labels(y_);
   double widest = 0;
+  double labelled = std::numeric_limits<double>::lowest();  // up to where
   for (std::size_t i = 0; i < x_.ticks.size(); ++i) {
-    const double px = at(x_.ticks[i], y_.low).x;
+    const double px = at(x_.ticks[i], y_.low).x, half = canvas.text_width(x_labels[i], {.size = 12.5}) / 2;
     canvas.line({px, area_.y}, {px, area_.bottom()}, {.colour = style::grid, .width = 1});
     canvas.line({px, area_.bottom()}, {px, area_.bottom() + 5}, {.colour = style::faint, .width = 1});
+    if (px - half < labelled + 6) continue;
     canvas.text({px, area_.bottom() + 9}, x_labels[i], {.size = 12.5, .across = Align::middle, .down = Align::start});
+    labelled = px + half;
   }
   for (std::size_t i = 0; i < y_.ticks.size(); ++i) {
     const double py = at(x_.low, y_.ticks[i]).y;
@@ -111,6 +116,14 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
               {.size = 13.5, .across = Align::middle, .down = Align::start});
   canvas.text({area_.x - widest - 26, area_.y + area_.height / 2}, y_.label,
               {.size = 13.5, .across = Align::middle, .turn = -std::numbers::pi / 2});
+}
+
+double room_left_of(const Canvas& canvas, const Axis& y) {
+  double widest = 0;
+  for (const std::string& label : tick_labels(y.ticks.empty() ? nice_ticks(y.low, y.high, y.wanted_ticks) : y.ticks))
+    widest = std::max(widest, canvas.text_width(label, {.size = 12.5}));
+  constexpr double kLeast = 86, kAxisLabel = 46;
+  return std::max(kLeast, widest + kAxisLabel);
 }
 
 Point Chart::at(double x, double y) const {

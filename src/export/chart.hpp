@@ -30,6 +30,9 @@ struct Axis {
 // Widens [low, high] by a margin, within [least, most] unless the data lie outside.
 Axis axis_over(std::string label, double low, double high, double least, double most);
 
+// Width that the labels of a vertical axis, which is not logarithmic, take left of its frame, with a margin.
+double room_left_of(const Canvas& canvas, const Axis& y);
+
 class Chart {
  public:
   // Draws title, frame, grid, ticks and labels. `area` is the frame.

@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/left_out_hatch.hpp"
+#include "export/map_grid.hpp"
 #include "export/pictures.hpp"
 #include "export/plan_map.hpp"
 #include "export/relief.hpp"
@@ -165,54 +166,61 @@ std::string level_words(const std::vector<PlanLevel>& levels, std::size_t k) {
          ", floor at z = " + fixed(levels[k].floor, 2) + " m";
 }
 
-// A page with one map for each of these levels side by side; `levels` null: one map of the whole site.
+// A page with one map for each of these levels.
 std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const std::vector<PlanLevel>& levels,
                                   std::size_t first, std::size_t count) {
   const bool floors = levels.size() > 1;
-  // Larger maps for many stations, so that their marks keep apart.
+  const MapGrid grid(count);
+  // Larger maps for many stations, so that their marks keep apart; of several levels each has a page of its own.
   std::size_t most = 0;
-  for (std::size_t k = first; k < first + count; ++k)
-    most = std::max(most, static_cast<std::size_t>(std::ranges::count_if(view.stations, [&](const PlacedStation& s) {
-                      return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
-                    })));
+  for (std::size_t k = first; count == 1 && k < first + count; ++k)
+    most = static_cast<std::size_t>(std::ranges::count_if(view.stations, [&](const PlacedStation& s) {
+      return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
+    }));
   const double grow = std::clamp(std::sqrt(static_cast<double>(most) / kStationsAtFirst), 1.0, kMostGrowth);
-  const double metre =
-      grow * std::min((count > 1 ? 460 : 700) / window.size().x, (count > 1 ? 520 : 640) / window.size().y);
+  const double metre = grow * std::min(grid.width / window.size().x, grid.height / window.size().y);
   const double width = std::max(1.0, std::floor(window.size().x * metre)),
                height = std::max(1.0, std::floor(window.size().y * metre));
   Canvas scratch(1, 1);
-  double labels = 0;
-  for (const auto& label :
-       tick_labels(nice_ticks(window.min.y, window.max.y, std::max(2, static_cast<int>(height / 95)))))
-    labels = std::max(labels, scratch.text_width(label, {.size = 12.5}));
-  const double left = std::max(86.0, labels + 46);
+  const double left = room_left_of(scratch, {.label = {},
+                                             .low = window.min.y,
+                                             .high = window.max.y,
+                                             .wanted_ticks = std::max(2, static_cast<int>(height / 95))});
+  const auto subtitle = [&](std::size_t k) {
+    return grid.contact() ? "Level " + std::to_string(k + 1) + ", z = " + fixed(levels[k].floor, 2) + " m"
+           : floors       ? level_words(levels, k)
+                          : "";
+  };
   double words = 0;  // below the title; a level is cut about as high as its floor is
   for (std::size_t k = first; floors && k < first + count; ++k)
-    words =
-        std::max(words, scratch.text_width(level_words(levels, k) + ", cut at z = " + fixed(levels[k].floor, 2) + " m",
-                                           {.size = 12.5}));
-  const double apart = std::max(width + left + 10, words + 30);
-  const auto map_at = [&](std::size_t k) { return Rect{left + static_cast<double>(k) * apart, kTop, width, height}; };
-  const double right = map_at(count - 1).right();
+    words = std::max(
+        words,
+        scratch.text_width(subtitle(k) + (grid.contact() ? "" : ", cut at z = " + fixed(levels[k].floor, 2) + " m"),
+                           {.size = 12.5}));
+  const double apart = std::max(width + left + 10, words + 30), below = height + kBottom + 30;
+  const auto map_at = [&](std::size_t k) {
+    return Rect{left + static_cast<double>(k % grid.columns) * apart,
+                kTop + static_cast<double>(k / grid.columns) * below, width, height};
+  };
+  const double right = map_at(grid.columns - 1).right(), bottom = map_at(count - 1).bottom();
 
   const auto draw = [&](Canvas& canvas) {
     PlanMapContent content;
-    for (std::size_t k = 0; k < count; ++k) {
-      std::string subtitle = floors ? level_words(levels, first + k) : "";
-      content = content |
-                draw_plan_map(canvas, map_at(k), view, window, levels[first + k], k == 0 ? view.title : "", subtitle);
-    }
+    for (std::size_t k = 0; k < count; ++k)
+      content = content | draw_plan_map(canvas, map_at(k), view, window, levels[first + k], k == 0 ? view.title : "",
+                                        subtitle(first + k), grid.contact());
     const double end = draw_plan_legend(canvas, {right + 24, kTop + 8}, view, content);
-    const double bar = std::max(kTop + height - 6, end + 30);
+    const double bar = std::max(bottom - 6, end + 30);
     draw_scale_bar(canvas, {right + 25, bar}, kPanel - 40, metre);
     return bar;
   };
   const double title = scratch.text_width(view.title, {.size = 17, .bold = true});
-  const double page_width = std::max({right + kGap + kPanel, left + title + 20, map_at(count - 1).x + words + 20});
+  const double page_width =
+      std::max({right + kGap + kPanel, left + title + 20, map_at(grid.columns - 1).x + words + 20});
   constexpr double kLongestLegend = 700;
-  auto page = std::make_unique<Canvas>(page_width, kTop + height + kBottom + kLongestLegend);
+  auto page = std::make_unique<Canvas>(page_width, bottom + kBottom + kLongestLegend);
   const double bar = draw(*page);
-  page->cut_to(std::max(kTop + height + kBottom, bar + 24));
+  page->cut_to(std::max(bottom + kBottom, bar + 24));
   return page;
 }
 

@@ -345,8 +345,23 @@ static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& dat
   }
 }
 
+// Places that nothing fills at the height of the cut: of stations, and of ground that is found by what is free over it.
+static std::vector<Vec3> free_places(const SearchArea& area, const SearchMesh& ground, double cut,
+                                     std::span<const PlacedStation> stations) {
+  std::vector<Vec3> places;
+  for (const PlacedStation& station : stations)
+    if (station.status == StationStatus::ok) places.push_back(station.ground);
+  const bool found = !area.entries().empty();  // on foot; ground that was marked may lie under walls
+  for (const auto& t : found ? std::span(ground.triangles) : std::span<const std::array<std::uint32_t, 3>>())
+    places.push_back((ground.positions[t[0]] + ground.positions[t[1]] + ground.positions[t[2]]) * (1.0 / 3));
+  constexpr double kHead_m = 1.7;
+  std::erase_if(places, [cut](const Vec3& place) { return place.z > cut || place.z < cut - kHead_m; });
+  return places;
+}
+
 SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
-                 double line, double paper, std::span<const std::uint32_t> surfaces) {
+                 std::span<const PlacedStation> stations, double line, double paper,
+                 std::span<const std::uint32_t> surfaces) {
   const SceneData& data = scene.data();
   const SearchMesh mesh = mesh_of(area.mesh(), level);
   constexpr double kEverything = std::numeric_limits<double>::infinity();
@@ -360,8 +375,9 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
     for (std::uint32_t& pixel : map.pixels)
       if (pixel != 0) pixel = laid_over(pixel, {1, 1, 1}, paper);
   if (level.cut) {
-    const Section section =
-        surfaces.empty() ? section_at(data, window, *level.cut) : section_at(data, surfaces, window, *level.cut);
+    const std::vector<std::uint32_t> own = surfaces.empty() ? surfaces_of(data) : std::vector<std::uint32_t>();
+    const Section section = section_at(data, surfaces.empty() ? std::span(own) : surfaces, window, *level.cut,
+                                       free_places(area, mesh, *level.cut, stations));
     paint_section(map.pixels, section, window, line);
   }
   tint_meshes(map.pixels, data, kNotInModel, kFoundTint, window, level);
@@ -370,7 +386,7 @@ SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& wi
 }
 
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel& level, const std::string& title, std::string subtitle) {
+                             const PlanLevel& level, const std::string& title, std::string subtitle, bool brief) {
   const double metre = map.width / window.size().x;  // canvas units
   const std::size_t fine = kPixelsPerUnit * kSupersampling;
   const MapWindow pixels{.x_min = window.min.x,
@@ -379,13 +395,15 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                          .columns = static_cast<std::size_t>(map.width) * fine,
                          .rows = static_cast<std::size_t>(map.height) * fine};
   PlanMapContent content;
-  if (level.cut) {
-    content.cut = true;
+  content.cut = level.cut.has_value();
+  if (brief) {
+    // It is told where the level is shown alone.
+  } else if (level.cut) {
     subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(*level.cut, 2) + " m";
   } else if (subtitle.empty()) {
     subtitle = "Site from above";
   }
-  if (const auto ground = common_ground(view, level); ground && level.only())
+  if (const auto ground = common_ground(view, level); ground && level.only() && !brief)
     subtitle += ", most stations on ground at z = " + fixed(*ground, 2) + " m";
   const auto ticks = [](double length) { return std::max(2, static_cast<int>(length / 95)); };
   const Chart chart(canvas, map,
@@ -398,7 +416,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                      .high = window.max.y,
                      .wanted_ticks = ticks(map.height)},
                     title, subtitle);
-  const SiteMap site = map_site(view.scene, view.area, pixels, level, static_cast<double>(fine));
+  const SiteMap site = map_site(view.scene, view.area, pixels, level, view.stations, static_cast<double>(fine));
   content.left_out = site.left_out;
   canvas.image(map, halve(site.pixels, pixels.columns), pixels.columns / 2);
   canvas.rectangle(map, {.colour = style::faint, .width = 1});

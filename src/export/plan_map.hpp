@@ -58,14 +58,18 @@ struct SiteMap {
   bool left_out = false;              // whether ground that is no part of the search area shows
 };
 // The site in shaded relief with its search area, cut where the level is, what is cut through filled and outlined by
-// `line` pixels. `paper`: how far all but that is faded into white, 0 to 1, for maps that are written on. `surfaces`:
-// `surfaces_of()` the scene, where they are known.
+// `line` pixels. No surface around one of the stations, or around ground that a person reaches, is filled. `paper`: how
+// far all but that is faded into white, 0 to 1, for maps that are written on. `surfaces`: `surfaces_of()` the scene,
+// where they are known.
 SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
-                 double line, double paper = 0, std::span<const std::uint32_t> surfaces = {});
+                 std::span<const PlacedStation> stations, double line, double paper = 0,
+                 std::span<const std::uint32_t> surfaces = {});
 
-// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it.
+// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it. `brief`:
+// the subtitle says all that there is room for.
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel& level, const std::string& title, std::string subtitle);
+                             const PlanLevel& level, const std::string& title, std::string subtitle,
+                             bool brief = false);
 
 inline constexpr double kDisc = 10.5;  // radius of a station's mark
 

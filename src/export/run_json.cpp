@@ -71,7 +71,8 @@ ordered_json visit_json(const Visit& visit, std::size_t kept) {
   for (const std::size_t station : visit.order) order.push_back(kept + station + 1);
   return {{"order", std::move(order)},      {"minutes", visit.minutes},        {"scan_min", visit.scan_min},
           {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},  {"walk_min", visit.walk_min},
-          {"walk_m", visit.walk_m},         {"unconnected", visit.unconnected}};
+          {"walk_m", visit.walk_m},         {"unconnected", visit.unconnected},
+          {"unlinked", visit.unlinked}};
 }
 
 // NaN has no JSON; what is not known is null.

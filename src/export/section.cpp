@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace vantage {
 namespace {
@@ -72,12 +74,11 @@ struct Crossing {
   int winding;  // added to the right of it
 };
 
-// Fills a row of pixels with `kind` by the crossings of its middle line.
-void fill_row(std::vector<Crossing>& row, std::uint8_t kind, std::uint8_t* solid, std::size_t columns) {
+// Sorts the crossings of a row by their columns, without surfaces that do not close along it.
+void keep_closed(std::vector<Crossing>& row) {
   std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) {
     return a.surface != b.surface ? a.surface < b.surface : a.column < b.column;
   });
-  // surfaces that do not close along this row are left out
   std::size_t kept = 0;
   for (std::size_t first = 0; first < row.size();) {
     std::size_t last = first;
@@ -89,6 +90,23 @@ void fill_row(std::vector<Crossing>& row, std::uint8_t kind, std::uint8_t* solid
   }
   row.resize(kept);
   std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) { return a.column < b.column; });
+}
+
+// Adds the surfaces that would fill a place of the row.
+void add_around(const std::vector<Crossing>& row, double column, std::unordered_set<std::uint64_t>& around) {
+  std::unordered_map<std::uint64_t, int> windings;
+  int all = 0;
+  for (const Crossing& crossing : row) {
+    if (crossing.column > column) break;
+    windings[crossing.surface] += crossing.winding, all += crossing.winding;
+  }
+  if (all <= 0) return;
+  for (const auto& [surface, winding] : windings)
+    if (winding > 0) around.insert(surface);
+}
+
+// Fills a row of pixels with `kind` by the crossings of its middle line.
+void fill_row(const std::vector<Crossing>& row, std::uint8_t kind, std::uint8_t* solid, std::size_t columns) {
   int winding = 0;
   for (std::size_t k = 0; k + 1 < row.size(); ++k) {
     winding += row[k].winding;
@@ -116,11 +134,12 @@ std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
   return parent;
 }
 
-Section section_at(const SceneData& scene, const MapWindow& window, double z) {
-  return section_at(scene, surfaces_of(scene), window, z);
+Section section_at(const SceneData& scene, const MapWindow& window, double z, std::span<const Vec3> free) {
+  return section_at(scene, surfaces_of(scene), window, z, free);
 }
 
-Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z) {
+Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z,
+                   std::span<const Vec3> free) {
   Section section;
   section.solid.assign(window.columns * window.rows, 0);
   // Glass first, so that what it touches is drawn over it.
@@ -143,7 +162,18 @@ Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfac
         rows[y].push_back({cut.surface, cut.from.x + share * (cut.to.x - cut.from.x), cut.to.y > cut.from.y ? 1 : -1});
       }
     }
-    for (std::size_t y = 0; y < window.rows && !cuts.empty(); ++y)
+    if (cuts.empty()) continue;
+    for (std::vector<Crossing>& row : rows) keep_closed(row);
+    std::unordered_set<std::uint64_t> around;
+    for (const Vec3& place : free) {
+      const MapPoint at = window.at(place);
+      if (at.y >= 0 && at.y < static_cast<double>(window.rows))
+        add_around(rows[static_cast<std::size_t>(at.y)], at.x, around);
+    }
+    if (!around.empty())
+      for (std::vector<Crossing>& row : rows)
+        std::erase_if(row, [&](const Crossing& crossing) { return around.contains(crossing.surface); });
+    for (std::size_t y = 0; y < window.rows; ++y)
       fill_row(rows[y], glass ? 2 : 1, section.solid.data() + y * window.columns, window.columns);
   }
   return section;

@@ -22,10 +22,12 @@ std::vector<std::uint32_t> surfaces_of(const SceneData& scene);
 
 // Cuts the scene at height `z` (survey frame). A pixel is solid if outward closed surfaces wind around it more often
 // than inward ones: walls as boxes, and the space between an outer and an inner skin. A surface that is not closed
-// along a row of pixels, such as a wall without thickness, is only an outline.
-Section section_at(const SceneData& scene, const MapWindow& window, double z);
+// along a row of pixels, such as a wall without thickness, is only an outline. So is one around a place that is known
+// to be `free` (x, y), but for what other surfaces leave out of it: the lining of a tunnel in one sheet.
+Section section_at(const SceneData& scene, const MapWindow& window, double z, std::span<const Vec3> free = {});
 // The same for several windows of a scene. `surfaces`: `surfaces_of()` it.
-Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z);
+Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z,
+                   std::span<const Vec3> free = {});
 
 // The lines (x, y) alone along which surfaces cross a height, survey frame, metres.
 std::vector<std::array<Vec3, 2>> section_lines(const SceneData& scene, double z);

@@ -327,6 +327,34 @@ std::string summary_text(const Evaluation& evaluation, std::span<const Requireme
 }
 std::string summary_text(const PlanResult& result) { return lines_text(summary_lines(result)); }
 
+std::string registration_jump_text(std::span<const TradeOffPoint> points) {
+  constexpr double kMuch = 2;
+  constexpr double kSmall_mm = 1;  // below that any is good
+  const auto value = [](const TradeOffPoint& point, const char* measure) {
+    const auto found = point.values.find(measure);
+    return found == point.values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.value;
+  };
+  const TradeOffPoint *best = nullptr, *worse = nullptr, *fewer = nullptr;
+  double most = kMuch;
+  for (const TradeOffPoint& point : points) {
+    const double here = value(point, "registration");
+    if (!std::isfinite(here)) continue;
+    if (best && here > kSmall_mm && here > most * value(*best, "registration"))
+      most = here / value(*best, "registration"), worse = &point, fewer = best;
+    if (!best || here < value(*best, "registration")) best = &point;
+  }
+  if (!worse) return {};
+  const auto stations = [](const TradeOffPoint& point) { return std::to_string(point.stations.size()); };
+  std::string text = stations(*worse) + " stations register to " + fixed(value(*worse, "registration"), 2) + " mm, " +
+                     stations(*fewer) + " to " + fixed(value(*fewer, "registration"), 2) +
+                     " mm: each number is a network of its own, chosen by what it captures";
+  const double weak = value(*worse, "link"), strong = value(*fewer, "link");
+  if (weak < strong)
+    text += ", and the scans of the " + stations(*worse) + " are held together by a link of " + fixed(weak, 2) +
+            ", those of the " + stations(*fewer) + " by one of " + fixed(strong, 2);
+  return text;
+}
+
 std::string trade_off_text(const PlanResult& result) {
   const std::vector<TradeOffPoint>& points = result.trade_off;
   if (points.empty()) return {};
@@ -357,6 +385,7 @@ std::string trade_off_text(const PlanResult& result) {
             (point.answer ? "  <- the plan" : "") + (point.knee ? "  <- beyond this each station gains less" : "") +
             "\n";
   }
+  if (const std::string jump = registration_jump_text(points); !jump.empty()) text += jump + "\n";
   return text;
 }
 

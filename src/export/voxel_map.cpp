@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "export/chart.hpp"
+#include "export/map_grid.hpp"
 #include "export/plan_levels.hpp"
 #include "export/section.hpp"
 
@@ -42,14 +43,19 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
   const double width = box.size().x + 2 * margin, height = box.size().y + 2 * margin;
   const double west = box.min.x - margin, north = box.max.y + margin;
   const bool several = levels.size() > 1;
-  const double metre = std::min((several ? 460 : 700) / width, (several ? 520 : 640) / height);  // canvas units
-  constexpr double kLeft = 86, kTop = 68;
+  const MapGrid grid(levels.size());
+  const double metre = std::min(grid.width / width, grid.height / height);  // canvas units
+  constexpr double kTop = 68, kBottom = 64;
+  const double across = std::ceil(width * metre), down = std::ceil(height * metre);
+  const auto ticks = [](double length) { return std::max(2, static_cast<int>(length / 95)); };
+  const Axis y_axis{.label = "y (m)", .low = north - down / metre, .high = north, .wanted_ticks = ticks(down)};
+  const double left = room_left_of(Canvas(1, 1), y_axis);
   const auto map_of = [&](std::size_t k) {
-    const double across = std::ceil(width * metre);
-    return Rect{kLeft + static_cast<double>(k) * (across + kLeft + 10), kTop, across, std::ceil(height * metre)};
+    return Rect{left + static_cast<double>(k % grid.columns) * (across + left + 10),
+                kTop + static_cast<double>(k / grid.columns) * (down + kBottom + 30), across, down};
   };
-  const Rect last = map_of(levels.size() - 1);
-  Canvas canvas(last.right() + 26 + kPanel, std::max(last.bottom() + 64, last.y + 260));
+  const Rect last{map_of(grid.columns - 1).x, kTop, across, down};  // of the first row
+  Canvas canvas(last.right() + 26 + kPanel, std::max(map_of(levels.size() - 1).bottom() + kBottom, last.y + 260));
   const auto columns = static_cast<std::size_t>(last.width) * kFine,
              rows = static_cast<std::size_t>(last.height) * kFine;
   const auto pixel = [&](double metres, std::size_t size) {
@@ -61,13 +67,15 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
     const Rect map = map_of(k);
     std::string words = subtitle;
     if (several)
-      words = "Level " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
-              ", floor at z = " + fixed(level.floor, 2) + " m";
+      words = "Level " + std::to_string(k + 1) +
+              (grid.contact() ? ", z = " : " of " + std::to_string(levels.size()) + ", floor at z = ") +
+              fixed(level.floor, 2) + " m";
     else
       words += level.cut ? ", without what lies over the heads" : ", through whatever lies over them";
-    const Chart chart(canvas, map, {.label = "x (m)", .low = west, .high = west + map.width / metre, .wanted_ticks = 7},
-                      {.label = "y (m)", .low = north - map.height / metre, .high = north, .wanted_ticks = 7},
-                      k == 0 ? title : "", words);
+    const Chart chart(
+        canvas, map,
+        {.label = "x (m)", .low = west, .high = west + map.width / metre, .wanted_ticks = ticks(map.width)}, y_axis,
+        k == 0 ? title : "", words);
     std::vector<std::uint32_t> pixels(columns * rows);
     const double top =
         level.cut ? level.floor + kBelowCeiling * (*level.cut - level.floor) : std::numeric_limits<double>::infinity();

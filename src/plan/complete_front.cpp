@@ -37,9 +37,15 @@ void take_in_confirmed(PlanResult& result, PlanContext& context, Simulator& simu
 }
 
 void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& progress) {
-  const std::size_t chosen = answer(result), kept = result.problem.existing.size();
+  const std::size_t chosen = answer(result);
+  const std::vector<Objective>& objectives = result.problem.objectives;
+  const bool shortest = std::ranges::any_of(objectives, [](const Objective& one) { return one.needs.time; });
+  const double most_min = shortest ? 0 : most_minutes(result.problem.requirements);
   const auto visit = [&](PlanEntry& entry) {
-    entry.visit = context.on_site().visit(std::span(entry.stations).subspan(kept));
+    entry.visit = visit_of(entry, context.on_site(), most_min);
+    // A limit was met by the shortest round.
+    if (const auto time = entry.values.find("time"); !shortest && time != entry.values.end())
+      time->second.value = std::isnan(time->second.value) ? time->second.value : entry.visit->minutes;
   };
   visit(result.front[chosen]);
   if (result.front.size() > kMostRounds) return;

@@ -163,6 +163,21 @@ void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulato
   check_links(choice, context.oracle(), least_overlaps, watch.stop);
 }
 
+// Stations are numbered in the order of visiting, which goes along links, long before every ray tells them.
+VerifiedNetworks::VisitOrder visit_order(PlanContext& context, const PlanWatch& watch) {
+  return [&context, &watch, link = fewest_asked(context.problem()).link](std::span<const PlacedStation> placed) {
+    Evaluation known{.stations = {placed.begin(), placed.end()}, .link = link};
+    if (const std::uint64_t voxels = context.link_voxels(); link > 0 && voxels > 0) {
+      const Network network = to_network(placed);
+      const auto counts = context.surroundings().evaluate_sampled(
+          {&network, 1}, {.voxels = voxels, .count_to = CountTo::one, .groups = false},
+          {.report = {}, .stop = watch.abort});
+      if (!counts.front().cancelled) known.scan_overlap_matrix = scan_overlap_matrix(counts.front());
+    }
+    return visit_of(known, context.on_site(), most_minutes(context.problem().requirements)).order;
+  };
+}
+
 // Looks, chooses and refines. Without stations to place where the time was over first.
 FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
                            const PlanWatch& watch, FewestReport& report) {
@@ -295,9 +310,8 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
                        const PlanConfig& config, const PlanWatch& watch) {
   const SurveyProblem problem = context.problem();
   FewestReport report(watch);
-  VerifiedNetworks verified(
-      problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels, watch,
-      [&context](std::span<const PlacedStation> placed) { return context.on_site().visit(placed).order; });
+  VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
+                            watch, visit_order(context, watch));
   FewestChoice choice = choose_number(context, simulator, *candidates, watch, report);
   SearchOutcome found;
   PlanResult result;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -49,24 +50,24 @@ SheetLayout layout_of(const PlanLevel& level, const SearchMesh& ground, const st
   return worth_it || (all.tiles.size() == part.tiles.size() && all.ratio == part.ratio) ? all : part;
 }
 
-class MapSheet {
+// A map on a sheet, which it borrows.
+class MapOnSheet {
  public:
-  MapSheet(const SheetLayout& layout, const MapTile& tile, const PlanLevel& level)
-      : sheet(layout.paper), layout_(layout), window_(tile.window), level_(level) {}
-
-  Sheet sheet;
+  MapOnSheet(Sheet& on, const SheetLayout& layout, const MapTile& tile, const PlanLevel& level)
+      : sheet_(on), layout_(layout), map_(tile.map), window_(tile.window), level_(level) {}
 
   Point at(double x, double y) const {
-    return {layout_.map.x + (x - window_.min.x) * layout_.points_per_metre(),
-            layout_.map.y + (window_.max.y - y) * layout_.points_per_metre()};
+    return {map_.x + (x - window_.min.x) * layout_.points_per_metre(),
+            map_.y + (window_.max.y - y) * layout_.points_per_metre()};
   }
   Point at(const Vec3& p) const { return at(p.x, p.y); }
   bool holds(const Vec3& p) const {
     return p.x >= window_.min.x && p.x <= window_.max.x && p.y >= window_.min.y && p.y <= window_.max.y;
   }
 
-  void site(const Scene& scene, const SearchArea& area, std::span<const std::uint32_t> surfaces) {
-    const Rect& map = layout_.map;
+  void site(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations,
+            std::span<const std::uint32_t> surfaces) {
+    const Rect& map = map_;
     const bool smooth = layout_.paper.name == a4().name;
     const std::size_t fine = kPixels * (smooth ? 2 : 1);
     const MapWindow pixels{.x_min = window_.min.x,
@@ -74,11 +75,12 @@ class MapSheet {
                            .pixel_m = 1 / (layout_.points_per_metre() * static_cast<double>(fine)),
                            .columns = static_cast<std::size_t>(map.width) * fine,
                            .rows = static_cast<std::size_t>(map.height) * fine};
-    const SiteMap painted = map_site(scene, area, pixels, level_, 0.75 * static_cast<double>(fine), kFaded, surfaces);
+    const SiteMap painted =
+        map_site(scene, area, pixels, level_, stations, 0.75 * static_cast<double>(fine), kFaded, surfaces);
     if (smooth)
-      sheet.canvas->image(map, halve(painted.pixels, pixels.columns), pixels.columns / 2);
+      sheet_.canvas->image(map, halve(painted.pixels, pixels.columns), pixels.columns / 2);
     else
-      sheet.canvas->image(map, painted.pixels, pixels.columns);
+      sheet_.canvas->image(map, painted.pixels, pixels.columns);
   }
 
   // Walls 1.2 m over the ground, from which distances are taken, where the map shows roofs.
@@ -89,12 +91,12 @@ class MapSheet {
     for (const auto& [a, b] : section_lines(scene, level_.floor + kWall_m))
       if (holds(a) || holds(b)) lines.push_back({at(a), at(b)});
     if (lines.size() > kMost) return;
-    for (const auto& [a, b] : lines) sheet.canvas->line(a, b, {.colour = style::ink, .width = 0.5, .opacity = 0.7});
+    for (const auto& [a, b] : lines) sheet_.canvas->line(a, b, {.colour = style::ink, .width = 0.5, .opacity = 0.7});
   }
 
   // Crosses at round coordinates, which stand at the frame.
   void grid() {
-    const Rect& map = layout_.map;
+    const Rect& map = map_;
     constexpr double kApart = 85;  // points
     const auto ticks = [&](double low, double high) {
       return nice_ticks(low, high, std::max(2, static_cast<int>((high - low) * layout_.points_per_metre() / kApart)));
@@ -104,17 +106,17 @@ class MapSheet {
     for (const double x : xs)
       for (const double y : ys) {
         const Point p = at(x, y);
-        sheet.canvas->line({p.x - 4, p.y}, {p.x + 4, p.y}, {.colour = kFaintInk, .width = 0.4});
-        sheet.canvas->line({p.x, p.y - 4}, {p.x, p.y + 4}, {.colour = kFaintInk, .width = 0.4});
+        sheet_.canvas->line({p.x - 4, p.y}, {p.x + 4, p.y}, {.colour = kFaintInk, .width = 0.4});
+        sheet_.canvas->line({p.x, p.y - 4}, {p.x, p.y + 4}, {.colour = kFaintInk, .width = 0.4});
       }
     const auto x_labels = tick_labels(xs), y_labels = tick_labels(ys);
     for (std::size_t k = 0; k < xs.size(); ++k)
-      sheet.canvas->text({at(xs[k], 0).x, map.bottom() + 7}, "x " + x_labels[k], style);
+      sheet_.canvas->text({at(xs[k], 0).x, map.bottom() + 7}, "x " + x_labels[k], style);
     TextStyle upright = style;
     upright.turn = -1.5707963267948966;
     for (std::size_t k = 0; k < ys.size(); ++k)
-      sheet.canvas->text({map.x - 7, at(0, ys[k]).y}, "y " + y_labels[k], upright);
-    sheet.canvas->rectangle(map, {.colour = style::ink, .width = 0.8});
+      sheet_.canvas->text({map.x - 7, at(0, ys[k]).y}, "y " + y_labels[k], upright);
+    sheet_.canvas->rectangle(map, {.colour = style::ink, .width = 0.8});
   }
 
   void route(const Visit& visit) {
@@ -138,7 +140,7 @@ class MapSheet {
                       .width = back ? 0.7 : 1.1,
                       .opacity = back ? 0.7 : 0.9,
                       .dashes = back ? std::vector<double>{1.5, 3} : std::vector<double>{5, 2.5}};
-        sheet.canvas->line(at(a), at(b), pen);
+        sheet_.canvas->line(at(a), at(b), pen);
         // The way is shown where half of it is gone.
         if (gone >= length / 2 && gone - step < length / 2 && length * layout_.points_per_metre() > 3 * kMark &&
             step > 0)
@@ -149,8 +151,8 @@ class MapSheet {
     const Vec3& entrance = visit.paths.front().front();
     if (!holds(entrance) || !level_.holds(entrance.z)) return;
     const Point p = at(entrance);
-    sheet.canvas->disc(p, 4, {1, 1, 1});
-    sheet.canvas->circle(p, 3.5, {.colour = kRoute, .width = 1.6});
+    sheet_.canvas->disc(p, 4, {1, 1, 1});
+    sheet_.canvas->circle(p, 3.5, {.colour = kRoute, .width = 1.6});
     taken_.push_back({p.x - 5, p.y - 5, 10, 10});
     label(p, 6, "entrance", {.size = 7, .colour = kRoute, .across = Align::middle, .halo = 1.5});
   }
@@ -162,7 +164,7 @@ class MapSheet {
     for (std::size_t k = 0; k < stations.size(); ++k)
       if (stations[k].status != StationStatus::hole && level_.holds(stations[k].ground.z) && holds(stations[k].ground))
         shown.push_back(k), spots.push_back(at(stations[k].ground));
-    const std::vector<Point> discs = place_discs(spots, kMark, layout_.map);
+    const std::vector<Point> discs = place_discs(spots, kMark, map_);
     for (std::size_t i = 0; i < shown.size(); ++i) {
       taken_.push_back({discs[i].x - kMark, discs[i].y - kMark, 2 * kMark, 2 * kMark});
       taken_.push_back({spots[i].x - 3, spots[i].y - 3, 6, 6});
@@ -170,14 +172,14 @@ class MapSheet {
     for (std::size_t i = 0; i < shown.size(); ++i)
       for (const WallCorner& corner : facts[shown[i]].corners) {
         const Point c = at(corner.x, corner.y);
-        sheet.canvas->line(spots[i], c, {.colour = kTape, .width = 0.6});
-        sheet.canvas->disc(c, 1.6, kTape);
+        sheet_.canvas->line(spots[i], c, {.colour = kTape, .width = 0.6});
+        sheet_.canvas->disc(c, 1.6, kTape);
       }
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const bool moved = std::hypot(discs[i].x - spots[i].x, discs[i].y - spots[i].y) > 0.5;
-      if (moved) sheet.canvas->line(spots[i], discs[i], {.colour = style::ink, .width = 1});
-      draw_station(*sheet.canvas, discs[i], facts[shown[i]].name, stations[shown[i]], kMark);
-      if (moved) sheet.canvas->disc(spots[i], 2.4, style::ink);
+      if (moved) sheet_.canvas->line(spots[i], discs[i], {.colour = style::ink, .width = 1});
+      draw_station(*sheet_.canvas, discs[i], facts[shown[i]].name, stations[shown[i]], kMark);
+      if (moved) sheet_.canvas->disc(spots[i], 2.4, style::ink);
     }
     for (std::size_t i = 0; i < shown.size(); ++i)
       if (const std::string& name = facts[shown[i]].name; !fits_disc(name))
@@ -197,11 +199,11 @@ class MapSheet {
       const Point p = spot(k);
       taken_.push_back({p.x - kTargetMark, p.y - kTargetMark, 2 * kTargetMark, 2 * kTargetMark});
       for (const WallCorner& corner : facts[k].corners) {
-        sheet.canvas->line(p, at(corner.x, corner.y), {.colour = kTape, .width = 0.6});
-        sheet.canvas->disc(at(corner.x, corner.y), 1.6, kTape);
+        sheet_.canvas->line(p, at(corner.x, corner.y), {.colour = kTape, .width = 0.6});
+        sheet_.canvas->disc(at(corner.x, corner.y), 1.6, kTape);
       }
     }
-    for (const std::size_t k : shown) draw_target(*sheet.canvas, spot(k), targets[k].control_m > 0, kTargetMark);
+    for (const std::size_t k : shown) draw_target(*sheet_.canvas, spot(k), targets[k].control_m > 0, kTargetMark);
     for (const std::size_t k : shown)
       label(spot(k), kTargetMark + 2, targets[k].name, {.size = 8, .bold = true, .across = Align::middle, .halo = 1.5},
             true);
@@ -221,19 +223,25 @@ class MapSheet {
   void tiles(const std::vector<MapTile>& tiles) {
     for (const MapTile& tile : tiles) {
       const Point a = at(tile.window.min.x, tile.window.max.y), b = at(tile.window.max.x, tile.window.min.y);
-      sheet.canvas->rectangle({a.x, a.y, b.x - a.x, b.y - a.y}, {.colour = kTape, .width = 1.2});
-      sheet.canvas->text({a.x + 5, a.y + 10}, tile.name, {.size = 12, .bold = true, .colour = kTape, .halo = 2});
+      sheet_.canvas->rectangle({a.x, a.y, b.x - a.x, b.y - a.y}, {.colour = kTape, .width = 1.2});
+      sheet_.canvas->text({a.x + 5, a.y + 10}, tile.name, {.size = 12, .bold = true, .colour = kTape, .halo = 2});
     }
   }
 
   void dots(std::span<const PlacedStation> stations) {
     for (const PlacedStation& s : stations)
       if (s.status != StationStatus::hole && level_.holds(s.ground.z))
-        sheet.canvas->disc(at(s.ground), 1.8, style::ink);
+        sheet_.canvas->disc(at(s.ground), 1.8, style::ink);
   }
 
-  void clip() { sheet.canvas->clip(layout_.map); }
-  void unclip() { sheet.canvas->unclip(); }
+  void name(const std::string& words) {
+    const TextStyle style{.size = 9, .bold = true, .colour = kTape, .halo = 2};
+    taken_.push_back({map_.x, map_.y, sheet_.canvas->text_width(words, style) + 10, 18});
+    sheet_.canvas->text({map_.x + 5, map_.y + 9}, words, style);
+  }
+
+  void clip() { sheet_.canvas->clip(map_); }
+  void unclip() { sheet_.canvas->unclip(); }
 
  private:
   void arrow(Point a, Point b, double share) {
@@ -243,13 +251,13 @@ class MapSheet {
     const Point tip{a.x + share * dx + 3.5 * ux, a.y + share * dy + 3.5 * uy};
     const Point corners[] = {
         tip, {tip.x - 7 * ux - 3 * uy, tip.y - 7 * uy + 3 * ux}, {tip.x - 7 * ux + 3 * uy, tip.y - 7 * uy - 3 * ux}};
-    sheet.canvas->polygon(corners, kRoute);
+    sheet_.canvas->polygon(corners, kRoute);
   }
 
   // Text beside a point where it is free; `must`: even where it is not.
   void label(Point p, double gap, const std::string& text, const TextStyle& style, bool must = false) {
-    const double width = sheet.canvas->text_width(text, style) + 3, height = style.size + 2;
-    const Rect inside{layout_.map.x + 1, layout_.map.y + 1, layout_.map.width - 2, layout_.map.height - 2};
+    const double width = sheet_.canvas->text_width(text, style) + 3, height = style.size + 2;
+    const Rect inside{map_.x + 1, map_.y + 1, map_.width - 2, map_.height - 2};
     constexpr double kFar = 26;
     std::optional<Rect> place;
     if (gap == 0) {
@@ -261,27 +269,29 @@ class MapSheet {
     }
     if (!place) place = place_free_label(p, gap + 1, kFar, width, height, inside, taken_);
     if (!place && must) place = place_label(p, gap, width, height, inside, taken_);
-    if (place) sheet.canvas->text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
+    if (place) sheet_.canvas->text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
   }
 
   // A distance beside its line, at its middle or near one of its ends; nowhere if all of that is taken.
   void tape(Point from, Point to, double metres) {
     const TextStyle style{.size = 6.5, .colour = kTape, .across = Align::middle, .halo = 1.4};
     const std::string text = fixed(metres, 2);
-    const double width = sheet.canvas->text_width(text, style) + 2, height = 7.5;
+    const double width = sheet_.canvas->text_width(text, style) + 2, height = 7.5;
     for (const double share : {0.5, 0.65, 0.35, 0.8}) {
       const Point p{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
       const Rect place{p.x - width / 2, p.y - height / 2, width, height};
-      const Rect& map = layout_.map;
+      const Rect& map = map_;
       if (place.x < map.x || place.right() > map.right() || place.y < map.y || place.bottom() > map.bottom()) continue;
       if (std::ranges::any_of(taken_, [&](const Rect& t) { return t.overlaps(place); })) continue;
       taken_.push_back(place);
-      sheet.canvas->text(p, text, style);
+      sheet_.canvas->text(p, text, style);
       return;
     }
   }
 
+  Sheet& sheet_;
   const SheetLayout& layout_;
+  Rect map_;
   Box window_;
   const PlanLevel& level_;
   std::vector<Rect> taken_;
@@ -392,31 +402,45 @@ class SheetPanel {
     if (shown.empty()) return;
     canvas.text({x_, y_}, "In the order of visiting", {.size = 9, .bold = true});
     y_ += 14;
-    constexpr double kShort = 21, kLong = 30, kLast = 12;
-    const double bottom = layout_.map.bottom(), room = x_ + kPanelWidth - 18;
-    const bool three = static_cast<double>(shown.size()) * kLong <= bottom - y_;  // lines of each
-    const double entry = three ? kLong : kShort;
+    constexpr double kShort = 21, kThird = 9, kLast = 12;
+    const double bottom = layout_.map.bottom(), end = x_ + kPanelWidth - 18, after_name = x_ + 56;
+    const TextStyle name{.size = 8, .bold = true}, figures{.size = 7.5}, faint{.size = 7, .colour = kFaintInk};
+    const auto coordinates = [&](std::size_t k) {
+      const Vec3& ground = stations[k].ground;
+      return fixed(ground.x, 2) + "  " + fixed(ground.y, 2) + "  z " + fixed(ground.z, 2);
+    };
+    // National coordinates do not fit beside a name.
+    const bool beside = std::ranges::all_of(shown, [&](std::size_t k) {
+      return canvas.text_width(coordinates(k), figures) <= end - after_name &&
+             canvas.text_width(facts[k].name, name) <= after_name - x_ - 20;
+    });
+    const double least = kShort + (beside ? 0 : kThird);
+    const bool more_lines = static_cast<double>(shown.size()) * (least + kThird) <= bottom - y_;
+    const double entry = least + (more_lines ? kThird : 0);
     const auto fit = static_cast<std::size_t>(
         std::max(0.0, (bottom - (static_cast<double>(shown.size()) * entry <= bottom - y_ ? 0 : kLast) - y_) / entry));
     for (std::size_t k = 0; k < std::min(fit, shown.size()); ++k) {
       const StationFacts& f = facts[shown[k]];
-      const PlacedStation& s = stations[shown[k]];
-      const TextStyle name{.size = 8, .bold = true}, figures{.size = 7.5}, faint{.size = 7, .colour = kFaintInk};
+      const double left = x_ + 17;
       canvas.text({x_ + 12, y_}, f.visit > 0 ? std::to_string(f.visit) + "." : "–",
                   {.size = 7.5, .colour = kFaintInk, .across = Align::end});
-      canvas.text({x_ + 17, y_}, fitted(canvas, f.name, 36, name), name);
-      canvas.text({x_ + 56, y_},
-                  fitted(canvas, fixed(s.ground.x, 2) + "  " + fixed(s.ground.y, 2) + "  z " + fixed(s.ground.z, 2),
-                         room - x_ - 56, figures),
-                  figures);
+      canvas.text({left, y_}, fitted(canvas, f.name, (beside ? after_name : end) - left - 3, name), name);
+      const double from = beside ? after_name : left;
+      double y = beside ? y_ : y_ + kThird;
+      TextStyle whole = figures;
+      whole.size = fitting_size(canvas, coordinates(shown[k]), end - from, figures);
+      canvas.text({from, y}, coordinates(shown[k]), whole);
       std::string more = f.note;
       const auto add = [&](const std::string& text) { more += (more.empty() ? "" : "; ") + text; };
+      if (!f.register_to.empty()) add(f.register_to);
       if (!f.targets.empty()) add("targets " + f.targets);
       if (!f.corners.empty()) add("corners " + tape_text(f.corners));
-      if (!three && f.alone > 0) add("alone: " + f.alone_where);
-      canvas.text({x_ + 17, y_ + 9}, fitted(canvas, more, room - x_ - 17, faint), faint);
-      if (three && f.alone > 0)
-        canvas.text({x_ + 17, y_ + 17.5}, fitted(canvas, "alone sees " + f.alone_where, room - x_ - 17, faint), faint);
+      if (!more_lines && f.alone > 0) add("alone: " + f.alone_where);
+      const auto line_below = [&](const std::string& text) {
+        if (!text.empty()) canvas.text({left, y += kThird}, fitted(canvas, text, end - left, faint), faint);
+      };
+      line_below(more);
+      line_below(more_lines && f.alone > 0 ? "alone sees " + f.alone_where : "");
       y_ += entry;
     }
     if (shown.size() > fit)
@@ -449,50 +473,58 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
   FieldSheets all{.of_station = std::vector<std::size_t>(stations.size(), 0)};
   std::vector<double> off_middle(stations.size(), std::numeric_limits<double>::max());
 
-  const auto draw = [&](const SheetLayout& layout, const MapTile& tile, const PlanLevel& level, const std::string& name,
+  // A sheet of a layout; `overview`: where the tiles of another lie.
+  const auto draw = [&](const SheetLayout& layout, std::size_t number, const PlanLevel& level, const std::string& name,
                         const std::vector<MapTile>* overview) {
     if (stop.stop_requested()) return;
-    MapSheet map(layout, tile, level);
-    map.clip();
-    map.site(scene, site.area(), surfaces);
-    if (!level.cut) map.walls(scene.data());
+    Sheet sheet(layout.paper);
     std::vector<std::size_t> shown;
-    if (overview) {
-      map.tiles(*overview);
-      map.dots(stations);
-    } else {
-      if (network.visit) map.route(*network.visit);
-      map.stations(stations, facts);
-      map.targets(network.targets, of_targets);
+    std::vector<bool> here(stations.size(), false);
+    bool target_here = false, control_here = false;
+    for (const MapTile& tile : layout.tiles) {
+      if (tile.sheet != number) continue;
+      MapOnSheet map(sheet, layout, tile, level);
+      map.clip();
+      map.site(scene, site.area(), stations, surfaces);
+      if (!level.cut) map.walls(scene.data());
+      if (layout.strips) map.name(tile.name + " of " + std::to_string(layout.tiles.size()));
+      if (overview) {
+        map.tiles(*overview);
+        map.dots(stations);
+      } else {
+        if (network.visit) map.route(*network.visit);
+        map.stations(stations, facts);
+        map.targets(network.targets, of_targets);
+      }
+      map.rooms(scene.rooms());
+      map.unclip();
+      map.grid();
+      if (overview) continue;
+      for (std::size_t k = 0; k < stations.size(); ++k) {
+        const PlacedStation& s = stations[k];
+        if (s.status == StationStatus::hole || !level.holds(s.ground.z) || !map.holds(s.ground)) continue;
+        here[k] = true;
+        const Vec3 away = s.ground - tile.window.centre();
+        if (const double off = std::hypot(away.x, away.y); off < off_middle[k])
+          off_middle[k] = off, all.of_station[k] = all.sheets.size() + 1;
+      }
+      for (const Target& target : network.targets)
+        if (stands_on(target, level) && map.holds(target.centre))
+          (target.control_m > 0 ? control_here : target_here) = true;
     }
-    map.rooms(scene.rooms());
-    map.unclip();
-    map.grid();
-    for (const std::size_t k : order) {
-      const PlacedStation& s = stations[k];
-      if (overview || s.status == StationStatus::hole || !level.holds(s.ground.z) || !map.holds(s.ground)) continue;
-      shown.push_back(k);
-      const Vec3 away = s.ground - tile.window.centre();
-      if (const double off = std::hypot(away.x, away.y); off < off_middle[k])
-        off_middle[k] = off, all.of_station[k] = all.sheets.size() + 1;
-    }
-    SheetPanel panel(map.sheet, layout);
+    std::ranges::copy_if(order, std::back_inserter(shown), [&](std::size_t k) { return here[k]; });
+    SheetPanel panel(sheet, layout);
     panel.head(report.options.title, name, report.options);
     panel.scale_and_north(report.crs);
     if (level.cut) panel.cut_over(*level.cut - level.floor);
     const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
-    const auto target_here = [&](bool control) {
-      return std::ranges::any_of(network.targets, [&](const Target& target) {
-        return (target.control_m > 0) == control && stands_on(target, level) && map.holds(target.centre);
-      });
-    };
     if (!overview)
       panel.legend(level.cut.has_value(), network.visit && !overview,
                    any([&](std::size_t k) { return !facts[k].corners.empty(); }),
                    any([&](std::size_t k) { return stations[k].existing; }),
-                   any([&](std::size_t k) { return !active(stations[k]); }), target_here(false), target_here(true));
+                   any([&](std::size_t k) { return !active(stations[k]); }), target_here, control_here);
     panel.list(shown, facts, stations);
-    all.sheets.push_back(std::move(map.sheet));
+    all.sheets.push_back(std::move(sheet));
     all.names.push_back(name);
   };
 
@@ -508,14 +540,26 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     for (const Target& target : network.targets)
       if (stands_on(target, level)) marks.push_back(target.centre);
     const SheetLayout layout = layout_of(level, site.area().mesh(), marks);
-    if (layout.tiles.size() > 1) {
+    if (layout.sheets() > 1) {
       Box box;
       for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);
       const SheetLayout overview = lay_out_overview(grown(box, 1), kPanelWidth);
-      draw(overview, overview.tiles.front(), level, name + ": where the sheets lie", &layout.tiles);
+      draw(overview, 0, level, name + ": where the sheets lie", &layout.tiles);
     }
-    for (const MapTile& tile : layout.tiles)
-      draw(layout, tile, level, name + (tile.name.empty() ? "" : ": sheet " + tile.name), nullptr);
+    for (std::size_t sheet = 0; sheet < layout.sheets(); ++sheet) {
+      const auto on_it = [&](const MapTile& tile) { return tile.sheet == sheet; };
+      const auto first = std::ranges::find_if(layout.tiles, on_it);
+      const auto count = std::ranges::count_if(layout.tiles, on_it);
+      std::string part;
+      if (layout.strips)
+        part = ", in strips from " +
+               std::string(layout.tiles[0].window.min.x < layout.tiles[1].window.min.x ? "west to east"
+                                                                                       : "north to south") +
+               (layout.sheets() > 1 ? ": " + first->name + " to " + (first + count - 1)->name : "");
+      else if (!first->name.empty())
+        part = ": sheet " + first->name;
+      draw(layout, sheet, level, name + part, nullptr);
+    }
   }
   return all;
 }

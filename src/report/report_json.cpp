@@ -255,6 +255,7 @@ ordered_json report_json(const Report& report) {
           {"accuracy", accuracy_json(report)},
           {"rooms", rooms_json(report.rooms)},
           {"trade_off", trade_off_json(report.trade_off)},
+          {"registration_jump", registration_jump_text(report.trade_off)},
           {"parameters", ordered_json::parse(report.parameters)}};
 }
 

@@ -121,6 +121,19 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   return sheet;
 }
 
+// Begins a section of so many lines below what stands on the last sheet, if that is A4 and has room for all of it; else
+// on a new one.
+void begin_section(std::vector<Sheet>& sheets, std::size_t lines) {
+  constexpr double kHead = 110;
+  const Sheet& last = sheets.back();
+  const bool fits =
+      last.canvas->width() == a4().width && kHead + Sheet::kLine * static_cast<double>(lines) <= last.left();
+  if (fits)
+    sheets.back().y += 18;
+  else
+    sheets.emplace_back(a4());
+}
+
 // All of them, in the order of visiting. `first_map`: the number of the first map's sheet.
 void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<StationFacts>& facts,
                     const std::vector<std::size_t>& sheet_of, std::size_t first_map) {
@@ -131,29 +144,33 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
   sheets.back().words(
       Sheet::kMargin,
       "Metres. x, y and z are of the ground under the tripod, the head stands so high over it. Corners: "
-      "tape distances to the two corners that the map marks. Done at: since the start of the round.",
+      "tape distances to the two corners that the map marks. Done at: since the start of the round. Field software "
+      "registers each scan to the one before; a station that has no link to that says to which station instead.",
       {.size = 9, .colour = kFaintInk});
   sheets.back().y += 6;
   const std::vector<std::size_t> order = visiting_order(facts);
   write_table(sheets, paper,
-              {{"No.", 30},
-               {"Station", 52, Align::start},
-               {"Sheet", 42},
-               {"x", 66},
-               {"y", 66},
-               {"z", 48},
-               {"Head", 40},
-               {"Corners", 88},
-               {"Walk", 40},
-               {"Done at", 54},
-               {"Points", 62},
-               {"What it alone sees", 158, Align::start}},
+              {{"No."},
+               {"Station", Align::start},
+               {"Sheet"},
+               {"x"},
+               {"y"},
+               {"z"},
+               {"Head"},
+               {"Corners"},
+               {"Walk"},
+               {"Done at"},
+               {"Points"},
+               {"Notes", Align::start}},
               order.size(), order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
                 const std::size_t k = order[row];
                 const PlacedStation& s = network.stations[k];
                 const StationFacts& f = facts[k];
                 const bool placed = s.status != StationStatus::hole;
-                const std::string seen = f.alone > 0 ? percent(f.alone) + ": " + f.alone_where : "";
+                std::string notes = f.note;
+                const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
+                if (!f.register_to.empty()) add(f.register_to);
+                if (f.alone > 0) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
                 return {f.visit > 0 ? std::to_string(f.visit) : "",
                         f.name,
                         sheet_of[k] > 0 ? std::to_string(first_map + sheet_of[k] - 1) : "",
@@ -165,7 +182,7 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                         f.visit > 0 ? fixed(f.walk_m, 1) : "",
                         f.visit > 0 ? minutes_text(f.done_min) : "",
                         network.exact && k < points.size() ? grouped(points[k]) : "",
-                        f.note + (f.note.empty() || seen.empty() ? "" : "; ") + seen};
+                        notes};
               });
 }
 
@@ -184,13 +201,13 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
       "Metres; x, y and z are of a target's centre. Corners: tape distances to the two corners that the map marks; "
       "behind a station's name its distance in plan. Put all up before the first scan, and leave them until the last.");
   write_table(sheets, a4(),
-              {{"Target", 40, Align::start},
-               {"x", 58},
-               {"y", 58},
-               {"z", 40},
-               {"Corners", 98},
-               {"Kind", 78, Align::start},
-               {"Measured by, at", 123, Align::start}},
+              {{"Target", Align::start},
+               {"x"},
+               {"y"},
+               {"z"},
+               {"Corners"},
+               {"Kind", Align::start},
+               {"Measured by, at", Align::start}},
               of_targets.size(), of_targets.size(), "", [&](std::size_t k) -> std::vector<std::string> {
                 const Target& target = network.targets[k];
                 return {target.name,
@@ -208,8 +225,8 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
   sheets.back().y += 18;
   head("Targets that each station must see",
        "In the order of visiting. Before a scan, look along the line to each: nothing may stand in it.");
-  write_table(sheets, a4(), {{"No.", 30}, {"Station", 70, Align::start}, {"Targets", 380, Align::start}}, order.size(),
-              order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
+  write_table(sheets, a4(), {{"No."}, {"Station", Align::start}, {"Targets", Align::start}}, order.size(), order.size(),
+              "", [&](std::size_t row) -> std::vector<std::string> {
                 const StationFacts& f = facts[order[row]];
                 return {f.visit > 0 ? std::to_string(f.visit) : "", f.name, f.targets};
               });
@@ -228,6 +245,8 @@ std::vector<ShownLink> tree_of(const StationLinks& network) {
 void links_table(std::vector<Sheet>& sheets, const StationLinks& network, const std::vector<std::string>& names) {
   const std::string measure = to_string(network.measure);
   const std::vector<ShownLink> links = tree_of(network);
+  constexpr std::size_t kMost = 40;  // a sheet
+  begin_section(sheets, std::min(kMost, links.size()));
   Sheet& sheet = sheets.back();
   sheet.heading("Links that the survey depends on");
   sheet.words(Sheet::kMargin,
@@ -237,10 +256,8 @@ void links_table(std::vector<Sheet>& sheets, const StationLinks& network, const 
   sheet.y += 6;
   if (links.empty())
     return sheet.words(Sheet::kMargin, "No two stations are linked.", {.size = 10, .colour = kAlertInk});
-  constexpr std::size_t kMost = 40;  // a sheet
-  write_table(sheets, a4(),
-              {{"From", 90, Align::start}, {"To", 90, Align::start}, {measure, 90}, {"", 200, Align::start}},
-              links.size(), kMost, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+  write_table(sheets, a4(), {{"From", Align::start}, {"To", Align::start}, {measure}, {"", Align::start}}, links.size(),
+              kMost, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
                 const ShownLink& link = links[k];
                 std::string note = link.bridge ? "bridge" : "";
                 if (network.weakest == std::pair(link.a, link.b))
@@ -249,49 +266,62 @@ void links_table(std::vector<Sheet>& sheets, const StationLinks& network, const 
               });
 }
 
+// Places that miss the class; all others are told by their number and the worst of them.
 void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, AccuracyClass wanted) {
+  begin_section(sheets, static_cast<std::size_t>(std::ranges::count_if(
+                            accuracy.places, [](const PlaceAccuracy& place) { return place.beyond > 0; })));
   Sheet& sheet = sheets.back();
-  sheet.heading(accuracy.by_room ? "Accuracy by room" : "Accuracy by mesh");
-  sheet.words(Sheet::kMargin,
-              "Predicted registration error at 95 %, the worst first. " + to_string(wanted) + " allows " +
-                  number(1000 * largest_error_m(wanted)) + " mm; beyond: share of the seen surface with more.",
-              {.size = 9, .colour = kFaintInk});
+  const std::string what = accuracy.by_room ? "room" : "mesh";
+  sheet.heading("Accuracy by " + what);
+  std::vector<const PlaceAccuracy*> missed;
+  const PlaceAccuracy* worst_met = nullptr;
+  for (const PlaceAccuracy& place : accuracy.places)
+    if (place.beyond > 0)
+      missed.push_back(&place);
+    else if (!worst_met || place.worst_m > worst_met->worst_m)
+      worst_met = &place;
+  const std::size_t met = accuracy.places.size() - missed.size();
+  std::string words = "Predicted registration error at 95 %. " + to_string(wanted) + " allows " +
+                      number(1000 * largest_error_m(wanted)) + " mm. ";
+  if (worst_met) {
+    words += missed.empty() ? "It is met everywhere: " : "It is met in ";
+    words += missed.empty() ? "" : std::to_string(met) + " of " + std::to_string(accuracy.places.size()) + " places: ";
+    words += "the worst there is " + worst_met->name + " with " + fixed(1000 * worst_met->worst_m, 2) + " mm. ";
+  }
+  if (!missed.empty()) words += "Not met in those below, the worst first; beyond: share of the seen surface with more.";
+  sheet.words(Sheet::kMargin, words, {.size = 9, .colour = kFaintInk});
+  if (missed.empty()) return;
   sheet.y += 6;
   const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
-  write_table(sheets, a4(),
-              {{accuracy.by_room ? "Room" : "Mesh", 230, Align::start},
-               {"mean, mm", 75},
-               {"worst place, mm", 95},
-               {"beyond", 70},
-               {"", 60, Align::start}},
-              accuracy.places.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
-                const PlaceAccuracy& place = accuracy.places[k];
-                return {place.name, fixed(1000 * place.mean_m, 2), fixed(1000 * place.worst_m, 2),
-                        percent(place.beyond), place.beyond > 0 ? "not met" : "met"};
-              });
+  write_table(
+      sheets, a4(), {{accuracy.by_room ? "Room" : "Mesh", Align::start}, {"mean, mm"}, {"worst place, mm"}, {"beyond"}},
+      missed.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+        const PlaceAccuracy& place = *missed[k];
+        return {place.name, fixed(1000 * place.mean_m, 2), fixed(1000 * place.worst_m, 2), percent(place.beyond)};
+      });
 }
 
 void rooms_table(std::vector<Sheet>& sheets, const std::vector<RoomFacts>& rooms) {
+  begin_section(sheets, rooms.size());
   Sheet& sheet = sheets.back();
   sheet.heading("Rooms");
   sheet.words(Sheet::kMargin,
               "Captured: share of the surfaces in and around a room. A room without a station says why it has none.",
               {.size = 9, .colour = kFaintInk});
   sheet.y += 6;
-  write_table(sheets, a4(),
-              {{"Room", 110, Align::start},
-               {"Storey", 90, Align::start},
-               {"floor, m²", 50},
-               {"captured", 52},
-               {"Stations", 230, Align::start}},
-              rooms.size(), rooms.size(), "", [&](std::size_t k) -> std::vector<std::string> {
-                const RoomFacts& room = rooms[k];
-                return {room.name, room.storey, fixed(room.floor_m2, 1), room.captured ? percent(*room.captured) : "–",
-                        room.stations.empty() ? "none: " + room.why : room.stations};
-              });
+  write_table(
+      sheets, a4(),
+      {{"Room", Align::start}, {"Storey", Align::start}, {"floor, m²"}, {"captured"}, {"Stations", Align::start}},
+      rooms.size(), rooms.size(), "", [&](std::size_t k) -> std::vector<std::string> {
+        const RoomFacts& room = rooms[k];
+        return {room.name, room.storey, fixed(room.floor_m2, 1), room.captured ? percent(*room.captured) : "–",
+                room.stations.empty() ? "none: " + room.why : room.stations};
+      });
 }
 
 void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& shares) {
+  constexpr std::size_t kBar = 6;  // lines
+  begin_section(sheets, kBar + shares.size());
   Sheet& sheet = sheets.back();
   constexpr double kMargin = Sheet::kMargin;
   sheet.heading("What is missed, and why");
@@ -322,14 +352,14 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
   const auto share = [](const MissedShare& s, WhyMissed why) { return fixed(100 * s.share(why), 1); };
   const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
   write_table(sheets, a4(),
-              {{"Mesh, shares in %", 125, Align::start},
-               {"captured", 76},
-               {"others would", 76},
-               {"hidden", 50},
-               {"too far", 50},
-               {"too flat", 50},
-               {"too dark", 50},
-               {"too sparse", 60}},
+              {{"Mesh, shares in %", Align::start},
+               {"captured"},
+               {"others would"},
+               {"hidden"},
+               {"too far"},
+               {"too flat"},
+               {"too dark"},
+               {"too sparse"}},
               nodes.size(), rows, "missed.csv has all", [&](std::size_t k) -> std::vector<std::string> {
                 const MissedShare& s = *nodes[k];
                 return {s.node,
@@ -358,22 +388,12 @@ bool write_report_pdf(const std::filesystem::path& file, const Report& report, S
   std::ranges::move(maps.sheets, std::back_inserter(sheets));
   stations_table(sheets, network, facts, maps.of_station, first_map);
   if (!network.targets.empty()) targets_tables(sheets, network, facts, of_targets);
-  if (const auto links = network.links()) {
-    sheets.emplace_back(a4());
-    links_table(sheets, *links, station_names(network.stations, network.names));
-  }
-  if (report.accuracy && !report.accuracy->places.empty()) {
-    sheets.emplace_back(a4());
+  if (const auto links = network.links()) links_table(sheets, *links, station_names(network.stations, network.names));
+  if (report.accuracy && !report.accuracy->places.empty())
     accuracy_table(sheets, *report.accuracy, network.accuracy_class);
-  }
-  if (!report.rooms.empty()) {
-    sheets.emplace_back(a4());
-    rooms_table(sheets, report.rooms);
-  }
-  if (report.options.missed && !report.options.missed->shares.empty()) {
-    sheets.emplace_back(a4());
+  if (!report.rooms.empty()) rooms_table(sheets, report.rooms);
+  if (report.options.missed && !report.options.missed->shares.empty())
     missed_table(sheets, report.options.missed->shares);
-  }
   std::vector<std::unique_ptr<Canvas>> pages;
   for (Sheet& sheet : sheets) {
     const double y = sheet.canvas->height() - 18, margin = 28;

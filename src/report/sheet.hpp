@@ -31,14 +31,18 @@ struct Sheet {
 // Text shortened to a width, with an ellipsis.
 std::string fitted(const Canvas& canvas, std::string text, double width, const TextStyle& style);
 
+// The size of letters at which a text that is not to be shortened fits into a width, at most that of the style.
+double fitting_size(const Canvas& canvas, const std::string& text, double width, const TextStyle& style);
+
+// Numbers end at the right of their column and are never cut; words begin at its left, in several lines if need be.
 struct SheetColumn {
   std::string title;
-  double width;
   Align across = Align::end;
 };
 
 // A table from where the last sheet is written to, over as many sheets of its paper as it takes, with its head on each.
-// `most`: rows that are shown; a line says how many more there are, and where.
+// Columns are as wide as their texts; columns of words share what room is left. `most`: rows that are shown; a line
+// says how many more there are, and where.
 void write_table(std::vector<Sheet>& sheets, const Paper& paper, const std::vector<SheetColumn>& columns,
                  std::size_t rows, std::size_t most, const std::string& where,
                  const std::function<std::vector<std::string>(std::size_t)>& cells);

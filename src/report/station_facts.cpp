@@ -17,6 +17,8 @@ namespace {
 
 // Walls are looked at so high over the ground, at heights this far apart, and so are stations of nearly one ground.
 constexpr double kWall_m = 1.2, kHeights_m = 0.5;
+// What reaches so much higher, over the ground and over a target, stays where it is: cars and most furniture are lower.
+constexpr double kOverWall_m = 0.8, kOverTarget_m = 0.4;
 constexpr std::uint64_t kSeen = 400'000;  // voxels that shares are taken of
 
 void add_round(std::vector<StationFacts>& facts, const Evaluation& network, const Simulator& simulator) {
@@ -35,8 +37,30 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network, cons
   }
 }
 
+// Field software registers a scan to the one before, unless it is told another.
+void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network) {
+  const std::optional<StationLinks> links = network.links();
+  if (!links) return;
+  const auto linked = [&](std::size_t a, std::size_t b) {
+    return links->values(a, b) > 0 && links->values(a, b) >= links->least;
+  };
+  std::vector<std::size_t> before;
+  for (std::size_t k = 0; k < facts.size(); ++k)
+    if (network.stations[k].existing && active(network.stations[k])) before.push_back(k);
+  for (const std::size_t k : visiting_order(facts)) {
+    if (facts[k].visit == 0) continue;
+    if (!before.empty() && !linked(before.back(), k)) {
+      const std::size_t strongest =
+          *std::ranges::max_element(before, {}, [&](std::size_t other) { return links->values(other, k); });
+      facts[k].register_to =
+          linked(strongest, k) ? "register to " + facts[strongest].name : "no link to a station before it";
+    }
+    before.push_back(k);
+  }
+}
+
 // Of each spot, in plan, by walls at nearly its height; none where it is not a number.
-std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, const SceneData& scene) {
+std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, double stays_m, const SceneData& scene) {
   std::map<long, std::vector<std::size_t>> by_height;
   for (std::size_t k = 0; k < spots.size(); ++k)
     if (std::isfinite(spots[k].z)) by_height[std::lround(spots[k].z / kHeights_m)].push_back(k);
@@ -44,14 +68,18 @@ std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, con
   for (const auto& [height, here] : by_height) {
     Box box;
     for (const std::size_t k : here) box.extend(spots[k]);
-    std::vector<std::array<Vec3, 2>> lines = section_lines(scene, static_cast<double>(height) * kHeights_m);
-    std::erase_if(lines, [&](const std::array<Vec3, 2>& line) {
-      const auto [low, high] = std::minmax({line[0].x, line[1].x});
-      const auto [south, north] = std::minmax({line[0].y, line[1].y});
-      return high < box.min.x - WallCorners::kReach_m || low > box.max.x + WallCorners::kReach_m ||
-             north < box.min.y - WallCorners::kReach_m || south > box.max.y + WallCorners::kReach_m;
-    });
-    const WallCorners corners(lines);
+    const auto lines_at = [&](double z) {
+      std::vector<std::array<Vec3, 2>> lines = section_lines(scene, z);
+      std::erase_if(lines, [&](const std::array<Vec3, 2>& line) {
+        const auto [low, high] = std::minmax({line[0].x, line[1].x});
+        const auto [south, north] = std::minmax({line[0].y, line[1].y});
+        return high < box.min.x - WallCorners::kReach_m || low > box.max.x + WallCorners::kReach_m ||
+               north < box.min.y - WallCorners::kReach_m || south > box.max.y + WallCorners::kReach_m;
+      });
+      return lines;
+    };
+    const double z = static_cast<double>(height) * kHeights_m;
+    const WallCorners corners(lines_at(z), lines_at(z + stays_m));
     for (const std::size_t k : here) found[k] = corners.nearest(spots[k].x, spots[k].y);
   }
   return found;
@@ -62,7 +90,7 @@ void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation
   std::vector<Vec3> spots;
   for (const PlacedStation& s : stations)  // others are not set up
     spots.push_back(active(s) ? s.ground + Vec3{0, 0, kWall_m} : Vec3{kNone, kNone, kNone});
-  const auto corners = corners_of(spots, scene);
+  const auto corners = corners_of(spots, kOverWall_m, scene);
   for (std::size_t k = 0; k < facts.size(); ++k) facts[k].corners = corners[k];
 }
 
@@ -108,6 +136,7 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
     for (const std::size_t k : target.stations)
       facts[k].targets += (facts[k].targets.empty() ? "" : ", ") + target.name;
   add_round(facts, network, simulator);
+  add_register_to(facts, network);
   add_corners(facts, network.stations, simulator.scene().data());
   add_alone(facts, report.options.field, simulator);
   return facts;
@@ -118,7 +147,7 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
   const std::vector<std::string> names = station_names(network.stations, network.names);
   std::vector<Vec3> spots;
   for (const Target& target : network.targets) spots.push_back(target.centre);
-  const auto corners = corners_of(spots, simulator.scene().data());
+  const auto corners = corners_of(spots, kOverTarget_m, simulator.scene().data());
   std::vector<TargetFacts> facts;
   for (std::size_t k = 0; k < network.targets.size(); ++k) {
     const Target& target = network.targets[k];

@@ -18,8 +18,11 @@ struct StationFacts {
   std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
   double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
   std::string alone_where = {};          // the rooms, or meshes, with most of that
-  std::string targets = {};              // that it measures: "T1, T3"
-  std::string note = {};                 // "there before", what is wrong with its place, or nothing
+  // What its scan is to be registered to, if it has no link to the one before it: "register to S3", which it has the
+  // strongest link to.
+  std::string register_to = {};
+  std::string targets = {};  // that it measures: "T1, T3"
+  std::string note = {};     // "there before", what is wrong with its place, or nothing
 };
 
 struct TargetFacts {

@@ -11,6 +11,7 @@ namespace vantage {
 namespace {
 
 constexpr double kCell_m = 1, kTouch_m = 2e-3, kLeastRun_m = 0.15, kSame_m = 5e-3;
+constexpr double kUnder_m = 2e-2;  // a line over a corner may be off by that
 constexpr double kShort_m = 1e-2;  // of what ends at a corner, before it
 const double kStraight = std::cos(Angle::degrees(3).in_radians());
 const double kTurn = std::cos(Angle::degrees(30).in_radians());
@@ -79,7 +80,34 @@ std::vector<double> WallCorners::straight_runs() const {
   return runs;
 }
 
-WallCorners::WallCorners(std::span<const std::array<Vec3, 2>> lines) {
+// Whether a line above passes over a point.
+bool WallCorners::stays(double x, double y) const {
+  if (!above_) return true;
+  bool found = false;
+  for_each_near({x - kUnder_m, y - kUnder_m, x + kUnder_m, y + kUnder_m}, [&](std::uint64_t cell) {
+    const auto here = found ? cells_above_.end() : cells_above_.find(cell);
+    if (here == cells_above_.end()) return;
+    for (const std::uint32_t k : here->second) {
+      const Line& l = (*above_)[k];
+      const double dx = l.bx - l.ax, dy = l.by - l.ay, length = dx * dx + dy * dy;
+      const double share = length > 0 ? std::clamp(((x - l.ax) * dx + (y - l.ay) * dy) / length, 0.0, 1.0) : 0;
+      found = found || std::hypot(l.ax + share * dx - x, l.ay + share * dy - y) <= kUnder_m;
+    }
+  });
+  return found;
+}
+
+WallCorners::WallCorners(std::span<const std::array<Vec3, 2>> lines,
+                         std::optional<std::span<const std::array<Vec3, 2>>> above) {
+  if (above) {
+    above_.emplace();
+    for (const auto& [a, b] : *above) above_->push_back({a.x, a.y, b.x, b.y});
+    for (std::uint32_t k = 0; k < above_->size(); ++k)
+      for_each_near((*above_)[k], [&](std::uint64_t cell) {
+        auto& here = cells_above_[cell];
+        if (here.empty() || here.back() != k) here.push_back(k);
+      });
+  }
   for (const auto& [a, b] : lines)
     if (std::hypot(b.x - a.x, b.y - a.y) > 1e-6) lines_.push_back({a.x, a.y, b.x, b.y});
   for (std::uint32_t k = 0; k < lines_.size(); ++k)
@@ -110,7 +138,8 @@ WallCorners::WallCorners(std::span<const std::array<Vec3, 2>> lines) {
         if (!added) place->second = std::min(place->second, at);
       }
   }
-  for (const auto& [place, at] : known) corners_.push_back(at);
+  for (const auto& [place, at] : known)
+    if (stays(at[0], at[1])) corners_.push_back(at);
 }
 
 bool WallCorners::sees(double x, double y, double to_x, double to_y) const {
@@ -141,7 +170,7 @@ WallCorner WallCorners::nearest_wall(double x, double y) const {
     const double dx = l.bx - l.ax, dy = l.by - l.ay;
     const double share = std::clamp(((x - l.ax) * dx + (y - l.ay) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
     const double px = l.ax + share * dx, py = l.ay + share * dy, metres = std::hypot(px - x, py - y);
-    if (metres < best.distance_m && sees(x, y, px, py)) best = {px, py, metres, true};
+    if (metres < best.distance_m && stays(px, py) && sees(x, y, px, py)) best = {px, py, metres, true};
   }
   return best;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -26,8 +27,11 @@ class WallCorners {
   static constexpr Angle kLeast = Angle::degrees(30), kMost = Angle::degrees(150);
 
   // `lines`: where surfaces cross the height of the walls, as `section_lines()` has them. A corner is where two
-  // straight stretches of 15 cm or more meet or cross at 30 degrees or more.
-  explicit WallCorners(std::span<const std::array<Vec3, 2>> lines);
+  // straight stretches of 15 cm or more meet or cross at 30 degrees or more. `above`: the same lines over the heads of
+  // cars and most furniture; corners and walls with none of these over them may be gone when the crew comes, and do not
+  // count. Empty: all count.
+  explicit WallCorners(std::span<const std::array<Vec3, 2>> lines,
+                       std::optional<std::span<const std::array<Vec3, 2>>> above = std::nullopt);
 
   // Of the pairs of corners in free sight of a spot, within reach, whose directions make a good angle, the one with the
   // least sum of distances, the nearer corner first. Where there is no such pair, the nearest corner, and the nearest
@@ -48,8 +52,11 @@ class WallCorners {
   template <class Found>
   void for_each_near(const Line& line, Found&& found) const;
   std::vector<double> straight_runs() const;
+  bool stays(double x, double y) const;
 
   std::vector<Line> lines_;
+  std::optional<std::vector<Line>> above_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_above_;
   std::vector<double> runs_;                                             // of each line, `straight_runs()`
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;  // lines by square metre
   std::vector<std::array<double, 2>> corners_;

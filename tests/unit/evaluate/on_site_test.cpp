@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
@@ -273,6 +274,116 @@ TEST(OnSite, GoesNearlyTheShortestRound) {
     EXPECT_NEAR(visit.walk_m, length(visit.order), 1e-6);
     EXPECT_LE(visit.walk_m, 1.05 * shortest);
   }
+}
+
+// Lengths of rounds from an entrance, and back to it, over some places.
+class Rounds {
+ public:
+  Rounds(const OnSite& on_site, std::vector<Vec3> stops, const Vec3& entrance) {
+    stops.push_back(entrance);
+    for (const Vec3& a : stops) {
+      metres_.emplace_back();
+      for (const Vec3& b : stops) metres_.back().push_back(on_site.way_m(a, b).value());
+    }
+  }
+  double length(const std::vector<std::size_t>& order) const {
+    double sum = metres_.back()[order.front()] + metres_.back()[order.back()];
+    for (std::size_t k = 0; k + 1 < order.size(); ++k) sum += metres_[order[k]][order[k + 1]];
+    return sum;
+  }
+  // Calls found(order) for every order.
+  template <class Found>
+  void for_each(Found&& found) const {
+    std::vector<std::size_t> order(metres_.size() - 1);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    do found(order);
+    while (std::next_permutation(order.begin(), order.end()));
+  }
+  double least() const {
+    double least = std::numeric_limits<double>::infinity();
+    for_each([&](const auto& order) { least = std::min(least, length(order)); });
+    return least;
+  }
+
+ private:
+  std::vector<std::vector<double>> metres_;
+};
+
+// Two rows of stations, each linked along itself and to the other at the far end: the shortest round steps across
+// between them again and again.
+TEST(OnSite, ConsecutiveStationsAreLinkedWhereLinksAllowIt) {
+  const Vec3 entrance{1, 20, 0};
+  const OnSite on_site = Yard().on_site({.entrance = entrance});
+  std::vector<Vec3> grounds;
+  for (const double y : {18.0, 22.0})
+    for (const double x : {4.0, 12.0, 20.0, 28.0}) grounds.push_back({x, y, 0});
+  const auto stations = stations_at(grounds);
+  const auto linked = [](std::size_t a, std::size_t b) {
+    const std::size_t low = std::min(a, b), high = std::max(a, b);
+    return high == low + 1 ? (high == 4 ? 0 : 0.5) : low == 3 && high == 7 ? 0.5 : 0.0;
+  };
+  const Visit visit = on_site.visit(stations, linked);
+  ASSERT_EQ(visit.order.size(), stations.size());
+  for (std::size_t k = 0; k + 1 < visit.order.size(); ++k)
+    EXPECT_GT(linked(visit.order[k], visit.order[k + 1]), 0) << visit.order[k] << " to " << visit.order[k + 1];
+  EXPECT_EQ(visit.unlinked, 0u);
+  EXPECT_LE(visit.walk_m, 1.3 * Rounds(on_site, grounds, entrance).least());
+  EXPECT_LE(visit.legs_m.front(), visit.legs_m.back()) << "from the end that is nearer to the entrance";
+}
+
+TEST(OnSite, LinksTakeNoRoundThatIsMuchLonger) {
+  const Vec3 entrance{0.5, 0.5, 0};
+  const OnSite on_site = Yard().on_site({.entrance = entrance});
+  std::mt19937 random(11);
+  const auto number = [&] { return 1 + 38 * static_cast<double>(random()) / 4294967296.0; };
+  int all_linked = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    std::vector<Vec3> grounds(7);
+    for (Vec3& ground : grounds) ground = {number(), number(), 0};
+    std::vector<std::vector<double>> strength(7, std::vector<double>(7, 0));
+    for (std::size_t a = 0; a < 7; ++a)
+      for (std::size_t b = a + 1; b < 7; ++b)
+        strength[a][b] = strength[b][a] =
+            std::hypot(grounds[a].x - grounds[b].x, grounds[a].y - grounds[b].y) < 17 ? 0.4 : 0;
+    const LinkStrength link = [&](std::size_t a, std::size_t b) { return strength[a][b]; };
+    const Rounds rounds(on_site, grounds, entrance);
+    const double least = rounds.least();
+    const Visit plain = on_site.visit(stations_at(grounds)), along = on_site.visit(stations_at(grounds), link);
+    EXPECT_LE(along.walk_m, 1.3 * least) << trial;
+    const auto unlinked = [&](const Visit& visit) {
+      std::size_t count = 0;
+      for (std::size_t k = 0; k + 1 < visit.order.size(); ++k)
+        count += strength[visit.order[k]][visit.order[k + 1]] == 0;
+      return count;
+    };
+    EXPECT_EQ(along.unlinked, unlinked(along));
+    EXPECT_LE(unlinked(along), unlinked(plain)) << trial;
+    // The fewest that any walk allows which is no longer than 1.2 times the shortest.
+    std::size_t fewest = 7;
+    rounds.for_each([&](const auto& order) {
+      if (rounds.length(order) <= 1.2 * least) fewest = std::min(fewest, unlinked({.order = order}));
+    });
+    EXPECT_LE(along.unlinked, fewest == 0 ? 0 : fewest + 1) << trial;
+    all_linked += fewest == 0;
+    const double limit = plain.minutes + 1e-6;
+    EXPECT_LE(on_site.visit(stations_at(grounds), link, limit).minutes, limit) << "a limit on time comes before links";
+  }
+  EXPECT_GT(all_linked, 0);
+}
+
+// A corridor with its entrance at one end: in to the far end and straight back out.
+TEST(OnSite, ATunnelIsWalkedOnceInAndOnceOut) {
+  const Vec3 entrance{0.5, 20, 0};
+  const OnSite on_site = Yard().on_site({.entrance = entrance});
+  std::vector<Vec3> grounds;
+  for (const int k : {5, 2, 7, 0, 3, 6, 1, 4}) grounds.push_back({2 + 4.5 * k, 20 + 0.3 * (k % 2), 0});
+  const auto linked = [&](std::size_t a, std::size_t b) {
+    return std::max(0.0, 1 - std::abs(grounds[a].x - grounds[b].x) / 14);
+  };
+  const Visit visit = on_site.visit(stations_at(grounds), linked);
+  for (std::size_t k = 0; k + 1 < visit.order.size(); ++k)
+    EXPECT_NEAR(grounds[visit.order[k + 1]].x - grounds[visit.order[k]].x, 4.5, 1e-9) << k;
+  EXPECT_LE(visit.walk_m, 1.05 * 2 * (2 + 4.5 * 7 - 0.5));
 }
 
 }  // namespace

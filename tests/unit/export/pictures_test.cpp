@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "export/chart.hpp"
 #include "export/front_view.hpp"
@@ -37,6 +38,21 @@ TEST(Chart, TicksAreRoundAndInside) {
     EXPECT_GE(ticks.size(), 2u) << low << " " << high;
     for (const double t : ticks) EXPECT_TRUE(t >= low - 1e-6 * (high - low) && t <= high + 1e-6 * (high - low));
   }
+}
+
+TEST(Chart, LabelsOfNationalCoordinatesTellTheirTicksApart) {
+  const std::vector<double> ticks = nice_ticks(5621391.2, 5621392.9, 4);
+  const std::vector<std::string> labels = tick_labels(ticks);
+  EXPECT_EQ(std::set<std::string>(labels.begin(), labels.end()).size(), ticks.size());
+  EXPECT_EQ(labels.front(), "5621391.5");
+  EXPECT_EQ(tick_labels({5621390, 5621400}).front(), "5621390");
+}
+
+TEST(Chart, ANationalCoordinateHasRoomBesideItsAxis) {
+  const Axis axis{.label = "y (m)", .low = 5621391.2, .high = 5621392.9, .wanted_ticks = 4};
+  Canvas canvas(10, 10);
+  EXPECT_GT(room_left_of(canvas, axis), canvas.text_width("5621391.5", {.size = 12.5}) + 40);
+  EXPECT_EQ(room_left_of(canvas, {.label = "", .low = 0, .high = 9}), 86);
 }
 
 TEST(Chart, LogarithmicTicksArePowersOfTenAndMoreWhereTheseAreFew) {
@@ -459,6 +475,36 @@ TEST(Pictures, EachFloorHasAPageAndItsWallsAreFilled) {
   EXPECT_EQ(test::Drawn(written[0]).patches(number, 600).size(), 3u) << "both floors side by side, and the legend's";
   for (const std::size_t k : {1u, 2u})
     EXPECT_EQ(test::Drawn(written[k]).patches(number, 600).size(), 2u) << "its own station, and the legend's";
+}
+
+// A picture of all levels is an overview: each has one of its own.
+TEST(Pictures, ManyLevelsAreAContactSheet) {
+  std::vector<Vec3> p;
+  std::vector<std::array<std::uint32_t, 3>> t;
+  SearchMesh mesh;
+  std::vector<PlacedStation> stations;
+  constexpr int kLevels = 8;
+  for (int level = 0; level <= kLevels; ++level) {
+    const double z = 3.0 * level;
+    const auto n = static_cast<std::uint32_t>(p.size());
+    p.insert(p.end(),
+             {{456'789, 5'621'391, z}, {456'801, 5'621'391, z}, {456'801, 5'621'399, z}, {456'789, 5'621'399, z}});
+    t.insert(t.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+    if (level == kLevels) break;
+    for (std::uint32_t k = 0; k < 4; ++k) mesh.positions.push_back(p[n + k]), mesh.uvs.push_back({z + k % 2, k / 2.0});
+    mesh.triangles.insert(mesh.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+    const Vec3 ground{456'795, 5'621'395, z};
+    stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+  }
+  const test::TemporaryFolder folder;
+  Site site = site_of(Scene::from_triangles(p, t), SearchArea::from_mesh(mesh));
+  const auto written =
+      draw_plan_view(folder / "plan.png", site, stations, {.values = OverlapMatrix(kLevels)}, "A tower");
+  ASSERT_EQ(written.size(), kLevels + 1u);
+  const Image sheet = read_image(written.front());
+  EXPECT_LT(sheet.width, 4000u);
+  EXPECT_LT(sheet.height, 4000u);
+  EXPECT_GT(test::Drawn(written.front()).patches({0.10, 0.22, 0.45}, 100).size(), kLevels) << "a mark on each level";
 }
 
 }  // namespace

@@ -30,6 +30,15 @@ class Builder {
     const MapPoint at = kWindow.at(Vec3{x, y, 0} + kPlace);
     return section.solid[static_cast<std::size_t>(at.y) * kWindow.columns + static_cast<std::size_t>(at.x)] != 0;
   }
+  // The same where these places are known to be free.
+  bool solid_but(const std::vector<Vec3>& free, double x, double y, double z) const {
+    const Scene scene = Scene::from_triangles(positions, triangles);
+    std::vector<Vec3> places;
+    for (const Vec3& place : free) places.push_back(place + kPlace);
+    const Section section = section_at(scene.data(), kWindow, z + kPlace.z, places);
+    const MapPoint at = kWindow.at(Vec3{x, y, 0} + kPlace);
+    return section.solid[static_cast<std::size_t>(at.y) * kWindow.columns + static_cast<std::size_t>(at.x)] != 0;
+  }
   // The section at height z if the triangles from `first` on are of glass, and its value at (x, y).
   std::pair<Section, int> with_glass(std::uint32_t first, double x, double y, double z) const {
     SceneData data = Scene::from_triangles(positions, triangles).data();
@@ -100,6 +109,21 @@ TEST(Section, BetweenTwoSkinsIsWallAndTheRoomIsFree) {
   room.box(-4, -4, 0, 4, 4, 3, true);  // without an outside
   EXPECT_FALSE(room.solid(0, 0, 1.2));
   EXPECT_FALSE(room.solid(-5, 0, 1.2));
+}
+
+// A lining in one sheet, whose faces look outward, with a pillar in it.
+TEST(Section, NothingIsFilledAroundAPlaceThatIsFree) {
+  Builder tunnel;
+  tunnel.box(-5, -2, 0, 5, 2, 4), tunnel.box(1, -0.3, 0, 1.6, 0.3, 4);
+  EXPECT_TRUE(tunnel.solid(-3, 0, 1.2));
+  const std::vector<Vec3> station{{-2, 0.5, 0}};
+  EXPECT_FALSE(tunnel.solid_but(station, -3, 0, 1.2));
+  EXPECT_FALSE(tunnel.solid_but(station, 4, 1, 1.2));
+  EXPECT_TRUE(tunnel.solid_but(station, 1.3, 0, 1.2)) << "the pillar is another surface";
+  Builder house;  // a station in a room of two skins takes nothing from its walls
+  house.box(-4, -4, 0, 4, 4, 3), house.box(-3.7, -3.7, 0.1, 3.7, 3.7, 2.9, true);
+  EXPECT_TRUE(house.solid_but({{0, 0, 0}}, -3.85, 0, 1.2));
+  EXPECT_FALSE(house.solid_but({{0, 0, 0}}, 2, 0, 1.2));
 }
 
 TEST(Section, SheetsAreOutlinesAndSpoilNothing) {

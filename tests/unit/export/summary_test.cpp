@@ -34,6 +34,24 @@ TEST(Summary, TellsTheErrorOfWhatIsAttainable) {
   EXPECT_EQ(captured(1), "90.0 % of what is attainable from the few places that were looked at; 50.0 % of the site");
 }
 
+TEST(Summary, SaysWhyMoreStationsRegisterWorse) {
+  std::vector<TradeOffPoint> points;
+  const auto add = [&](std::size_t stations, double registered_mm, double link) {
+    points.push_back({.stations = std::vector<PlacedStation>(stations)});
+    points.back().values = {{"registration", {registered_mm, 0}}, {"link", {link, 0}}};
+  };
+  add(7, 9.5, 0.31), add(8, 0.99, 0.45);
+  EXPECT_EQ(registration_jump_text(points), "") << "more stations register better";
+  add(10, 8.81, 0.32), add(12, 1.5, 0.4);
+  EXPECT_EQ(registration_jump_text(points),
+            "10 stations register to 8.81 mm, 8 to 0.99 mm: each number is a network of its own, chosen by what it "
+            "captures, and the scans of the 10 are held together by a link of 0.32, those of the 8 by one of 0.45");
+  points[2].values["link"].value = 0.5;
+  EXPECT_TRUE(registration_jump_text(points).ends_with("chosen by what it captures")) << "no link explains it";
+  points[2].values["registration"].value = 1.2;
+  EXPECT_EQ(registration_jump_text(points), "") << "no jump";
+}
+
 TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
   Evaluation network{.stations = std::vector<PlacedStation>(5), .exact = true, .values = {{"coverage", {1, 0}}}};
   const auto told = [&](double rms_mm) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,9 @@
 #include <set>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "report/report_json.hpp"
+#include "report/station_facts.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
@@ -199,6 +202,62 @@ TEST(Report, SheetsNameEveryStationAndKeepTheirRatio) {
              *first = find(sheets[2], "S" + std::to_string(found.visit->order.front() + 1));
   ASSERT_TRUE(first);
   EXPECT_TRUE(!last || last->y0 > first->y0);
+}
+
+TEST(Report, NationalCoordinatesAreWholeOnSheets) {
+  const test::TemporaryFolder folder;
+  const Vec3 place{456'789, 5'621'391, 1210};
+  std::vector<Vec3> p;
+  std::vector<std::array<std::uint32_t, 3>> t;
+  const auto quad = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const auto n = static_cast<std::uint32_t>(p.size());
+    for (const Vec3& v : {a, b, c, d}) p.push_back(v + place);
+    t.insert(t.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+  };
+  quad({0, 0, 0}, {14, 0, 0}, {14, 9, 0}, {0, 9, 0});
+  quad({0, 9, 0}, {14, 9, 0}, {14, 9, 3}, {0, 9, 3});
+  quad({0, 0, 0}, {0, 9, 0}, {0, 9, 3}, {0, 0, 3});
+  Site site(Scene::from_triangles(p, t),
+            {.scanners = {test::coarse_scanner(2)}, .user_size_m = 0.4, .spacing_m = 0.2, .engine = Engine::embree});
+  std::vector<PlacedStation> stations;
+  for (int k = 0; k < 6; ++k) {
+    const Vec3 ground = place + Vec3{1.5 + 2.1 * k, 2.5 + 0.7 * k, 0};
+    stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+  }
+  Evaluation found = site.evaluate(stations, {.field = true});
+  ASSERT_TRUE(found.visit);
+  found.visit->set_up_min = found.visit->minutes = 97;
+  write_report(folder / "report.pdf", found, site, {});
+  const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
+  ASSERT_GE(sheets.size(), 3u);
+  for (const auto& sheet : sheets)
+    for (const Word& word : sheet)
+      EXPECT_FALSE(word.text.ends_with("…") && std::isdigit(static_cast<unsigned char>(word.text.front())))
+          << word.text << " is cut";
+  for (const PlacedStation& s : stations) {
+    EXPECT_TRUE(find(sheets[1], fixed(s.ground.x, 2)) && find(sheets[1], fixed(s.ground.y, 2))) << "beside the map";
+    EXPECT_TRUE(find(sheets[1], fixed(s.ground.z, 2)));
+    EXPECT_TRUE(find(sheets[2], fixed(s.ground.x, 3)) && find(sheets[2], fixed(s.ground.y, 3))) << "in the table";
+    EXPECT_TRUE(find(sheets[2], fixed(s.ground.z, 3)));
+  }
+  EXPECT_TRUE(find(sheets[2], "h")) << "the time when it is done";
+}
+
+// Three stations in a row of which the second has no link to the first.
+TEST(Report, TellsWhatAScanIsRegisteredToIfNotToTheOneBefore) {
+  Survey survey;
+  Evaluation found = evaluate_stations({.simulator = survey.site.simulator()},
+                                       std::vector<PlacedStation>(4, survey.result.front.front().stations.front()));
+  found.scan_overlap_matrix = ScanOverlapMatrix(4);
+  found.scan_overlap_matrix.set(0, 1, 0.6), found.scan_overlap_matrix.set(0, 2, 0.4);
+  found.link = 0.3;
+  found.visit = Visit{.order = {0, 1, 2, 3}, .legs_m = {0, 1, 1, 1, 1}};
+  const Report report = report_of(found, survey.site, {});
+  const auto facts = station_facts(report, survey.site.simulator());
+  EXPECT_EQ(facts[0].register_to, "");
+  EXPECT_EQ(facts[1].register_to, "");
+  EXPECT_EQ(facts[2].register_to, "register to S1");
+  EXPECT_EQ(facts[3].register_to, "no link to a station before it");
 }
 
 TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {

@@ -63,6 +63,31 @@ TEST(WallCorners, BesideALongWallAreACornerAndTheWall) {
   EXPECT_NEAR(two[1].distance_m, 0.5, 1e-9);
 }
 
+TEST(WallCorners, OfWhatDoesNotReachOverHeadsAreNone) {
+  Lines low, high;
+  add_box(low, 0, 0, 20, 12), add_box(high, 0, 0, 20, 12);  // a yard with walls
+  add_box(low, 3, 2, 4.4, 1.8);                             // a car in it
+  EXPECT_EQ(WallCorners(low).corners().size(), 8u);
+  const WallCorners fixed(low, high);
+  EXPECT_EQ(fixed.corners().size(), 4u);
+  for (const WallCorner& corner : fixed.nearest(3, 0)) {
+    EXPECT_NEAR(std::abs(corner.x), 10, 1e-9);
+    EXPECT_NEAR(corner.y, -6, 1e-9) << "the car hides the others";
+  }
+  EXPECT_TRUE(WallCorners(low, Lines{}).nearest(3, 0).empty()) << "nothing stays";
+}
+
+// The wall goes on over a door, whose jambs are as good as corners.
+TEST(WallCorners, JambsOfADoorStay) {
+  const Lines low{{Vec3{0, 0, 0}, Vec3{4, 0, 0}},
+                  {Vec3{4, 0, 0}, Vec3{4, 0.3, 0}},
+                  {Vec3{5, 0.3, 0}, Vec3{5, 0, 0}},
+                  {Vec3{5, 0, 0}, Vec3{9, 0, 0}}};
+  const Lines high{{Vec3{0, 0, 0}, Vec3{9, 0, 0}}};
+  const WallCorners corners(low, high);
+  EXPECT_EQ(corners.corners().size(), 2u);
+}
+
 TEST(WallCorners, RoundColumnsAndRailsHaveNone) {
   Lines column;
   for (int k = 0; k < 40; ++k) {
