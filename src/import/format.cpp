@@ -103,13 +103,16 @@ std::vector<std::string_view> first_lines(std::string_view text, std::size_t mos
 std::string_view first_word(std::string_view line) { return line.substr(0, line.find_first_of(" \t")); }
 
 bool holds_obj(std::string_view text) {
-  constexpr std::array kWords{"v"sv, "vn"sv, "vt"sv, "vp"sv, "f"sv, "l"sv, "mtllib"sv, "usemtl"sv, "o"sv, "g"sv, "s"sv};
+  constexpr std::array kWords{"v"sv, "vn"sv, "vt"sv, "vp"sv,     "f"sv,      "fo"sv, "l"sv,
+                              "p"sv, "g"sv,  "s"sv,  "mtllib"sv, "usemtl"sv, "o"sv,  "mg"sv};
   std::size_t known = 0, others = 0;
   bool vertices = false;  // a letter alone makes no model
+  bool goes_on = false;   // a line that ends with a backslash does
   for (const std::string_view line : first_lines(text, 2000)) {
-    if (line.front() == '#') continue;
-    ++(std::ranges::find(kWords, first_word(line)) != kWords.end() ? known : others);
-    vertices |= line.starts_with("v ");
+    if (!goes_on && line.front() != '#')
+      ++(std::ranges::find(kWords, first_word(line)) != kWords.end() ? known : others);
+    vertices |= line.starts_with("v ") || line.starts_with("v\t");
+    goes_on = line.ends_with('\\');
   }
   return vertices && known > 20 * others;
 }

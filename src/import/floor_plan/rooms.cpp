@@ -16,8 +16,10 @@ constexpr double kSmallestRoom_m2 = 0.3;
 constexpr double kEnclosed = 0.25;  // share of the walls' hull that rooms have if the outer walls close
 
 std::vector<Shape> enclosed(const Shape& closed, double gap_m) {
+  // GEOS widens fine teeth, as ends of an exploded hatch are, in quadratic time; outlines need none of them.
+  constexpr double kTooth_m = 0.02;
   std::vector<Shape> outlines;
-  for (const Shape& part : polygons(gap_m > 0 ? grown(closed, gap_m / 2) : clone(closed)))
+  for (const Shape& part : polygons(gap_m > 0 ? grown(straightened(closed, kTooth_m), gap_m / 2) : clone(closed)))
     outlines.push_back(filled(part));
   Shape outline = areas(united(std::move(outlines)));
   if (gap_m > 0) outline = grown(outline, -gap_m / 2);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <new>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -145,6 +146,8 @@ Shape lines(std::span<const Line> lines) {
     const std::array ends{line.a, line.b};
     shapes.push_back(check(ring_of(ends, false)));
   }
+  // GEOS keeps points in a tree that sorted ones make a list of.
+  std::ranges::shuffle(shapes, std::mt19937());
   return collected(GEOS_MULTILINESTRING, std::move(shapes));
 }
 
@@ -175,8 +178,8 @@ Shape closed(const Shape& shape, double gap) {
   const Shape wider = buffered(shape, gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
   return buffered(wider, -gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
 }
-Shape straightened(const Shape& shape) {
-  return areas(check(GEOSTopologyPreserveSimplify_r(context(), shape.get(), kGrid)));
+Shape straightened(const Shape& shape, double error) {
+  return areas(check(GEOSTopologyPreserveSimplify_r(context(), shape.get(), error)));
 }
 Shape chained(const Shape& lines) { return check(GEOSLineMerge_r(context(), lines.get())); }
 // Line by line: GEOS widens many that overlap in quadratic time.

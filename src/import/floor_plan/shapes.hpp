@@ -33,7 +33,7 @@ Shape without(const Shape& a, const Shape& b);
 Shape odd(std::span<const Shape> shapes);            // what an odd number of them covers
 Shape grown(const Shape& shape, double by);          // shrunk if negative; corners stay sharp
 Shape closed(const Shape& shape, double gap);        // its gaps of up to this width filled
-Shape straightened(const Shape& shape);              // without corners on its straight sides
+Shape straightened(const Shape& shape, double error = kGrid);  // without corners on sides that are straight up to it
 Shape chained(const Shape& lines);                   // joined where two ends meet
 Shape strip(const Shape& lines, double half_width);  // ends are cut off flat
 Shape around(std::span<const Point> points);         // the smallest rectangle, turned as it may be

@@ -74,26 +74,84 @@ bool crosses_often(const std::vector<Line>& lines_in) {
   return crossings > kMost;
 }
 
+// Cuts lines where they meet, by snap rounding (Hobby: Practical segment intersection with finite precision output,
+// 1999): ends and crossings are rounded to the grid, and each line goes through all of these whose square it touches.
+// GEOS would compare slanted lines each with each.
+std::vector<Line> cut_where_they_meet(const std::vector<Line>& lines_in) {
+  constexpr double kMostCells = 4000;  // that a line passes
+  constexpr double kHalf = 1.001 * kGrid / 2;  // what was rounded is not exact
+  double cell = 1;
+  for (const Line& line : lines_in)
+    cell = std::max(cell, (std::abs(line.b.x - line.a.x) + std::abs(line.b.y - line.a.y)) / kMostCells);
+  const auto rounded = [](Point p) { return Point{std::round(p.x / kGrid) * kGrid, std::round(p.y / kGrid) * kGrid}; };
+  const auto before = [](Point a, Point b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+  std::vector<Point> corners;
+  Grid grid(cell);
+  for (std::size_t l = 0; l < lines_in.size(); ++l) {
+    const Line& line = lines_in[l];
+    const Point along = line.b - line.a;
+    grid.visit_line(line.a, line.b, [&](std::size_t k, Point, double) {
+      const Point other = lines_in[k].b - lines_in[k].a, between = lines_in[k].a - line.a;
+      const double turn = cross(along, other);
+      if (turn == 0) return;
+      const double at = cross(between, other) / turn, on = cross(between, along) / turn;
+      if (at >= 0 && at <= 1 && on >= 0 && on <= 1) corners.push_back(rounded(line.a + along * at));
+    });
+    grid.add_line(l, line.a, line.b, 0);
+    corners.push_back(rounded(line.a)), corners.push_back(rounded(line.b));
+  }
+  const auto sort_out = [](auto& all, const auto& less) {
+    std::ranges::sort(all, less);
+    all.erase(std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return !less(a, b); }),
+              all.end());
+  };
+  sort_out(corners, before);
+  Grid squares(cell);
+  for (std::size_t c = 0; c < corners.size(); ++c)
+    squares.add(c, corners[c] - Point{kGrid, kGrid}, corners[c] + Point{kGrid, kGrid});
+  std::vector<Line> pieces_out;
+  std::vector<std::pair<double, std::size_t>> way;
+  for (const Line& line : lines_in) {
+    const Point along = line.b - line.a, low = lowest(line.a, line.b), high = highest(line.a, line.b);
+    way.clear();
+    squares.visit_line(line.a, line.b, [&](std::size_t c, Point, double) {
+      const Point p = corners[c], from = p - line.a;
+      const bool touches = p.x >= low.x - kHalf && p.x <= high.x + kHalf && p.y >= low.y - kHalf &&
+                           p.y <= high.y + kHalf &&
+                           std::abs(cross(along, from)) <= kHalf * (std::abs(along.x) + std::abs(along.y));
+      if (touches) way.emplace_back(dot(from, along), c);
+    });
+    std::ranges::sort(way);
+    way.erase(std::unique(way.begin(), way.end()), way.end());
+    for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+      const Point a = corners[way[k].second], b = corners[way[k + 1].second];
+      pieces_out.push_back(before(a, b) ? Line{a, b, line.from} : Line{b, a, line.from});
+    }
+  }
+  sort_out(pieces_out, [&](const Line& a, const Line& b) { return a.a != b.a ? before(a.a, b.a) : before(a.b, b.b); });
+  return pieces_out;
+}
+
 struct Faces {
-  Shape cut;  // all lines, cut where they meet
+  std::vector<Line> cut;  // all lines, cut where they meet
   std::vector<Shape> walls, others;
 };
 
 Faces faces_of(const std::vector<Line>& lines_in) {
   Faces out;
-  std::vector<Shape> all;
-  all.push_back(lines(lines_in));
-  out.cut = united(std::move(all));
-  for (Shape& face : faces(out.cut)) (is_wall(face) ? out.walls : out.others).push_back(std::move(face));
+  out.cut = cut_where_they_meet(lines_in);
+  for (Shape& face : faces(lines(out.cut))) (is_wall(face) ? out.walls : out.others).push_back(std::move(face));
   return out;
 }
 
 // Pieces of lines that reach out of `solid`, without stubs that are no longer than lines miss each other by.
-std::vector<Line> single_lines(const Shape& cut, const Shape& solid) {
-  const Shape out = without(cut, grown(solid, kBeside_m));
-  std::vector<Line> rest;
-  for (const Line& line : pieces(out))
-    if (distance(line.a, line.b) > 1e-3) rest.push_back(line);
+std::vector<Line> single_lines(const std::vector<Line>& cut, const Shape& solid) {
+  const Region beside(grown(solid, kBeside_m));
+  std::vector<Line> rest, touching;
+  for (const Line& line : cut) (beside.meets(line.a, line.b) ? touching : rest).push_back(line);
+  const auto outside = pieces(without(lines(touching), beside.shape()));
+  rest.insert(rest.end(), outside.begin(), outside.end());
+  std::erase_if(rest, [](const Line& line) { return distance(line.a, line.b) <= 1e-3; });
   // A stub ends where nothing else does.
   const Meetings meetings(rest);
   std::erase_if(rest, [&](const Line& line) {

@@ -3,6 +3,7 @@
 // arithmetically (Said: Introduction to Arithmetic Coding, 2004; Isenburg: LASzip: lossless compression of LiDAR data,
 // 2013): the difference to the number before, as its length in bits and the bits.
 
+export const DAMAGED = "it is truncated, or its chunks of compressed points are damaged; copy or export it again";
 const LEAST_LENGTH = 2 ** 24;
 
 // How often each of `count` symbols was seen.
@@ -98,8 +99,10 @@ class Decoder {
     return bits;
   }
 
+  // Writers end with as many bytes as readers ask for.
   #byte() {
-    return this.at < this.bytes.length ? this.bytes[this.at++] : 0;
+    if (this.at >= this.bytes.length) throw new Error(DAMAGED);
+    return this.bytes[this.at++];
   }
 
   #take(start, length) {
@@ -108,7 +111,7 @@ class Decoder {
     while (this.length < LEAST_LENGTH) {
       this.value = this.value * 256 + this.#byte();
       this.length *= 256;
-      if (this.length <= 0) throw new Error("its table of chunks is damaged; copy or export it again");
+      if (this.length <= 0) throw new Error(DAMAGED);
     }
   }
 }

@@ -6,10 +6,9 @@
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
-import { chunkTable } from "./chunk_table.mjs";
+import { chunkTable, DAMAGED } from "./chunk_table.mjs";
 
 const [DATA, UNAVAILABLE, USAGE] = [65, 69, 64];
-const DAMAGED = "it is truncated, or its chunks of compressed points are damaged; copy or export it again";
 const LATE = { format: 6, record: 30, layers: 9 };
 const LAYERS = { 6: 9, 7: 10, 8: 11, 9: 10, 10: 12 };  // of each late format, without those of extra bytes
 const NEEDED_LAYERS = [0, 1, 2, 3];                    // returns with x and y, z, classification, flags
@@ -52,7 +51,9 @@ function readChunks() {
   const count_ = read(place, 8).readUInt32LE(4);
   if (count_ * (late ? LATE.record : record) > size) throw new Error(DAMAGED);  // a chunk begins with a whole point
   const bytes = Math.min(size - place - 8, 16 * count_ + 64);
-  return chunkTable(read(place + 8, bytes), count_, chunk);
+  const chunks = count_ > 0 ? chunkTable(read(place + 8, bytes), count_, chunk) : [];
+  if (chunks.reduce((sum, { bytes }) => sum + bytes, first + 8) > place) throw new Error(DAMAGED);  // it follows them
+  return chunks;
 }
 
 // Memory of laz-perf for at least so many bytes.
@@ -99,33 +100,58 @@ function write(bytes) {
   }
 }
 
+const [AS, EACH] = late ? [LATE.format, LATE.record] : [format, record];
+const MOST = 4096;
+
+// Decodes a chunk, followed by bytes of `filler`, to which the decoder may go on.
+class Chunk {
+  static SLACK = 64;
+  #encoded = new Room();
+  #decoded = new Room();
+  #decoder;
+
+  open(bytes, filler) {
+    const pointer = this.#encoded.of(bytes.length + Chunk.SLACK);
+    lazPerf.HEAPU8.set(bytes, pointer);
+    lazPerf.HEAPU8.fill(filler, pointer + bytes.length, pointer + bytes.length + Chunk.SLACK);
+    this.#decoder?.delete();
+    this.#decoder = new lazPerf.ChunkDecoder();
+    this.#decoder.open(AS, EACH, pointer);
+  }
+
+  next(points) {
+    const to = this.#decoded.of(MOST * EACH);
+    for (let k = 0; k < points; ++k) this.#decoder.getPoint(to + k * EACH);
+    return lazPerf.HEAPU8.subarray(to, to + points * EACH);
+  }
+}
+
 try {
-  const chunks = readChunks(), encoded = new Room(), decoded = new Room();
-  const [as, bytesEach] = late ? [LATE.format, LATE.record] : [format, record];
-  const SLACK = 64;  // the decoder reads ahead
-  const MOST = 4096;
+  const chunks = readChunks(), chunk_ = new Chunk(), again = new Chunk();
   let left = count, place = first + 8;
   for (const { points, bytes } of chunks) {
     if (left === 0) break;
-    let chunk_ = read(place, bytes);
+    const raw = read(place, bytes);
     place += bytes;
-    if (late) chunk_ = withNeededLayers(chunk_);
-    const pointer = encoded.of(chunk_.length + SLACK), to = decoded.of(MOST * bytesEach);
-    lazPerf.HEAPU8.set(chunk_, pointer);
-    lazPerf.HEAPU8.fill(0, pointer + chunk_.length, pointer + chunk_.length + SLACK);
-    const decoder = new lazPerf.ChunkDecoder();
-    decoder.open(as, bytesEach, pointer);
+    // Late formats tell how many points a chunk has. The last one of another format may have less than announced: what
+    // lies behind it counts for points then.
+    if (late && raw.readUInt32LE(record) < Math.min(points, left)) throw new Error(DAMAGED);
+    const unsure = !late && points >= left;
+    const encoded = late ? withNeededLayers(raw) : raw;
+    chunk_.open(encoded, 0);
+    if (unsure) again.open(encoded, 0xFF);
     for (let rest = Math.min(points, left); rest > 0;) {
-      const now = Math.min(rest, MOST);
-      for (let k = 0; k < now; ++k) decoder.getPoint(to + k * bytesEach);
-      write(lazPerf.HEAPU8.subarray(to, to + now * bytesEach));
+      const now = Math.min(rest, MOST), records = chunk_.next(now);
+      // A copy, as memory may move when the second one grows it.
+      const copy = unsure ? Buffer.from(records) : records;
+      if (unsure && !copy.equals(again.next(now))) throw new Error(DAMAGED);
+      write(copy);
       rest -= now, left -= now;
     }
-    decoder.delete();
   }
   if (left > 0) throw new Error(DAMAGED);
 } catch (error) {
   if (error.code === "EPIPE") process.exit(0);
-  fail(DATA, error instanceof Error && !(error instanceof WebAssembly.RuntimeError) ? error.message.split("\n")[0] : DAMAGED);
+  fail(DATA, error.constructor === Error ? error.message.split("\n")[0] : DAMAGED);
 }
 process.exit(0);

@@ -24,6 +24,15 @@ std::string binary_stl(std::uint32_t triangles) {
   return bytes + std::string(50 * triangles, '\0');
 }
 
+// A line, and two vertices of a polyface mesh that differ in height by so much, with a face of no height.
+std::string polyface_dxf(double rise) {
+  const auto vertex = [](int flags, double z) {
+    return "0\nVERTEX\n8\n0\n70\n" + std::to_string(flags) + "\n30\n" + std::to_string(z) + "\n";
+  };
+  return "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\nPOLYLINE\n70\n64\n" + vertex(192, 1) + vertex(192, 1 + rise) +
+         vertex(128, 0) + "0\nSEQEND\n0\nENDSEC\n0\nEOF\n";
+}
+
 TEST_F(FormatTest, IsToldByContent) {
   const Sample samples[] = {
       {"a.glb", "glTF\2\0\0\0"s, "glTF"},
@@ -33,6 +42,8 @@ TEST_F(FormatTest, IsToldByContent) {
       {"a.glb.gz", "\x1F\x8B\x08rest", "compressed glTF"},
       {"a.ifc", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));", "IFC"},
       {"a.obj", "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "OBJ"},
+      {"continued.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 \\\n3\nf 3 \\\n2 \\\n1\n", "OBJ"},
+      {"points.obj", "v 1.0 2.0 3.0\nv 1.5 2.5 3.5\np 1 2\n", "OBJ"},
       {"a.stl", binary_stl(2), "STL"},
       {"solid.stl", "solid " + binary_stl(2).substr(6), "STL"},
       {"text.stl", "solid a\n facet normal 0 0 1\n", "STL"},
@@ -56,7 +67,8 @@ TEST_F(FormatTest, IsToldByContent) {
       {"faces.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\n3DFACE\n30\n0\n31\n2.5\n0\nENDSEC\n0\nEOF\n", "DXF"},
       {"flat_faces.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\n3DFACE\n30\n0\n31\n0\n0\nENDSEC\n0\nEOF\n",
        "a floor plan in DXF"},
-      {"polyface.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\nPOLYLINE\n70\n64\n0\nENDSEC\n0\nEOF\n", "DXF"},
+      {"polyface.dxf", polyface_dxf(2.5), "DXF"},
+      {"flat_polyface.dxf", polyface_dxf(0), "a floor plan in DXF"},
   };
   for (const Sample& sample : samples) {
     const auto recognised = importers::recognise(write(sample.file, sample.content));

@@ -150,7 +150,7 @@ TEST_F(MeshImportTest, PlyMayBeginItsDataWithTheByteOfALineEnd) {
          {"ply", "format binary_little_endian 1.0", "element vertex 3", "property float x", "property float y",
           "property float z", "element face 1", "property list uchar int vertex_indices", "end_header"})
       ply += line + end;
-    for (const float value : {first, 0.0F, 0.0F, 3.0F, 0.0F, 0.0F, 1.0F, 2.0F, 0.0F}) ply += number(value);
+    for (const float value : {first, 0.0F, 0.0F, 3.0F, 0.0F, 0.0F, 2.0F, 2.0F, 0.0F}) ply += number(value);
     ply += '\3';
     for (const int v : {0, 1, 2}) ply += std::string{static_cast<char>(v), 0, 0, 0};
     expect_bounds(Scene::load(write("a.ply", ply), with_axes(Unit::metre, UpAxis::z)),

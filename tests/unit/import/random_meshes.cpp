@@ -76,7 +76,8 @@ class Generator {
     Solid solid;
     solid.name = one_of({"wall ", "Tür ", "slab-", "Box."}) + std::to_string(number);
     const glm::dvec3 at = site_ + glm::dvec3(12.0 * number, between(-20, 20), between(0, 5));
-    const int corners = whole(3, 9);
+    // A narrow triangle would not hold the hole.
+    const int corners = std::max(whole(3, 9), hole ? 4 : 3);
     const double height = between(0.5, 4);
     const auto ring = [&](double low, double high) {
       std::vector<std::pair<double, double>> plan;

@@ -208,8 +208,12 @@ TEST_F(LazSourceTest, EveryPointFormat) {
 
 TEST_F(LazSourceTest, DamagedOnesAreRefusedOrRead) {
   const std::string sound = bytes_of_base64(kLazFiles[3].base64);
-  for (std::size_t length = 400; length < sound.size(); length += 397)
-    expect_refused_for("", [&] { points_of(*open_las(write("b.laz", sound.substr(0, length)))); });
+  std::vector<std::size_t> lengths{400, 797, 1194};
+  for (std::size_t lost = 1; lost <= 8; ++lost) lengths.push_back(sound.size() - lost);  // of the table of chunks
+  for (const std::size_t length : lengths) {
+    SCOPED_TRACE(length);
+    expect_refused_for("truncated", [&] { points_of(*open_las(write("b.laz", sound.substr(0, length)))); });
+  }
   for (std::size_t at = 375; at < sound.size(); at += 311) {
     std::string bytes = sound;
     bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
@@ -223,6 +227,9 @@ TEST_F(LazSourceTest, DamagedOnesAreRefusedOrRead) {
   std::string more = sound;
   more[107] = 41;
   expect_refused_for("truncated", [&] { points_of(*open_las(write("d.laz", more))); });
+  std::string late = bytes_of_base64(kLazFiles[4].base64);
+  late[247] = 41;
+  expect_refused_for("truncated", [&] { points_of(*open_las(write("f.laz", late))); });
   std::string old = sound;
   old[104] = static_cast<char>(0x80 | 4), old[105] = 57;
   expect_refused_for("waveforms", [&] { open_las(write("e.laz", old)); });
