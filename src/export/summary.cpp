@@ -259,7 +259,7 @@ std::string barred(const ClosedPart& part) {
     case Bar::door: return "behind " + (doors.empty() ? std::string("a closed door") : doors);
     case Bar::headroom: return "behind a headroom of " + metres + too + ", where a person stoops";
     case Bar::climb: return "up or down a ladder, or a stair as steep as one, with steps of up to " + metres + too;
-    case Bar::step: return "beyond a step of " + metres + too;
+    case Bar::step: return (part.height_m > 0 ? "beyond a step of " + metres : "beyond a gap in the floor") + too;
     case Bar::no_way: break;
   }
   return "that nothing leads to";

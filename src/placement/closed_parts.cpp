@@ -149,9 +149,14 @@ GroundField::Ways GroundField::ways_from_reached() const {
       go(link->second, climb);
     if (!has_room(s)) continue;
     for_columns_beside(column_[s], across, [&](std::uint32_t other) {
-      for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n)
-        if (has_room(n) && part_[n] != part_[s] && std::abs(double{z_[n]} - z_[s]) <= kHighestStep * climb_)
-          go(n, high_step);
+      for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
+        const double step = std::abs(double{z_[n]} - z_[s]);
+        if (!has_room(n) || part_[n] == part_[s] || step > kHighestStep * climb_) continue;
+        const double share = (step / climb_ - 1) / (kHighestStep - 1);  // of the way from an easy step to the highest
+        constexpr std::size_t kClasses = kEfforts - high_step;
+        go(n, share <= 0 ? std::size_t{step_over}
+                         : high_step + std::min(kClasses - 1, static_cast<std::size_t>(share * kClasses)));
+      }
     });
   }
   return ways;
@@ -326,7 +331,8 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
   if (effort == through_door) closed.bar = Bar::door;
   if (effort == stoop) closed.bar = Bar::headroom, closed.height_m = height_;
   if (effort == climb) closed.bar = Bar::climb;
-  if (effort == high_step) closed.bar = Bar::step;
+  const bool by_step = effort >= high_step && effort < kEfforts;
+  if (by_step || effort == step_over) closed.bar = Bar::step;
   for (std::uint32_t s = at, before = nowhere; s != nowhere && effort != kEfforts; before = s, s = ways.from[s]) {
     if (!has_room(s) && (taken_[s] & kLeaf) && !(taken_[s] & (kBeside | kOverhead))) {
       const auto mesh = std::lower_bound(leaves_.begin(), leaves_.end(), std::pair{s, 0U});
@@ -340,7 +346,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
       if (const auto over = tree.first({p.x, p.y, z_[s] + skin}, {0, 0, 1}))
         closed.height_m = std::min(closed.height_m, over->distance + skin);
     }
-    if (before != nowhere && (effort == high_step || effort == climb))
+    if (before != nowhere && (by_step || effort == climb))
       closed.height_m = std::max(closed.height_m, std::abs(double{z_[before]} - z_[s]));
   }
   if (sky) {
@@ -351,10 +357,10 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
                                                     : ClosedKind::top;
     return closed;
   }
-  if (effort == high_step || effort == climb) {
+  if (by_step || effort == climb) {
     // People climb onto goods, too: only a wide part is a floor.
     if (!is_wide(number)) closed.kind = ClosedKind::top;
-    if (effort == high_step && is_attic(number)) closed.kind = ClosedKind::attic;
+    if (by_step && is_attic(number)) closed.kind = ClosedKind::attic;
   }
   if (effort != kEfforts) return closed;
   if (access_[number] == Access::unreachable && !above) {

@@ -138,7 +138,8 @@ class GroundField {
   // The sample of a part nearest to its middle.
   glm::dvec3 middle_of(std::uint32_t part) const;
   // How hard it is to get to a sample from what is reached: the hardest thing on the easiest way.
-  enum Effort : std::uint8_t { walk, through_door, stoop, climb, high_step, kEfforts };
+  // Steps have a class for each tenth of a metre or so, so that the lowest is found.
+  enum Effort : std::uint8_t { walk, through_door, step_over, stoop, climb, high_step, kEfforts = high_step + 8 };
   struct Ways {
     std::vector<std::uint8_t> effort;  // per sample; kEfforts: none
     std::vector<std::uint32_t> from;   // per sample: the one before it

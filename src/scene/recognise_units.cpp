@@ -378,33 +378,6 @@ bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
          features_of(other)[0] >= kSize;
 }
 
-// The middle of the model in the survey frame, by glTF's rule.
-glm::dvec3 middle_of(const RawScene& raw) {
-  constexpr double kBroken = 1e12;  // in any unit
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  const auto extend = [&](const glm::dvec3& p) {
-    if (std::abs(p.x) < kBroken && std::abs(p.y) < kBroken && std::abs(p.z) < kBroken)
-      low = glm::min(low, p), high = glm::max(high, p);
-  };
-  for (const glm::dvec3& p : raw.positions) extend(p);
-  for (const auto& range : raw.placed)
-    for (const PlacedShared& placed : range) extend(to_glm(placed.place.origin));
-  return low.x <= high.x ? 0.5 * (low + high) : glm::dvec3(0);
-}
-
-// Whether coordinates can be no national ones by a hypothesis, though they are large as those. Systems are in metres or
-// feet, and drawings of theirs perhaps in millimetres; plan coordinates are 100 to 20 000 km, and no site is 10 km
-// high.
-bool contradicts_place(const Hypothesis& h, const glm::dvec3& middle) {
-  constexpr double kLarge = 1e5, kFar = 50, kLeast_m = 1e5, kMost_m = 2e7, kHighest_m = 1e4;
-  const glm::dvec3 at = with_up(h.up, middle);
-  const double metres = metres_in(h.unit), farthest = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-  if (farthest < kLarge || farthest * metres < kFar * extent_of(h)) return false;
-  const double plan_m = std::max(std::abs(at.x), std::abs(at.y)) * metres;
-  return h.unit == Unit::inch || h.unit == Unit::centimetre || std::abs(at.z) * metres > kHighest_m ||
-         plan_m < kLeast_m || plan_m > kMost_m;
-}
-
 bool has_ways(const Hypothesis& h) { return h.doors >= 1 || h.flights >= 1; }
 
 // A tower that lies on its side has floors, too, and few models have X up: without a door or a stair along it, X gives
@@ -419,11 +392,6 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
   std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
   if (all.empty()) return out;
-  const Hypothesis stated =
-      *std::ranges::find_if(all, [&](const Hypothesis& h) { return h.unit == out.unit && h.up == out.up; });
-  if (const glm::dvec3 middle = middle_of(raw);
-      !std::ranges::all_of(all, [&](const Hypothesis& h) { return contradicts_place(h, middle); }))
-    std::erase_if(all, [&](const Hypothesis& h) { return contradicts_place(h, middle); });
   const auto usual = std::ranges::find_if(all, [](const Hypothesis& h) { return h.up != UpAxis::x; });
   if (usual != all.end() && has_ways(*usual))
     std::erase_if(all, [&](const Hypothesis& h) { return is_doubtful(h, up); });
@@ -435,7 +403,9 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
                                     : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
-    return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
+    // A rule that a file may break says less than doors and stairs that only the other reading has.
+    const bool by_rule = rule && keeps_rule && (has_ways(best) || !has_ways(other));
+    return best.score - other.score < (by_rule ? kRuleLead : kLead) ||
            (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) || drawn_otherwise(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
@@ -447,11 +417,13 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
     return out;
   }
   if (rule) return out;
-  out.note = "read as " + meaning(best) + "; as " + meaning(stated) + ", a person could walk less of it; " +
+  const auto stated = std::ranges::find_if(
+      all, [&](const Hypothesis& h) { return h.unit == unit.value_or(Unit::metre) && h.up == up.value_or(UpAxis::y); });
+  out.note = "read as " + meaning(best) + "; as " + meaning(*stated) + ", a person could walk less of it; " +
              "if that is wrong, give " +
-             (best.unit == stated.unit ? "the setting up"
-              : best.up == stated.up   ? "the setting unit"
-                                       : "the setting unit and the setting up");
+             (best.unit == stated->unit ? "the setting up"
+              : best.up == stated->up   ? "the setting unit"
+                                        : "the setting unit and the setting up");
   return out;
 }
 

@@ -30,6 +30,16 @@ void add_leaf(RandomSite& made, const std::string& name, const Box& box) {
   add_box(made.leaves.back(), box);
 }
 
+// A hut of 3 x 2.6 m with an open doorway: what people build tells the unit, and which way is up.
+void add_hut(RandomSite& made, const Draws& draw, double x, double y, double z) {
+  carve(add_part(made.site, draw.name("wall"), sites::kPlaster, Surface::wall_top),
+        {block(x, x + 3, y, y + 0.2, z, z + 2.4), block(x, x + 3, y + 2.4, y + 2.6, z, z + 2.4),
+         block(x, x + 0.2, y, y + 2.6, z, z + 2.4), block(x + 2.8, x + 3, y, y + 2.6, z, z + 2.4)},
+        {block(x + 1, x + 1.95, y, y + 0.2, z, z + 2.05)});
+  add_box(add_part(made.site, draw.name("roof"), sites::kTiles, Surface::roof),
+          block(x - 0.2, x + 3.2, y - 0.2, y + 2.8, z + 2.4, z + 2.6));
+}
+
 // Two plateaus of sheets above a river, a road over it between railings, and a house that is a mere block.
 void terrain(RandomSite& made, const Draws& draw) {
   const double z = draw.uniform(4, 9), y1 = draw.uniform(20, 40), half = draw.uniform(6, 9),
@@ -51,6 +61,7 @@ void terrain(RandomSite& made, const Draws& draw) {
     add_box(rails, block(-edge - wide, edge + wide, y, y + 0.1, top, top + 1));
   add_box(add_part(made.site, draw.name("house"), sites::kPlaster, Surface::roof),
           block(edge + 6, edge + 13, 1, road - 5, z - 1, z + 6));
+  add_hut(made, draw, -edge - wide + 2, 2, z);
   made.site.places = {place("left", -edge - wide, -edge, 0, road - 3, z, true),
                       place("road", -edge - wide, edge + wide, road - 3, road + 3, top, true),
                       place("right", edge, edge + wide, road + 3, y1, z, true)};
@@ -109,14 +120,15 @@ void platform(RandomSite& made, const Draws& draw) {
   const double z = 0.19 * rises;
   add_box(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
           block(-8, x1 + 4, -5, y1 + 4, -0.3, 0));
-  sites::add_flight(add_part(made.site, draw.name("stair"), sites::kSteel, Surface::floor), 1, 2.4, -0.26 * rises, 0,
-                    rises, 0.19, 0.26);
+  sites::add_flight(add_part(made.site, draw.name("stair"), sites::kSteel, Surface::floor), 1, 2.4, -0.26 * (rises - 1),
+                    0, rises, 0.19, 0.26);
   Part& whole = add_part(made.site, draw.name("grating"), sites::kSteel, Surface::floor);
   add_box(whole, block(0, x1, 0, y1, z - 0.04, z));
   Part bars{.name = whole.name, .colour = whole.colour};
   for (double y = 0; y + 0.005 <= y1; y += apart) add_box(bars, block(0, x1, y, y + 0.005, z - 0.04, z));
   for (double x = 0; x <= x1; x += 0.5) add_box(bars, block(x, x + 0.006, 0, y1, z - 0.03, z - 0.005));
   made.drawn[whole.name] = std::move(bars);
+  add_hut(made, draw, -7, 0, 0);
   made.site.places = {place("ground", -8, -0.5, -5, y1 + 4, 0, true), place("platform", 0, x1, 0, y1, z, true)};
   made.told = "platform of gratings";
 }

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "scene/positions.hpp"
 #include "support/box.hpp"
@@ -102,36 +101,6 @@ TEST(RecogniseUnits, AsksWhereNothingTells) {
   EXPECT_NE(found.choices[0].find("unit mm, up "), std::string::npos) << found.choices[0];
   EXPECT_NE(found.choices[1].find(" m²"), std::string::npos) << found.choices[1];
   EXPECT_TRUE(recognise(tube.written(Unit::millimetre, UpAxis::z), {}, UpAxis::z).question.empty());
-}
-
-// Slopes and benches of a quarry, without anything built for a person: UTM has no inches, and no site 5 000 km high.
-TEST(RecogniseUnits, NationalCoordinatesRuleOutWhatNoSystemHas) {
-  for (const auto& [unit, up] :
-       {std::pair{Unit::metre, UpAxis::z}, std::pair{Unit::metre, UpAxis::y}, std::pair{Unit::millimetre, UpAxis::z}}) {
-    SCOPED_TRACE(std::string(to_string(unit)) + " " + to_string(up));
-    House quarry;
-    quarry.points.clear(), quarry.triangles.clear();
-    constexpr std::uint32_t kRows = 41;
-    for (std::uint32_t y = 0; y < kRows; ++y)
-      for (std::uint32_t x = 0; x < kRows; ++x) {
-        const double out = std::hypot(x - 20.0, y - 20.0);
-        quarry.points.push_back(
-            {500'000 + 5.0 * x, 5'621'000 + 5.0 * y, 150 + 12 * std::floor(out / 5) + std::sin(3.0 * x)});
-        if (x == 0 || y == 0) continue;
-        const std::uint32_t d = y * kRows + x, c = d - 1, b = d - kRows, a = b - 1;
-        quarry.triangles.push_back({a, b, d}), quarry.triangles.push_back({a, d, c});
-      }
-    const Recognised found = recognise(quarry.written(unit, up), std::nullopt, std::nullopt, false);
-    EXPECT_EQ(found.up, up);
-    if (found.question.empty()) {
-      EXPECT_EQ(found.unit, unit);
-      continue;
-    }
-    for (const std::string& choice : found.choices) {
-      EXPECT_NE(choice.find(std::string("up ") + to_string(up)), choice.npos) << choice;
-      EXPECT_TRUE(choice.find("unit m") != choice.npos || choice.find("unit ft") != choice.npos) << choice;
-    }
-  }
 }
 
 TEST(RecogniseUnits, OptionsAreNotDoubted) {
