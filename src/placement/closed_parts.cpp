@@ -409,10 +409,13 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
     if (may_be_told(i)) told.push_back(i);
   if (told.empty()) return closed;
   const Ways ways = ways_from_reached();
+  const double reached = reached_area();
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);
     const bool sky = 2 * parts_[i].in_the_sky > parts_[i].samples;
-    if (!sky || part.kind != ClosedKind::top) closed.push_back(std::move(part));
+    // Terrain drawn as a block ends like the top of something: what is larger than all that is reached is told.
+    const bool block = !is_roof(parts_[i]) && part.area_m2 > reached;
+    if (!sky || part.kind != ClosedKind::top || block) closed.push_back(std::move(part));
   }
   std::ranges::stable_sort(closed, std::ranges::greater{}, &ClosedPart::area_m2);
   return closed;

@@ -222,6 +222,38 @@ TEST(ClosedParts, TopsOfBlocksAreNoGround) {
   EXPECT_TRUE(area.not_entered().empty());
 }
 
+// Terrain that is drawn as a block ends like the top of something: it is told where it is larger than the pit in it.
+TEST(ClosedParts, APlateauLargerThanThePitInItIsTold) {
+  Builder b;
+  b.box({0, 0, -2}, {50, 10, 10}).box({0, 40, -2}, {50, 50, 10}).box({0, 10, -2}, {10, 40, 10});
+  b.box({40, 10, -2}, {50, 40, 10}).box({10, 10, -2}, {40, 40, 0});
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_FALSE(area.on_plane());
+  EXPECT_TRUE(holds(area, 25, 25, 0));
+  ASSERT_EQ(area.not_entered().size(), 1u);
+  EXPECT_GT(area.not_entered()[0].area_m2, 1500);
+  EXPECT_TRUE(area.not_entered()[0].to_decide());
+}
+
+// A gap that one steps over has no height; of steps that lead to a part, the lowest is told.
+TEST(ClosedParts, OneStepsOverAGapAndTheLowestStepIsTold) {
+  Builder gap;
+  slab(gap, 0, 0, 10, 8, 0);
+  slab(gap, 10.25, 0, 16, 8, 0);
+  const SearchArea over = SearchArea::build(gap.scene());
+  EXPECT_TRUE(holds(over, 13, 4, 0));
+  ASSERT_EQ(over.entered().size(), 1u);
+  EXPECT_EQ(over.entered()[0].bar, Bar::step);
+  EXPECT_EQ(over.entered()[0].height_m, 0);
+  Builder step;
+  slab(step, 0, 0, 10, 8, 0);
+  step.box({10, 0, -0.2}, {16, 8, 0.8}).box({9, 3, 0}, {10, 5, 0.4});
+  const SearchArea up = SearchArea::build(step.scene());
+  ASSERT_EQ(up.entered().size(), 1u);
+  EXPECT_EQ(up.entered()[0].bar, Bar::step);
+  EXPECT_NEAR(up.entered()[0].height_m, 0.4, 0.01);
+}
+
 // Bars of 5 mm every 40 mm carry a person and a tripod.
 TEST(ClosedParts, AGratingIsAFloor) {
   Builder b;
