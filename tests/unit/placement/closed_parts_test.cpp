@@ -96,7 +96,7 @@ TEST(ClosedParts, OneStoopsUnderALowHeadAndIsTold) {
   EXPECT_FALSE(holds(left, 9, 3, 0));
   ASSERT_EQ(left.not_entered().size(), 1u);
   EXPECT_TRUE(left.not_entered()[0].to_decide());
-  EXPECT_NEAR(left.not_entered()[0].share, 0.5, 0.1);
+  EXPECT_NEAR(left.not_entered()[0].share, 0.18, 0.02);  // with the ground before the house
   EXPECT_TRUE(entered_text(left).empty());
 }
 
@@ -146,7 +146,7 @@ TEST(ClosedParts, WhatHasNoOpeningIsNoRoom) {
 TEST(ClosedParts, APlatformIsEnteredOverItsStepAndGoodsAreNot) {
   Builder b;
   slab(b, 0, 0, 30, 20, 0);
-  slab(b, -10, 0, 0, 20, 0);  // one comes from outside
+  slab(b, -40, 0, 0, 20, 0);  // one comes from outside
   b.box({-0.2, -0.2, 5}, {30.2, 20.2, 5.2});
   b.box({-0.2, -0.2, 0}, {30.2, 0, 5}).box({-0.2, 20, 0}, {30.2, 20.2, 5}).box({30, 0, 0}, {30.2, 20, 5});
   b.box({-0.2, 0, 0}, {0, 8, 5}).box({-0.2, 12, 0}, {0, 20, 5}).box({-0.2, 8, 3}, {0, 12, 5});
