@@ -40,6 +40,8 @@ Options<WalkableOptions> walkable_options() {
       .add("passage_height_m", &WalkableOptions::passage_height_m, "Height of the lowest opening that a person passes.")
       .add("climb_m", &WalkableOptions::climb_m, "Highest step that a person takes.")
       .add("enter", &WalkableOptions::enter, "Entrances of the site, a list of (x, y, z); empty: found automatically.")
+      .add("enter_closed", &WalkableOptions::enter_closed,
+           "Whether large parts that something bars the way to are walkable, too, unless enter is given.")
       .add("levels", &WalkableOptions::levels, "Lowest and highest height of ground; None: any.")
       .add<std::vector<Rings>>(
           "within", [regions](const WalkableOptions& o) { return regions(o.within); },

@@ -40,6 +40,9 @@ struct WalkableOptions {
   double passage_height_m = 1.9;  ///< Height of the lowest such opening.
   double climb_m = 0.25;          ///< Highest step that a person takes.
   std::vector<Vec3> enter = {};   ///< Entrances of the site, survey frame; empty: found automatically.
+  /// Adds large parts that something bars the way to to the search area, unless `enter` is given: ground
+  /// under the sky and rooms, from a tenth of the reached floor or 20 m² on. `SearchArea::entered()` lists them.
+  bool enter_closed = true;
   /// Lowest and highest level of the ground, survey frame. Like the two below, it also limits a marked search area.
   std::optional<std::array<double, 2>> levels = {};
   std::vector<PlanRegion> within = {};   ///< If not empty, only ground in one of these.
@@ -74,12 +77,39 @@ struct LeftOut {
   std::vector<std::array<std::uint32_t, 3>> triangles = {};
 };
 
-/// Floor as large as a room that nothing leads to: behind closed doors, or on a storey without a stair.
-struct NotEntered {
+/// Obstacle to a part of the floor, on the easiest way there.
+enum class Bar {
+  door,      ///< A closed leaf, gate or pane.
+  headroom,  ///< A low opening, in which a person stoops.
+  climb,     ///< A ladder, or a stair as steep as one.
+  step,      ///< A step higher than a person takes.
+  no_way,    ///< Nothing in the model leads there.
+};
+std::string to_string(Bar);
+
+/// Kinds of closed parts of the floor.
+enum class ClosedKind {
+  room,    ///< A room, a storey or a platform.
+  ground,  ///< Ground under the sky.
+  attic,   ///< Under a slope of the roof, with no way up.
+  top,     ///< The top of something that stands on the floor.
+  hollow,  ///< Inside something without an opening.
+};
+std::string to_string(ClosedKind);
+
+/// Floor that something bars the way to.
+struct ClosedPart {
   double area_m2 = 0;
-  Vec3 place;  ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
-  /// Names of the meshes that are closed doors on the shortest way to it; empty if doors alone do not open it.
+  double share = 0;  ///< Of all floor, reached and closed.
+  Vec3 place;        ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
+  ClosedKind kind = ClosedKind::room;
+  Bar bar = Bar::no_way;
+  double height_m = 0;  ///< Least headroom (`headroom`) or highest step (`climb`, `step`) on the way there.
+  /// Names of the closed leaves and panes on the way to it.
   std::vector<std::string> doors = {};
+  /// True if the surveyor has to decide whether it belongs to the survey: a room or ground, as opposed to an attic, or
+  /// most of all floor.
+  bool to_decide() const { return kind == ClosedKind::room || kind == ClosedKind::ground || share >= 0.5; }
 };
 
 /// The search area: maps (u, v) to the ground through a quadtree (section 4.2). Immutable; copies share storage; safe
@@ -104,7 +134,8 @@ class SearchArea {
   const WalkableOptions& options() const noexcept;  ///< Options it was built with.
   /// Largest area first. For a marked search area, only what lies outside the limits.
   std::span<const LeftOut> left_out() const noexcept;
-  std::span<const NotEntered> not_entered() const noexcept;  ///< Largest first.
+  std::span<const ClosedPart> not_entered() const noexcept;  ///< Closed parts that it leaves out, largest first.
+  std::span<const ClosedPart> entered() const noexcept;      ///< Closed parts that it holds, largest first.
   std::span<const Vec3> entries() const noexcept;            ///< Where the site is entered, survey frame.
   bool on_plane() const noexcept;                            ///< Whether a plane was laid under the model.
   /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so

@@ -52,10 +52,12 @@ std::string to_string(FloorPart::Kind kind);  ///< "storey", "building", "room"
 /// Storeys from below, then buildings, the largest first, then rooms as the scene has them.
 std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations);
 
-/// Lines on the ground alone: a plane laid under the model, storeys, buildings and rooms that hold no station, and
-/// floor that nothing leads to.
+/// Lines on the ground alone: a plane laid under the model, storeys, buildings and rooms that hold no station, closed
+/// floor that is planned as if entered, and closed floor that is not.
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
                                       std::span<const PlacedStation> stations);
+/// One sentence on all closed floor that is planned as if entered, for a headline; empty if there is none.
+std::string entered_text(const SearchArea& area);
 /// Lines as they stand in a terminal: each heading once, texts below each other.
 std::string lines_text(std::span<const SummaryLine> lines);
 /// `summary_lines` for a terminal.

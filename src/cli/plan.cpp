@@ -320,7 +320,9 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
-  const bool whole = !result.area || result.area->not_entered().empty();
+  // Ground that is made up, and floor that is left out, are for the surveyor to decide on.
+  const bool whole = !result.area || (!result.area->on_plane() &&
+                                      std::ranges::none_of(result.area->not_entered(), &ClosedPart::to_decide));
   const int code = whole && (result.problem.requirements.empty() || met(result)) ? exit_ok : exit_unmet;
   const auto show = [&] {
     program.console.print(options.json ? front_json(result, simulator) + "\n"

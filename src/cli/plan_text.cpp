@@ -65,6 +65,8 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   const PlanEntry& entry = result.front[chosen];
   if (result.scene && result.area && result.area->on_plane())
     text = ground_lines(*result.scene, *result.area, entry.stations).front().text + "\n";
+  if (result.area)
+    if (const std::string entered = entered_text(*result.area); !entered.empty()) text += entered + "\n";
   text += unmet_text(result);
   // The summary and the trade-off tell all of a surveyor's plan.
   const bool whole_front = result.trade_off.empty() || result.front.size() > 1;

@@ -231,16 +231,24 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
 }
 
 ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations) {
-  ordered_json parts = ordered_json::array(), closed = parts;
+  ordered_json parts = ordered_json::array(), closed = parts, entered = parts;
   for (const FloorPart& part : floor_parts(scene, area, stations))
     parts.push_back({{"kind", to_string(part.kind)},
                      {"name", part.name},
                      {"area_m2", part.area_m2},
                      {"place", to_json(part.place)},
                      {"stations", part.stations}});
-  for (const NotEntered& part : area.not_entered())
-    closed.push_back({{"area_m2", part.area_m2}, {"place", to_json(part.place)}});
-  return {{"parts", std::move(parts)}, {"closed", std::move(closed)}};
+  const auto closed_part = [](const ClosedPart& part) {
+    return ordered_json{{"area_m2", part.area_m2},      {"share", part.share},        {"place", to_json(part.place)},
+                        {"kind", to_string(part.kind)}, {"bar", to_string(part.bar)}, {"height_m", part.height_m},
+                        {"doors", part.doors}};
+  };
+  for (const ClosedPart& part : area.not_entered()) closed.push_back(closed_part(part));
+  for (const ClosedPart& part : area.entered()) entered.push_back(closed_part(part));
+  return {{"on_plane", area.on_plane()},
+          {"parts", std::move(parts)},
+          {"closed", std::move(closed)},
+          {"entered", std::move(entered)}};
 }
 
 std::string evaluation_json(const Evaluation& evaluation) {

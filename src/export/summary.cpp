@@ -249,22 +249,89 @@ std::string quoted_pattern(std::string name) {
   return "'" + name + "'";
 }
 
-// "behind a closed door: not reached; plan it too with ignore 'Door 12'"
-std::string behind_doors(const NotEntered& part) {
-  std::string text =
-      "behind " +
-      (part.doors.size() == 1 ? std::string("a closed door") : number(part.doors.size()) + " closed doors") +
-      ": not reached; plan it too with ";
-  for (std::size_t k = 0; k < part.doors.size(); ++k)
-    text += (k > 0 ? " and ignore " : "ignore ") + quoted_pattern(part.doors[k]);
+// "behind a closed door", "behind 2 closed doors, a headroom of 1.62 m under them", …
+std::string barred(const ClosedPart& part) {
+  const std::string doors = part.doors.empty()       ? std::string()
+                            : part.doors.size() == 1 ? std::string("a closed door")
+                                                     : number(part.doors.size()) + " closed doors";
+  const std::string metres = fixed(part.height_m, 2) + " m";
+  const std::string too = doors.empty() ? "" : " and " + doors;
+  switch (part.bar) {
+    case Bar::door: return "behind " + (doors.empty() ? std::string("a closed door") : doors);
+    case Bar::headroom: return "behind a headroom of " + metres + too + ", where a person stoops";
+    case Bar::climb: return "up or down a ladder, or a stair as steep as one, with steps of up to " + metres + too;
+    case Bar::step: return (part.height_m > 0 ? "beyond a step of " + metres : "beyond a gap in the floor") + too;
+    case Bar::no_way: break;
+  }
+  return "that nothing leads to";
+}
+
+// The setting that plans a closed part, too.
+std::string planned_with(const ClosedPart& part, const std::string& entries) {
+  if (part.bar != Bar::door || part.doors.empty()) {
+    const Vec3& p = part.place;
+    return entries + "enter " + fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2);
+  }
+  std::string text;
+  for (const std::string& door : part.doors) text += (text.empty() ? "ignore " : " and ignore ") + quoted_pattern(door);
   return text;
+}
+
+// "13.2 m² of floor (4 % of all) at z = 0.15 m (Archive)"
+std::string floor_text(const ClosedPart& part, const Scene& scene) {
+  constexpr double kSkin_m = 0.3;  // a room's box may begin above its floor
+  const auto room = room_at(scene.rooms(), part.place, kSkin_m);
+  return fixed(part.area_m2, 1) + " m² of floor (" + percent(part.share) + " of all) at z = " + fixed(part.place.z, 2) +
+         " m" + (room ? " (" + scene.rooms()[*room].name + ")" : std::string());
+}
+
+// "the door is 'Door 12'", of many the first.
+std::string some_doors(const std::vector<std::string>& doors) {
+  constexpr std::size_t kNamed = 3;
+  std::string text = doors.size() == 1 ? "the door is " : "the doors are ";
+  for (std::size_t k = 0; k < std::min(kNamed, doors.size()); ++k)
+    text += (k > 0 ? ", " : "") + quoted_pattern(doors[k]);
+  return text + (doors.size() > kNamed ? " and " + number(doors.size() - kNamed) + " more" : "");
+}
+
+// A line for each closed part that the surveyor has to decide on, and one for all others of a kind.
+void add_closed(std::vector<SummaryLine>& lines, const Scene& scene, const SearchArea& area) {
+  constexpr std::size_t kMost = 5;
+  std::string entries;
+  for (const Vec3& p : area.entries())
+    entries += "enter " + fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2) + " and ";
+  double rest = 0;
+  std::size_t told = 0, more = 0;
+  for (const ClosedPart& part : area.not_entered()) {
+    if (!part.to_decide()) continue;
+    if (told++ < kMost)
+      lines.push_back({"closed", floor_text(part, scene) + " " + barred(part) + ": not reached; plan it too with " +
+                                     planned_with(part, entries)});
+    else
+      rest += part.area_m2, ++more;
+  }
+  if (more > 0) lines.push_back({"closed", fixed(rest, 1) + " m² of floor in " + number(more) + " more such parts"});
+  for (const auto& [kind, where] : {std::pair{ClosedKind::attic, "under slopes of roofs, with no way up"},
+                                    std::pair{ClosedKind::top, "on top of what stands on the floor"},
+                                    std::pair{ClosedKind::hollow, "inside of what has no opening"}}) {
+    double sum = 0, share = 0;
+    const ClosedPart* largest = nullptr;
+    for (const ClosedPart& part : area.not_entered()) {
+      if (part.kind != kind || part.to_decide()) continue;
+      sum += part.area_m2, share += part.share;
+      if (!largest) largest = &part;
+    }
+    if (largest)
+      lines.push_back({"closed", fixed(sum, 1) + " m² (" + percent(share) + " of all floor) " + where +
+                                     ", not planned: the largest at " + fixed(largest->place.x, 2) + "," +
+                                     fixed(largest->place.y, 2) + "," + fixed(largest->place.z, 2)});
+  }
 }
 
 }  // namespace
 
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
                                       std::span<const PlacedStation> stations) {
-  constexpr std::size_t kMost = 5;
   std::vector<SummaryLine> lines;
   if (area.on_plane()) lines.push_back({"ground", "none in the model: the stations stand on " + area.description()});
   if (std::ranges::any_of(scene.meshes(), [](const MeshInfo& mesh) { return mesh.name == kRoomFloors; }))
@@ -272,29 +339,31 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
                      "laid at the bottom of rooms that have no floor in the model, whose slabs may be in another file; "
                      "it blocks rays and is not surveyed"});
   if (std::ranges::any_of(stations, active)) add_empty_floor(lines, floor_parts(scene, area, stations));
-  const auto place = [](const Vec3& p) { return fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2); };
-  std::string entries;
-  for (const Vec3& entry : area.entries()) entries += "enter " + place(entry) + " and ";
+  constexpr std::size_t kMost = 5;
+  const std::span<const ClosedPart> entered = area.entered();
   double rest = 0;
-  const std::span<const NotEntered> parts = area.not_entered();
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const NotEntered& part = parts[k];
-    if (k >= kMost) {
-      rest += part.area_m2;
-      continue;
-    }
-    constexpr double kSkin_m = 0.3;  // a room's box may begin above its floor
-    const auto room = room_at(scene.rooms(), part.place, kSkin_m);
-    const std::string why = part.doors.empty() ? "that nothing leads to: not reached; plan it too with " + entries +
-                                                     "enter " + place(part.place)
-                                               : behind_doors(part);
-    lines.push_back({"closed", fixed(part.area_m2, 1) + " m² of floor at z = " + fixed(part.place.z, 2) + " m" +
-                                   (room ? " (" + scene.rooms()[*room].name + ")" : std::string()) + " " + why});
-  }
+  for (std::size_t k = 0; k < entered.size(); ++k)
+    if (k < kMost)
+      lines.push_back(
+          {"entered", floor_text(entered[k], scene) + " " + barred(entered[k]) + ": planned as if entered" +
+                          (entered[k].doors.empty() ? std::string() : "; " + some_doors(entered[k].doors))});
+    else
+      rest += entered[k].area_m2;
   if (rest > 0)
     lines.push_back(
-        {"closed", fixed(rest, 1) + " m² of floor in " + std::to_string(parts.size() - kMost) + " more such parts"});
+        {"entered", fixed(rest, 1) + " m² of floor in " + number(entered.size() - kMost) + " more such parts"});
+  add_closed(lines, scene, area);
   return lines;
+}
+
+std::string entered_text(const SearchArea& area) {
+  const std::span<const ClosedPart> entered = area.entered();
+  if (entered.empty()) return {};
+  double sum = 0, share = 0;
+  for (const ClosedPart& part : entered) sum += part.area_m2, share += part.share;
+  return "planned as if entered: " + fixed(sum, 1) + " m² of floor (" + percent(share) + " of all) " +
+         (entered.size() > 1 ? "in " + number(entered.size()) + " parts, the largest " : std::string()) +
+         barred(entered.front());
 }
 
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {

@@ -18,6 +18,7 @@
 #include "core/parallel.hpp"
 #include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
+#include "scene/told_by_name.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -41,6 +42,11 @@ Box box_of(const Corners& t) {
   Box box;
   for (const glm::dvec3& p : t) box.extend(to_vec3(p));
   return box;
+}
+double longest_edge(const Corners& t) {
+  double longest = 0;
+  for (int e = 0; e < 3; ++e) longest = std::max(longest, length(glm::dvec2(t[(e + 1) % 3] - t[e])));
+  return longest;
 }
 double squared(const glm::dvec2& v) { return v.x * v.x + v.y * v.y; }
 double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -147,6 +153,18 @@ void raise_to(float& top, float z) {
   }
 }
 
+// True for a closed leaf or a pane: it stops people until it is opened, or while nobody finds the door in it.
+bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
+  constexpr std::uint32_t kMostTriangles = 20'000;  // of a leaf, where nodes share meshes
+  const MeshRange& range = scene.ranges[mesh];
+  if (scene.shares() && range.triangle_count > kMostTriangles) return false;
+  const auto leaf = leaf_around(
+      range.triangle_count, [&](std::uint32_t triangle) { return corners_of(scene, range.first_triangle + triangle); });
+  constexpr double kPanel_m = 0.06;  // thinner than a wall
+  return leaf && (scene.meshes[mesh].glass || is_plain_leaf(*leaf) || leaf->thickness <= kPanel_m ||
+                  names_a_leaf(scene.meshes[mesh].name));
+}
+
 }  // namespace
 
 GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane)
@@ -154,6 +172,7 @@ GroundField::GroundField(const SceneData& scene, const WalkableOptions& options,
       climb_(options.climb_m * (1 + tolerance_share)),
       height_(options.passage_height_m * (1 - tolerance_share)),
       slope_(std::max(options.max_slope.in_radians(), Angle::degrees(walking_slope_degrees).in_radians())),
+      opaque_(scene.opaque_count()),
       border_(plane.has_value()) {
   lay_grid(scene, plane);
   find_samples(scene, plane);
@@ -177,28 +196,58 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   const std::size_t count = std::size_t{columns_} * rows_;
   top_.assign(count, -std::numeric_limits<float>::infinity());
   const double least_up = std::cos(slope_);
-  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> collected;
+  // Nobody stands on water.
+  std::vector<std::uint8_t> water(scene.meshes.size());
+  std::ranges::transform(scene.meshes, water.begin(), [](const MeshInfo& mesh) { return names_water(mesh.name); });
+  struct Found {
+    std::vector<std::uint64_t> wide, thin, covered;  // covered: by narrow triangles at the middle
+  };
+  tbb::enumerable_thread_specific<Found> collected;
   const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
-    auto& own = collected.local();
+    Found& own = collected.local();
     for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
       const Corners t = corners_of(scene, i);
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       if (n.z == 0) continue;
-      const bool walkable = !plane && n.z >= least_up * length(n);
+      const bool walkable = !plane && n.z >= least_up * length(n) && !water[scene.mesh_of(i)];
+      // Bars of a grating lie between the middles of columns: they carry where they pass a column, at its height there.
+      const bool narrow = walkable && n.z < cell_ * longest_edge(t);
+      if (narrow) {
+        const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
+        const auto [lowest, highest] = std::minmax({t[0].z, t[1].z, t[2].z});
+        for_rows(grid, t, cell_ / 2, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
+          for (std::uint32_t c = from; c <= to; ++c) {
+            const std::uint32_t column = row * columns_ + c;
+            const glm::dvec2 p = middle(column);
+            if (squared_distance(p, plan) > cell_ * cell_ / 4) continue;
+            const double z = t[0].z - (n.x * (p.x - t[0].x) + n.y * (p.y - t[0].y)) / n.z;
+            own.thin.push_back(std::uint64_t{column} << 32 |
+                               ordered(static_cast<float>(std::clamp(z, lowest, highest))));
+          }
+        });
+      }
       for_rows(grid, t, 0, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
         for (std::uint32_t c = from; c <= to; ++c) {
           const std::uint32_t column = row * columns_ + c;
           const glm::dvec2 p = middle(column);
           const auto z = static_cast<float>(t[0].z - (n.x * (p.x - t[0].x) + n.y * (p.y - t[0].y)) / n.z);
           raise_to(top_[column], z);
-          if (walkable) own.push_back(std::uint64_t{column} << 32 | ordered(z));
+          if (walkable) (narrow ? own.covered : own.wide).push_back(std::uint64_t{column} << 32 | ordered(z));
         }
       });
     }
   };
   parallel::for_all(tbb::blocked_range<std::uint32_t>(0, scene.triangle_count(), 64), look);
-  std::vector<std::uint64_t> all;
-  for (const auto& some : collected) all.insert(all.end(), some.begin(), some.end());
+  std::vector<std::uint64_t> all, wide, covered;
+  for (const Found& some : collected) {
+    all.insert(all.end(), some.thin.begin(), some.thin.end());
+    wide.insert(wide.end(), some.wide.begin(), some.wide.end());
+    covered.insert(covered.end(), some.covered.begin(), some.covered.end());
+  }
+  const bool any_thin = !all.empty();
+  all.insert(all.end(), wide.begin(), wide.end());
+  all.insert(all.end(), covered.begin(), covered.end());
+  if (any_thin) parallel::sort(wide.begin(), wide.end()), parallel::sort(covered.begin(), covered.end());
   if (plane)
     for (std::size_t column = 0; column < count; ++column)
       all.push_back(std::uint64_t{column} << 32 | ordered(static_cast<float>(plane->z)));
@@ -207,12 +256,24 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
   // Triangles that meet over a middle, and surfaces that nearly touch, count as one sample.
   const auto apart = static_cast<float>(tolerance_share * height_);
   first_.assign(count + 1, 0);
+  const auto is_next = [&](const std::vector<std::uint64_t>& keys, std::size_t& at, std::uint64_t key) {
+    while (at < keys.size() && keys[at] < key) ++at;
+    return at < keys.size() && keys[at] == key;
+  };
+  std::size_t next_wide = 0, next_covered = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto column = static_cast<std::uint32_t>(all[i] >> 32);
     const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
-    if (!column_.empty() && column_.back() == column && z - z_.back() < apart) continue;
+    const bool is_thin = any_thin && !is_next(wide, next_wide, all[i]);
+    const bool at_middle = is_thin && is_next(covered, next_covered, all[i]);
+    if (!column_.empty() && column_.back() == column && z - z_.back() < apart) {
+      if (!is_thin) taken_.back() = 0;
+      if (at_middle && (taken_.back() & kThin)) taken_.back() |= kCovered;
+      continue;
+    }
     column_.push_back(column);
     z_.push_back(z);
+    taken_.push_back(static_cast<std::uint8_t>((is_thin ? kThin : 0) | (at_middle ? kCovered : 0)));
     ++first_[column + 1];
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
@@ -220,7 +281,6 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
 
 void GroundField::find_room(const SceneData& scene) {
   const Grid grid{corner_, cell_, columns_, rows_};
-  taken_.assign(z_.size(), 0);
   std::array<double, cylinders> radius;
   for (int i = 0; i < cylinders; ++i)
     radius[i] = std::max((1 - tolerance_share) * (i + 1) * radius_ / cylinders - cell_ / 2, half_diagonal * cell_);
@@ -232,7 +292,14 @@ void GroundField::find_room(const SceneData& scene) {
     return std::atomic_ref<std::uint8_t>(taken_[sample]).load(std::memory_order_relaxed);
   };
   const double rounding = 1e-6 * cell_;
-  const auto look = [&](const Corners& t, bool door) {
+  enum Blocks : std::uint8_t { everybody, nobody, until_opened };
+  std::vector<Blocks> blocks(scene.meshes.size(), everybody);
+  parallel::for_all(std::size_t{0}, blocks.size(), [&](std::size_t m) {
+    if (scene.meshes[m].door || is_closed_leaf(scene, m)) blocks[m] = scene.meshes[m].door ? nobody : until_opened;
+  });
+  tbb::enumerable_thread_specific<std::vector<std::pair<std::uint32_t, std::uint32_t>>> at_leaves;
+  const auto look = [&](const Corners& t, std::uint32_t mesh) {
+    const bool door = blocks[mesh] != everybody;
     const Box box = box_of(t);
     const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
     for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
@@ -243,30 +310,35 @@ void GroundField::find_room(const SceneData& scene) {
           const double low = z_[s] + climb_, high = z_[s] + height_;
           if (box.max.z <= low || box.min.z >= high) continue;
           const std::uint8_t known = known_of(s);
-          const std::uint8_t all = door ? at_door : beside | overhead;  // that this triangle may mark
-          if ((known & all) == all) continue;
+          if (!door && (known & (kBeside | kOverhead | kLow)) == (kBeside | kOverhead | kLow)) continue;
           const glm::dvec2 p = middle(column);
           if (whole < 0) whole = squared_distance(p, plan);
           if (whole >= widest * widest) break;
           if (door) {
-            mark(s, at_door);
+            mark(s, blocks[mesh] == nobody ? kAtDoor : kLeaf);
+            if (blocks[mesh] == until_opened) at_leaves.local().emplace_back(s, mesh);
             continue;
           }
-          if (whole > 0 && (known & beside)) continue;
-          for (int k = cylinders - 1; k >= 0; --k) {
-            const double bottom = low + k * shorter, top = high - k * shorter;
-            if (whole >= radius[k] * radius[k]) break;
-            if (box.max.z <= bottom || box.min.z >= top) continue;
-            double distance = whole;
-            if (box.min.z < bottom || box.max.z > top) {
-              const Slice part = slice(t, bottom, top);
-              if (part.count == 0) continue;
-              distance = squared_distance(p, std::span(part.corners).first(part.count));
+          // Squared distance to what comes into the outline of a person of this height; none: nothing does.
+          const auto distance_within = [&](double height) -> std::optional<double> {
+            for (int k = cylinders - 1; k >= 0; --k) {
+              const double bottom = low + k * shorter, top = height - k * shorter;
+              if (whole >= radius[k] * radius[k]) break;
+              if (box.max.z <= bottom || box.min.z >= top) continue;
+              double distance = whole;
+              if (box.min.z < bottom || box.max.z > top) {
+                const Slice part = slice(t, bottom, top);
+                if (part.count == 0) continue;
+                distance = squared_distance(p, std::span(part.corners).first(part.count));
+              }
+              if (distance < radius[k] * radius[k]) return distance;
             }
-            if (distance >= radius[k] * radius[k]) continue;
-            mark(s, distance == 0 ? overhead : beside);
-            break;
-          }
+            return std::nullopt;
+          };
+          if (!(whole > 0 && (known & kBeside)))
+            if (const auto distance = distance_within(high)) mark(s, *distance == 0 ? kOverhead : kBeside);
+          const double stooped = z_[s] + kStoops * height_;
+          if (!(known & kLow) && box.min.z < stooped && distance_within(stooped)) mark(s, kLow);
         }
       }
     });
@@ -292,32 +364,34 @@ void GroundField::find_room(const SceneData& scene) {
   };
   const auto look_at_block = [&](std::uint32_t first, std::uint32_t end, std::vector<Open>& open) {
     std::array<Corners, block> corners;
-    std::array<bool, block> doors{};
+    std::array<std::uint32_t, block> meshes{};
+    bool doors = false;
     Box all;
     std::size_t mesh = scene.mesh_of(first);
     for (std::uint32_t i = first; i < end; ++i) {
       while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
-      doors[i - first] = scene.meshes[mesh].door;
+      meshes[i - first] = static_cast<std::uint32_t>(mesh);
+      doors = doors || blocks[mesh] != everybody;
       corners[i - first] = corners_of(scene, i);
       all = united(all, box_of(corners[i - first]));
     }
     const auto rows = grid.rows_within(all.min.y - widest - rounding, all.max.y + widest + rounding),
                columns = grid.columns_within(all.min.x - widest - rounding, all.max.x + widest + rounding);
-    const bool compared =
-        std::ranges::count(doors, true) == 0 && std::size_t{rows.count()} * columns.count() <= most_compared;
+    const bool compared = !doors && std::size_t{rows.count()} * columns.count() <= most_compared;
     open.clear();
     for (std::uint32_t row = rows.first; compared && row < rows.end; ++row)
       for (std::uint32_t column = row * columns_ + columns.first; column < row * columns_ + columns.end; ++column)
         for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
           const std::uint8_t known = known_of(s);
-          if ((known & (beside | overhead)) == (beside | overhead)) continue;
-          const Open sample{middle(column), z_[s] + climb_, z_[s] + height_, (known & beside) != 0};
+          if ((known & (kBeside | kOverhead | kLow)) == (kBeside | kOverhead | kLow)) continue;
+          const bool only_over = (known & (kBeside | kLow)) == (kBeside | kLow);
+          const Open sample{middle(column), z_[s] + climb_, z_[s] + height_, only_over};
           if (may_mark(all, sample)) open.push_back(sample);
         }
     for (std::uint32_t i = 0; i < end - first; ++i) {
       const Box box = box_of(corners[i]);
       if (!compared || std::ranges::any_of(open, [&](const Open& o) { return may_mark(box, o); }))
-        look(corners[i], doors[i]);
+        look(corners[i], meshes[i]);
     }
   };
   parallel::for_all(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + block - 1) / block),
@@ -326,30 +400,9 @@ void GroundField::find_room(const SceneData& scene) {
                       for (std::uint32_t k = range.begin(); k != range.end(); ++k)
                         look_at_block(k * block, std::min(scene.triangle_count(), (k + 1) * block), open);
                     });
-}
-
-template <class Visit>
-void GroundField::for_neighbours(std::uint32_t sample, Visit&& visit) const {
-  const std::uint32_t column = column_[sample], x = column % columns_, y = column / columns_;
-  const double step = std::max(climb_, 1.1 * std::tan(slope_) * std::sqrt(2.0) * cell_);
-  for (std::uint32_t ny = y > 0 ? y - 1 : 0; ny <= std::min(y + 1, rows_ - 1); ++ny)
-    for (std::uint32_t nx = x > 0 ? x - 1 : 0; nx <= std::min(x + 1, columns_ - 1); ++nx) {
-      if (nx == x && ny == y) continue;
-      const std::uint32_t other = ny * columns_ + nx;
-      for (std::uint32_t s = first_[other]; s < first_[other + 1]; ++s)
-        if (std::abs(double{z_[s]} - z_[sample]) <= step) visit(s);
-    }
-}
-
-// Visits the columns `far` steps away along x and y.
-template <class Visit>
-void GroundField::for_columns_beside(std::uint32_t column, std::int64_t far, Visit&& visit) const {
-  const std::int64_t x = column % columns_, y = column / columns_;
-  for (const auto& [dx, dy] : {std::pair<int, int>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-    const std::int64_t nx = x + dx * far, ny = y + dy * far;
-    if (nx < 0 || ny < 0 || nx >= columns_ || ny >= rows_) continue;
-    visit(static_cast<std::uint32_t>(ny * columns_ + nx));
-  }
+  for (const auto& some : at_leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
+  parallel::sort(leaves_.begin(), leaves_.end(), std::less<>{});
+  leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
 }
 
 // Whether another surface of the same part lies above within a person's height: a floor's slab below its finish, or
@@ -364,7 +417,7 @@ void GroundField::find_parts() {
   part_.assign(z_.size(), nowhere);
   std::vector<std::uint32_t> open;
   for (std::uint32_t seed = 0; seed < z_.size(); ++seed) {
-    if ((taken_[seed] & (beside | overhead)) || part_[seed] != nowhere) continue;
+    if ((taken_[seed] & kObstacles) || part_[seed] != nowhere) continue;
     const auto number = static_cast<std::uint32_t>(parts_.size());
     Part& part = parts_.emplace_back();
     part.first = seed;
@@ -373,14 +426,22 @@ void GroundField::find_parts() {
     while (!open.empty()) {
       const std::uint32_t s = open.back();
       open.pop_back();
-      part.at_door = part.at_door || (taken_[s] & at_door);
+      part.at_door = part.at_door || (taken_[s] & kAtDoor);
       for_neighbours(s, [&](std::uint32_t n) {
-        if ((taken_[n] & (beside | overhead)) || part_[n] != nowhere) return;
+        if ((taken_[n] & kObstacles) || part_[n] != nowhere) return;
         part_[n] = number;
         open.push_back(n);
       });
     }
   }
+  begin_.assign(parts_.size() + 1, 0);
+  for (const std::uint32_t part : part_)
+    if (part != nowhere) ++begin_[part + 1];
+  for (std::size_t i = 0; i < parts_.size(); ++i) begin_[i + 1] += begin_[i];
+  members_.resize(begin_.back());
+  std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
+  for (std::uint32_t s = 0; s < z_.size(); ++s)
+    if (part_[s] != nowhere) members_[at[part_[s]]++] = s;
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (part_[s] == nowhere || is_layer(s)) continue;
     Part& part = parts_[part_[s]];
@@ -401,12 +462,11 @@ void GroundField::find_parts() {
   }
 }
 
-GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, const Part& part, std::uint32_t number) const {
+GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, std::uint32_t number) const {
   constexpr std::size_t most = 2000;
   constexpr int ways = 16;
   std::vector<std::uint32_t> edge;
-  for (std::uint32_t s = part.first; s < z_.size(); ++s) {
-    if (part_[s] != number) continue;
+  for (const std::uint32_t s : members(number)) {
     int neighbours = 0;
     for_neighbours(s, [&](std::uint32_t n) { neighbours += part_[n] == number; });
     if (neighbours < 8) edge.push_back(s);
@@ -447,7 +507,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
     if (part.area(cell_) < room()) continue;
     const bool sky = 2 * part.in_the_sky > part.samples;
     const Candidate candidate{i, part.area(cell_), part.mean_z, sky};
-    if (sky && 2 * part.above_others > part.samples)
+    if (is_roof(part))
       roofs.push_back(candidate);
     else if (sky || part.at_door)
       open.push_back(candidate);
@@ -469,12 +529,16 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   };
   const double largest = std::max(largest_of(open), largest_of(closed));
   only_above(open, large_open * largest);
+  // A block of terrain ends like the top of something, so that tops go only before other ground under the sky.
+  std::vector<Candidate> ground;
+  for (const Candidate& c : open)
+    if (c.sky && !is_top(tree, c.part)) ground.push_back(c);
   std::vector<Candidate> small = closed;
   std::erase_if(small, [&](const Candidate& c) { return c.area >= large_open * largest || c.area < 10 * room(); });
   only_above(closed, large_open * largest);
   const auto move_to_open = [&](std::vector<Candidate>& some, double most) {
     std::erase_if(some, [&](const Candidate& c) {
-      const WaysOut ways = ways_out(tree, parts_[c.part], c.part);
+      const WaysOut ways = ways_out(tree, c.part);
       if (!ways.any || ways.share > most) return false;
       open.push_back(c);
       return true;
@@ -493,7 +557,11 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
-  only_lowest(choice);
+  // One enters from the largest ground under the sky at any height, but a building from its lowest storey.
+  if (!ground.empty() && largest_of(ground) >= largest_of(open))
+    choice = ground;
+  else
+    only_lowest(choice);
   std::ranges::sort(choice, [](const Candidate& a, const Candidate& b) {
     return a.area != b.area ? a.area > b.area : a.part < b.part;
   });
@@ -508,12 +576,12 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
 
 glm::dvec3 GroundField::middle_of(std::uint32_t part) const {
   glm::dvec2 mean(0);
-  for (std::uint32_t s = parts_[part].first; s < z_.size(); ++s)
-    if (part_[s] == part && !is_layer(s)) mean += middle(column_[s]);
+  for (const std::uint32_t s : members(part))
+    if (!is_layer(s)) mean += middle(column_[s]);
   mean /= static_cast<double>(parts_[part].samples);
   std::uint32_t best = parts_[part].first;
-  for (std::uint32_t s = best; s < z_.size(); ++s)
-    if (part_[s] == part && squared(middle(column_[s]) - mean) < squared(middle(column_[best]) - mean)) best = s;
+  for (const std::uint32_t s : members(part))
+    if (squared(middle(column_[s]) - mean) < squared(middle(column_[best]) - mean)) best = s;
   const glm::dvec2 p = middle(column_[best]);
   return {p.x, p.y, z_[best]};
 }
@@ -559,61 +627,11 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
   }
   tell_apart();
   look_beyond_high_steps();
-}
-
-std::vector<GroundField::ClosedDoor> GroundField::closed_doors(const SceneData& scene) const {
-  constexpr double kThreshold_m = 0.35;             // height of a sill, or of the gap below a leaf
-  constexpr std::uint32_t kMostTriangles = 20'000;  // of a leaf, where nodes share meshes
-  std::vector<ClosedDoor> doors;
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    const MeshRange& range = scene.ranges[m];
-    if (scene.meshes[m].door || (scene.shares() && range.triangle_count > kMostTriangles)) continue;
-    const auto leaf = leaf_around(range.triangle_count, [&](std::uint32_t triangle) {
-      return corners_of(scene, range.first_triangle + triangle);
-    });
-    if (!leaf || !(is_plain_leaf(*leaf) || names_a_door(scene.meshes[m].name))) continue;
-    ClosedDoor door{m, {nowhere, nowhere}};
-    for (int side = 0; side < 2; ++side)
-      for (double away = 0.25; away <= 4 && door.parts[side] == nowhere; away += 0.25) {
-        const glm::dvec3 p = leaf->middle + leaf->through * ((side ? 1 : -1) * (leaf->thickness / 2 + away * radius_));
-        const auto column = column_at(p.x, p.y);
-        const auto sample = column ? nearest(*column, p.z - leaf->height / 2, kThreshold_m) : std::nullopt;
-        if (sample) door.parts[side] = part_[*sample];
-      }
-    if (door.parts[0] != nowhere && door.parts[1] != nowhere && door.parts[0] != door.parts[1]) doors.push_back(door);
-  }
-  return doors;
-}
-
-std::vector<GroundField::NotEntered> GroundField::rooms_not_entered(const SceneData& scene) const {
-  const double least = 3 * room();  // 2.7 m² for a passage of 0.6 m, to which walls' margins come
-  const double hall = 10 * room();
-  std::vector<NotEntered> rooms;
-  std::vector<std::uint32_t> part_of;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
-    if ((access_[i] == Access::sealed && parts_[i].area(cell_) >= least) ||
-        (access_[i] == Access::unreachable && parts_[i].area(cell_) >= hall &&
-         2 * parts_[i].in_the_sky <= parts_[i].samples))
-      rooms.push_back({parts_[i].area(cell_), middle_of(i)}), part_of.push_back(i);
-  if (rooms.empty()) return rooms;
-  // From what is reached through ever more doors.
-  const std::vector<ClosedDoor> doors = closed_doors(scene);
-  std::map<std::uint32_t, std::vector<std::uint32_t>> way;  // doors on the way to each part found
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < parts_.size(); ++i)
-    if (access_[i] == Access::reached) way[i] = {}, open.push_back(i);
-  for (std::size_t k = 0; k < open.size(); ++k)
-    for (const ClosedDoor& door : doors)
-      for (int side = 0; side < 2; ++side)
-        if (door.parts[side] == open[k] && !way.contains(door.parts[1 - side])) {
-          std::vector<std::uint32_t> to = way[open[k]];
-          to.push_back(door.mesh);
-          way[door.parts[1 - side]] = std::move(to), open.push_back(door.parts[1 - side]);
-        }
-  for (std::size_t k = 0; k < rooms.size(); ++k)
-    if (const auto found = way.find(part_of[k]); found != way.end()) rooms[k].doors = found->second;
-  std::ranges::stable_sort(rooms, std::ranges::greater{}, &NotEntered::area_m2);
-  return rooms;
+    if (may_be_told(i)) {
+      climbs_ = climbs(tree);
+      break;
+    }
 }
 
 double GroundField::outline() const {
@@ -701,9 +719,8 @@ double GroundField::walled_area(const MeshTree& tree, double highest_z) const {
   double area = 0;
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
-    const bool roof = 2 * part.in_the_sky > part.samples && 2 * part.above_others > part.samples;
-    if (roof || part.mean_z > highest_z || part.area(cell_) < 10 * room()) continue;
-    if (ways_out(tree, part, i).share <= kMostOpen) area += part.area(cell_);
+    if (is_roof(part) || part.mean_z > highest_z || part.area(cell_) < 10 * room()) continue;
+    if (ways_out(tree, i).share <= kMostOpen) area += part.area(cell_);
   }
   return area;
 }
@@ -745,7 +762,7 @@ Access GroundField::at(const glm::dvec3& place) const {
   }
   if (!sample) return Access::narrow;
   if (part_[*sample] != nowhere) return access_[part_[*sample]];
-  return taken_[*sample] & overhead ? Access::headroom : Access::narrow;
+  return taken_[*sample] & kOverhead ? Access::headroom : Access::narrow;
 }
 
 double GroundField::ground_area(double highest_z) const {

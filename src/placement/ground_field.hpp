@@ -3,9 +3,12 @@
 // their connected parts.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/glm.hpp"
@@ -47,23 +50,44 @@ class GroundField {
   GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane = {});
 
   // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
-  // where people enter. These are the lowest large parts that are in the open or lead there, by a door or an opening,
-  // as several dwellings do; without one, the rooms that have a way out, however small; else the largest of the lowest.
+  // where people enter. That is the largest ground under the sky, at any height; without one, the lowest large parts
+  // that lead into the open, by a door or an opening, as several dwellings do; else the rooms that have a way out,
+  // however small; else the largest of the lowest.
   // Throws Error invalid_argument if there is no room for a person near one of `enter`.
   void reach(const MeshTree& tree, std::span<const glm::dvec3> enter);
+  // Reaches parts that something bars the way to, too, as if one had entered them: ground under the sky, and rooms,
+  // from a tenth of the reached floor or 20 m² on. REQUIRES: reach() was called.
+  void enter_closed(const MeshTree& tree);
 
   // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was
   // called.
   Access at(const glm::dvec3& place) const;
   // Entrances of the reached parts, the largest first; empty if nothing is reached.
   const std::vector<glm::dvec3>& entries() const { return entries_; }
-  // Sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
-  struct NotEntered {
+  // A part that something bars the way to.
+  struct ClosedPart {
     double area_m2 = 0;
     glm::dvec3 middle{};
-    std::vector<std::uint32_t> doors = {};  // meshes of closed doors on the way from what is reached
+    ClosedKind kind = ClosedKind::room;
+    Bar bar = Bar::no_way;
+    double height_m = 0;                    // least headroom, or highest step, on the way there
+    std::vector<std::uint32_t> doors = {};  // meshes of closed leaves and panes on the way from what is reached
   };
-  std::vector<NotEntered> rooms_not_entered(const SceneData& scene) const;
+  // Parts that enter_closed() reached, the largest first.
+  const std::vector<ClosedPart>& entered() const { return entered_; }
+  // Other sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
+  // REQUIRES: reach() was called.
+  std::vector<ClosedPart> not_entered(const MeshTree& tree) const;
+  // Area of the reached parts.
+  double reached_area() const;
+  // Area of ground under the sky, reached or not, at any height: no roof, and no top of something that stands there.
+  double open_ground_area(const MeshTree& tree) const;
+  // Floors of gratings and boards that no triangle of some width covers: rectangles at the reached samples.
+  struct Patch {
+    glm::dvec3 low;
+    glm::dvec2 high;
+  };
+  std::vector<Patch> thin_floors() const;
   // Area of the columns that hold anything.
   double outline() const;
   // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
@@ -88,6 +112,16 @@ class GroundField {
     double area(double cell) const { return static_cast<double>(samples) * cell * cell; }
   };
   static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
+  // Facts about a sample, as bits.
+  static constexpr std::uint8_t kBeside = 1;    // something stands beside a person there
+  static constexpr std::uint8_t kOverhead = 2;  // something hangs above
+  static constexpr std::uint8_t kAtDoor = 4;    // a door that counts as open stands there
+  static constexpr std::uint8_t kLeaf = 8;      // a closed leaf or a pane stands there
+  static constexpr std::uint8_t kLow = 16;      // something is beside or above a person who stoops
+  static constexpr std::uint8_t kThin = 32;     // all surfaces there are narrower than a column
+  static constexpr std::uint8_t kCovered = 64;  // one of these lies at the middle of the column
+  static constexpr std::uint8_t kObstacles = kBeside | kOverhead | kLeaf;  // to a person who walks upright
+  static constexpr double kStoops = 0.8;                                   // of the height of a passage: 1.5 m
 
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
   void find_samples(const SceneData& scene, std::optional<Plane> plane);
@@ -99,15 +133,36 @@ class GroundField {
     bool any = false;
     double share = 0;  // of all directions at the edge
   };
-  WaysOut ways_out(const MeshTree& tree, const Part& part, std::uint32_t number) const;
+  WaysOut ways_out(const MeshTree& tree, std::uint32_t part) const;
   std::vector<std::uint32_t> choose_parts(const MeshTree& tree) const;
   // The sample of a part nearest to its middle.
   glm::dvec3 middle_of(std::uint32_t part) const;
-  // Parts on both sides of each closed door.
-  struct ClosedDoor {
-    std::uint32_t mesh, parts[2];
+  // How hard it is to get to a sample from what is reached: the hardest thing on the easiest way.
+  // Steps have a class for each tenth of a metre or so, so that the lowest is found.
+  enum Effort : std::uint8_t { walk, through_door, step_over, stoop, climb, high_step, kEfforts = high_step + 8 };
+  struct Ways {
+    std::vector<std::uint8_t> effort;  // per sample; kEfforts: none
+    std::vector<std::uint32_t> from;   // per sample: the one before it
   };
-  std::vector<ClosedDoor> closed_doors(const SceneData& scene) const;
+  Ways ways_from_reached() const;
+  // Samples that are linked by rungs or steep steps, both ways, sorted.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs(const MeshTree& tree) const;
+  std::vector<std::uint32_t> narrow_ones(std::vector<std::uint8_t>& marked) const;
+  ClosedPart closed_part(const MeshTree& tree, const Ways& ways, std::uint32_t part) const;
+  // The closed part through which the way to each closed part leads first.
+  std::vector<std::uint32_t> first_closed(const Ways& ways) const;
+  std::vector<std::uint32_t> easiest_samples(const Ways& ways) const;
+  bool is_roof(const Part& part) const {
+    return 2 * part.in_the_sky > part.samples && 2 * part.above_others > part.samples;
+  }
+  bool is_attic(std::uint32_t part) const;
+  bool is_wide(std::uint32_t part) const;
+  // True for the top of something: steep faces lead down under most of its edge.
+  bool is_top(const MeshTree& tree, std::uint32_t part) const;
+  // True if one sees what is reached, or out of the model, from it.
+  bool has_openings(const MeshTree& tree, std::uint32_t part) const;
+  bool may_be_told(std::uint32_t part) const;
+  bool has_room(std::uint32_t sample) const;
   void tell_apart();
   void look_beyond_high_steps();
 
@@ -124,8 +179,13 @@ class GroundField {
   template <class Visit>
   void for_neighbours(std::uint32_t sample, Visit&& visit) const;
 
+  std::span<const std::uint32_t> members(std::uint32_t part) const {
+    return std::span(members_).subspan(begin_[part], begin_[part + 1] - begin_[part]);
+  }
+
   double radius_, climb_, height_, slope_;
-  bool border_ = false;  // a plane is laid, and people enter from its border
+  std::uint32_t opaque_;  // triangles from here on are of glass
+  bool border_ = false;   // a plane is laid, and people enter from its border
   double cell_ = 0;
   glm::dvec2 corner_{};
   std::uint32_t columns_ = 0, rows_ = 0;
@@ -134,11 +194,39 @@ class GroundField {
   std::vector<std::uint32_t> column_;  // per sample
   std::vector<float> z_;               // per sample
   std::vector<std::uint8_t> taken_;    // per sample: bits of obstacles to a person there
-  std::vector<std::uint32_t> part_;    // per sample with room
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> leaves_;  // samples at closed leaves and panes, and their mesh
+  std::vector<std::uint32_t> part_;                              // per sample with room
   std::vector<Part> parts_;
-  std::vector<Access> access_;  // per part
+  std::vector<std::uint32_t> begin_, members_;                   // samples with room, by their parts
+  std::vector<Access> access_;                                   // per part
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs_;  // if any part is to be told
   std::vector<glm::dvec3> entries_;
+  std::vector<ClosedPart> entered_;
   std::optional<HighSteps> high_steps_;
 };
+
+template <class Visit>
+void GroundField::for_neighbours(std::uint32_t sample, Visit&& visit) const {
+  const std::uint32_t column = column_[sample], x = column % columns_, y = column / columns_;
+  const double step = std::max(climb_, 1.1 * std::tan(slope_) * std::sqrt(2.0) * cell_);
+  for (std::uint32_t ny = y > 0 ? y - 1 : 0; ny <= std::min(y + 1, rows_ - 1); ++ny)
+    for (std::uint32_t nx = x > 0 ? x - 1 : 0; nx <= std::min(x + 1, columns_ - 1); ++nx) {
+      if (nx == x && ny == y) continue;
+      const std::uint32_t other = ny * columns_ + nx;
+      for (std::uint32_t s = first_[other]; s < first_[other + 1]; ++s)
+        if (std::abs(double{z_[s]} - z_[sample]) <= step) visit(s);
+    }
+}
+
+// Visits the columns `far` steps away along x and y.
+template <class Visit>
+void GroundField::for_columns_beside(std::uint32_t column, std::int64_t far, Visit&& visit) const {
+  const std::int64_t x = column % columns_, y = column / columns_;
+  for (const auto& [dx, dy] : {std::pair<int, int>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    const std::int64_t nx = x + dx * far, ny = y + dy * far;
+    if (nx < 0 || ny < 0 || nx >= columns_ || ny >= rows_) continue;
+    visit(static_cast<std::uint32_t>(ny * columns_ + nx));
+  }
+}
 
 }  // namespace vantage

@@ -112,7 +112,8 @@ const std::string& SearchArea::description() const noexcept { return impl_->how.
 const SearchMesh& SearchArea::mesh() const noexcept { return impl_->mesh; }
 const WalkableOptions& SearchArea::options() const noexcept { return impl_->options; }
 std::span<const LeftOut> SearchArea::left_out() const noexcept { return impl_->how.left_out; }
-std::span<const NotEntered> SearchArea::not_entered() const noexcept { return impl_->how.not_entered; }
+std::span<const ClosedPart> SearchArea::not_entered() const noexcept { return impl_->how.not_entered; }
+std::span<const ClosedPart> SearchArea::entered() const noexcept { return impl_->how.entered; }
 std::span<const Vec3> SearchArea::entries() const noexcept { return impl_->how.entries; }
 bool SearchArea::on_plane() const noexcept { return impl_->how.on_plane; }
 

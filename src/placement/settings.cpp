@@ -28,6 +28,7 @@ Settings settings(const WalkableOptions& options) {
       .add("passage_height_m", options.passage_height_m, {"passage"})
       .add("climb_m", options.climb_m, {"climb"})
       .add("enter", entries_of(options), {"enter"})
+      .add("enter_closed", options.enter_closed)
       .add("levels", options.levels, {"levels"})
       .add("within", rings_of(options.within))
       .add("without", rings_of(options.without))

@@ -41,6 +41,28 @@ std::string to_string(LeftOutReason reason) {
   return "unknown";
 }
 
+std::string to_string(Bar bar) {
+  switch (bar) {
+    case Bar::door: return "door";
+    case Bar::headroom: return "headroom";
+    case Bar::climb: return "climb";
+    case Bar::step: return "step";
+    case Bar::no_way: return "no_way";
+  }
+  return "unknown";
+}
+
+std::string to_string(ClosedKind kind) {
+  switch (kind) {
+    case ClosedKind::room: return "room";
+    case ClosedKind::ground: return "ground";
+    case ClosedKind::attic: return "attic";
+    case ClosedKind::top: return "top";
+    case ClosedKind::hollow: return "hollow";
+  }
+  return "unknown";
+}
+
 bool active(const PlacedStation& station) {
   switch (station.status) {
     case StationStatus::ok:

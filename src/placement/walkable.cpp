@@ -314,12 +314,32 @@ std::vector<glm::dvec3> local_entries(const SceneData& scene, const WalkableOpti
   return entries;
 }
 
-void tell_entries(WalkableSurface& surface, const GroundField& field, const SceneData& scene) {
+ClosedPart told(const GroundField::ClosedPart& part, const SceneData& scene, double all_m2) {
+  ClosedPart out{.area_m2 = part.area_m2,
+                 .share = all_m2 > 0 ? part.area_m2 / all_m2 : 0,
+                 .place = to_vec3(part.middle) + scene.origin,
+                 .kind = part.kind,
+                 .bar = part.bar,
+                 .height_m = part.height_m};
+  for (const std::uint32_t mesh : part.doors) out.doors.push_back(scene.meshes[mesh].name);
+  return out;
+}
+
+void tell_entries(WalkableSurface& surface, const GroundField& field, const MeshTree& tree, const SceneData& scene) {
   for (const glm::dvec3& entry : field.entries()) surface.entries.push_back(to_vec3(entry) + scene.origin);
-  for (const GroundField::NotEntered& part : field.rooms_not_entered(scene)) {
-    NotEntered& out = surface.not_entered.emplace_back();
-    out.area_m2 = part.area_m2, out.place = to_vec3(part.middle) + scene.origin;
-    for (const std::uint32_t mesh : part.doors) out.doors.push_back(scene.meshes[mesh].name);
+  const std::vector<GroundField::ClosedPart> closed = field.not_entered(tree);
+  double all = field.reached_area();
+  for (const GroundField::ClosedPart& part : closed) all += part.area_m2;
+  for (const GroundField::ClosedPart& part : closed) surface.not_entered.push_back(told(part, scene, all));
+  for (const GroundField::ClosedPart& part : field.entered()) surface.entered.push_back(told(part, scene, all));
+}
+
+// Adds floors of gratings, which have no triangle wide enough to stand on, to the upward triangles.
+void add_thin_floors(const GroundField& field, std::vector<glm::dvec3>& points, std::vector<Triangle>& upward) {
+  for (const auto& [low, high] : field.thin_floors()) {
+    const auto first = static_cast<std::uint32_t>(points.size());
+    points.insert(points.end(), {low, {high.x, low.y, low.z}, {high.x, high.y, low.z}, {low.x, high.y, low.z}});
+    upward.push_back({first, first + 1, first + 2}), upward.push_back({first, first + 2, first + 3});
   }
 }
 
@@ -351,17 +371,21 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   }
   GroundField field(scene, options);
   field.reach(tree, local_entries(scene, options));
-  if (scene.shares()) upward = reached_triangles(scene, field, options, false, points);
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
   // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
   const bool around = field.ground_area(lower_half_z) >= ground_share * outline_area(scene);
   const bool inside = field.covered_area() >= ground_share * field.outline();
   const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
-  if (field.entries().empty() || (options.enter.empty() && !around && !inside && !floors())) return {};
+  const auto under_the_sky = [&] { return field.open_ground_area(tree) >= ground_share * field.outline(); };
+  if (field.entries().empty() || (options.enter.empty() && !around && !inside && !floors() && !under_the_sky()))
+    return {};
+  if (options.enter.empty() && options.enter_closed) field.enter_closed(tree);
+  if (scene.shares()) upward = reached_triangles(scene, field, options, false, points);
+  add_thin_floors(field, points, upward);
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
   if (surface.mesh.triangles.empty()) return surface;
-  tell_entries(surface, field, scene);
+  tell_entries(surface, field, tree, scene);
   std::string entries;
   for (const Vec3& entry : surface.entries) entries += (entries.empty() ? "" : " and ") + place_text(entry);
   surface.description = "derived from walkable surfaces, entered near " + entries + ": " + surface.description;

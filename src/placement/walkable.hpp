@@ -15,7 +15,7 @@ struct WalkableSurface {
   bool derived = true;
   std::string description;
   std::vector<LeftOut> left_out = {};
-  std::vector<NotEntered> not_entered = {};
+  std::vector<ClosedPart> not_entered = {}, entered = {};
   std::vector<Vec3> entries = {};
   bool on_plane = false;
 };

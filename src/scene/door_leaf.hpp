@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a door's leaf looks like, and what it is called.
+// The shape of a door's leaf.
 #pragma once
 
 #include <array>
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "core/glm.hpp"
 
@@ -20,17 +19,20 @@ struct DoorLeaf {
   double width = 0, thickness = 0, height = 0;
 };
 
-// The box around triangles, if it has that size.
-std::optional<DoorLeaf> leaf_around(std::size_t triangles,
-                                    const std::function<std::array<glm::dvec3, 3>(std::uint32_t triangle)>& corners);
+// Sizes of leaves, with their frames where these are one with them. Metres.
+struct LeafSizes {
+  double lowest = 1.75, highest = 3.0, narrowest = 0.55, widest = 2.6, thickest = 0.4;
+  bool high(double height) const { return height >= lowest && height <= highest; }
+};
+// Sizes of gates, and of the leaves that stand side by side in one opening.
+inline constexpr LeafSizes kGateSizes{.highest = 5.0, .narrowest = 0.4, .widest = 6.0, .thickest = 0.25};
 
-// Whether a box of that height may be one.
-bool is_leaf_high(double height);
+// The box around triangles, if it has such a size.
+std::optional<DoorLeaf> leaf_around(std::size_t triangles,
+                                    const std::function<std::array<glm::dvec3, 3>(std::uint32_t triangle)>& corners,
+                                    const LeafSizes& sizes = {});
 
 // Whether it is as large as a single leaf, and may be a door whatever it is called.
 bool is_plain_leaf(const DoorLeaf& leaf);
-
-// Whether a name is that of a door, and no part of furniture.
-bool names_a_door(const std::string& name);
 
 }  // namespace vantage

@@ -18,6 +18,7 @@
 #include "scene/positions.hpp"
 #include "scene/shared_meshes.hpp"
 #include "scene/sound_triangle.hpp"
+#include "scene/told_by_name.hpp"
 
 namespace vantage {
 namespace {
@@ -27,6 +28,9 @@ constexpr double kAside = 0.08;            // how far beside the leaf its wall i
 constexpr double kWallHalf = 0.8;          // and how far before and behind
 constexpr double kThicker = 0.04;          // by which a wall is thicker than a leaf
 constexpr double kNear = 0.02;             // what is as near to a leaf is of it
+constexpr double kGap = 0.03;              // between two leaves of one door
+constexpr double kApart = 0.15;            // between the planes of two leaves that slide
+constexpr double kWidestOpening = 6;       // that several leaves fill
 constexpr std::size_t kMostLeaves = 2000;  // leaves that are looked at
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
@@ -332,6 +336,16 @@ std::optional<Leaf> leaf_of(const Reading& model, std::size_t mesh, std::vector<
   return leaf;
 }
 
+// The gate that they may be, or one leaf of several.
+std::optional<Leaf> gate_of(const Reading& model, std::size_t mesh, std::vector<std::uint32_t> triangles) {
+  const auto box = leaf_around(
+      triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); }, kGateSizes);
+  if (!box) return std::nullopt;
+  Leaf leaf{*box, mesh, names_a_door(model.raw.meshes[mesh].name), std::move(triangles), {}};
+  leaf.panel = panel_among(model, leaf.triangles, leaf);
+  return leaf;
+}
+
 bool leads_through(const Reading& model, std::span<const std::uint32_t> others, const Leaf& leaf) {
   const double half = leaf.thickness / 2, far = half + kFree;
   const Sight sight = look(model, others, face_of(leaf), leaf.through, far);
@@ -339,15 +353,88 @@ bool leads_through(const Reading& model, std::span<const std::uint32_t> others, 
   return clear(sight.before) && clear(sight.behind);
 }
 
-// Whether a wall stands beside and over a panel, and is thicker: it may lie in the plane of one of the wall's faces.
-bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
-  const auto wall_at = [&](const glm::dvec3& p) {
-    const Sight sight = look(model, others, p, panel.through, kWallHalf);
-    return sight.before + sight.behind >= panel.thickness + kThicker && sight.before <= kWallHalf &&
-           sight.behind <= kWallHalf;
+// Surroundings of a panel: a wall that is thicker, in the plane of one of whose faces it may lie, or anything, such
+// as posts and panes.
+struct Around {
+  bool wall_beside = false, wall_above = false, frame = false;
+};
+Around around(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
+  const auto sight = [&](const glm::dvec3& p) { return look(model, others, p, panel.through, kWallHalf); };
+  const auto wall = [&](const Sight& seen) {
+    return seen.before + seen.behind >= panel.thickness + kThicker && seen.before <= kWallHalf &&
+           seen.behind <= kWallHalf;
   };
+  const auto any = [&](const Sight& seen) { return std::min(seen.before, seen.behind) <= kApart; };
   const glm::dvec3 aside = panel.along * (panel.width / 2 + kAside), up{0, 0, panel.height / 2 + kAside};
-  return wall_at(panel.middle + aside) && wall_at(panel.middle - aside) && wall_at(panel.middle + up);
+  const Sight left = sight(panel.middle - aside), right = sight(panel.middle + aside), above = sight(panel.middle + up);
+  return {wall(left) && wall(right), wall(above), any(left) && any(right) && any(above)};
+}
+bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
+  const Around found = around(model, others, panel);
+  return found.wall_beside && found.wall_above;
+}
+
+// True for two leaves side by side in one opening.
+bool side_by_side(const DoorLeaf& a, const DoorLeaf& b) {
+  const glm::dvec3 between = b.middle - a.middle;
+  const double gap = std::abs(dot(between, a.along)) - (a.width + b.width) / 2;
+  return std::abs(dot(a.along, b.along)) > 0.99 && std::abs(dot(between, a.through)) <= kApart &&
+         std::abs(gap) <= kGap && std::abs(between.z) <= kGap && std::abs(a.height - b.height) <= kGap;
+}
+
+// The box that several leaves make up.
+DoorLeaf together(std::span<const Leaf> leaves) {
+  DoorLeaf all = leaves.front().alone();
+  double from = std::numeric_limits<double>::infinity(), to = -from, before = from, behind = -from;
+  for (const Leaf& leaf : leaves) {
+    const DoorLeaf panel = leaf.alone();
+    const double along = dot(panel.middle, all.along), through = dot(panel.middle, all.through);
+    from = std::min(from, along - panel.width / 2), to = std::max(to, along + panel.width / 2);
+    before = std::min(before, through - panel.thickness / 2), behind = std::max(behind, through + panel.thickness / 2);
+  }
+  const double z = all.middle.z;
+  all.middle = all.along * ((from + to) / 2) + all.through * ((before + behind) / 2);
+  all.middle.z = z, all.width = to - from, all.thickness = behind - before;
+  return all;
+}
+
+// Doors of several leaves, and gates, which nothing but the opening around all leaves tells.
+std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, const std::vector<Leaf>& leaves) {
+  std::vector<Leaf> gates;
+  std::vector<std::uint8_t> done(leaves.size(), 0);
+  for (std::size_t first = 0; first < leaves.size(); ++first) {
+    if (done[first]) continue;
+    std::vector<Leaf> door;
+    std::vector<std::size_t> open{first};
+    done[first] = 1;
+    while (!open.empty()) {
+      const std::size_t k = open.back();
+      open.pop_back();
+      door.push_back(leaves[k]);
+      for (std::size_t other = 0; other < leaves.size(); ++other)
+        if (!done[other] && side_by_side(leaves[k], leaves[other])) done[other] = 1, open.push_back(other);
+    }
+    DoorLeaf all = together(door);
+    if (all.width > kWidestOpening) continue;
+    Leaf whole{all, door.front().mesh, false, {}, {}};
+    for (const Leaf& leaf : door)
+      whole.triangles.insert(whole.triangles.end(), leaf.triangles.begin(), leaf.triangles.end());
+    std::ranges::sort(whole.triangles);
+    const Around found = around(model, index.beside(whole, all.width / 2 + kFree + kAside), all);
+    const bool named = std::ranges::all_of(door, &Leaf::named);
+    const bool leaf_named =
+        std::ranges::all_of(door, [&](const Leaf& leaf) { return names_a_leaf(model.raw.meshes[leaf.mesh].name); });
+    // Panels of a façade between its columns are wider.
+    constexpr std::size_t kMostLeavesOfOne = 4;
+    constexpr double kWidestLeaf = 1.6, kWidestGate = 4.2;
+    const bool several = door.size() > 1;
+    const bool of_leaves = several && door.size() <= kMostLeavesOfOne && all.width <= kWidestGate &&
+                           std::ranges::all_of(door, [](const Leaf& leaf) { return leaf.width <= kWidestLeaf; });
+    if ((named && found.wall_beside) || (several && leaf_named && found.frame) ||
+        (of_leaves && found.wall_beside && found.wall_above))
+      gates.insert(gates.end(), door.begin(), door.end());
+  }
+  return gates;
 }
 
 // Of a mesh that has the height of a leaf; else none.
@@ -356,7 +443,7 @@ std::vector<std::uint32_t> triangles_of(const Reading& model, std::size_t mesh) 
   Box box;
   const auto [begin, end] = model.runs_of(mesh);
   for (std::size_t k = begin; k < end; ++k) box.extend(model.boxes[k].min), box.extend(model.boxes[k].max);
-  if (range.triangle_count == 0 && !is_leaf_high(box.size().z)) return {};
+  if (range.triangle_count == 0 && !kGateSizes.high(box.size().z)) return {};
   std::vector<std::uint32_t> all;
   const auto add = [&](std::uint32_t first, std::uint32_t n) {
     for (std::uint32_t i = first; i < first + n; ++i) all.push_back(i);
@@ -385,8 +472,17 @@ bool lies_in(const Box& part, const Leaf& leaf) {
 std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t>& candidate, std::size_t most,
                             bool parts) {
   std::vector<Leaf> leaves;
+  std::vector<Leaf> of_several;
   std::optional<PlanIndex> index;
   std::size_t looked = 0;
+  // Free on both sides, so that it may be one of several.
+  const auto look_at_gate = [&](std::optional<Leaf> gate) {
+    if (!gate || of_several.size() >= most) return;
+    if (!index) index.emplace(model);
+    const auto others = index->beside(*gate, gate->width / 2 + gate->thickness / 2 + kFree + kAside);
+    if (!gate->panel) gate->panel = panel_among(model, others, *gate);
+    if (gate->panel && leads_through(model, others, *gate)) of_several.push_back(std::move(*gate));
+  };
   const auto is_door = [&](Leaf& leaf) {
     ++looked;
     if (!index) index.emplace(model);
@@ -406,17 +502,25 @@ std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t
   }
   std::vector<std::vector<MeshParts>> parted = parts_of(model, larger);
   for (std::size_t m = 0; m < meshes && looked < most; ++m) {
-    if (whole[m] && is_door(*whole[m])) leaves.push_back(std::move(*whole[m]));
+    if (whole[m] && is_door(*whole[m]))
+      leaves.push_back(std::move(*whole[m]));
+    else if (parts && (candidate.empty() || candidate[m]))
+      look_at_gate(gate_of(model, m, triangles_of(model, m)));
     std::size_t count = 0;
     for (const MeshParts& some : parted[m]) count += some.boxes.size();
     if (count < 2) continue;
     for (const MeshParts& some : parted[m])
       for (std::size_t k = 0; k < some.boxes.size() && looked < most; ++k) {
-        if (!is_leaf_high(some.boxes[k].size().z)) continue;
+        if (!kGateSizes.high(some.boxes[k].size().z)) continue;
         std::optional<Leaf> leaf = leaf_of(model, m, some.triangles_of(k));
-        if (leaf && is_door(*leaf)) leaves.push_back(std::move(*leaf));
+        if (leaf && is_door(*leaf))
+          leaves.push_back(std::move(*leaf));
+        else
+          look_at_gate(gate_of(model, m, some.triangles_of(k)));
       }
   }
+  if (index)
+    for (Leaf& gate : gates_among(model, *index, of_several)) leaves.push_back(std::move(gate));
   for (Leaf& leaf : leaves)
     for (const auto& of_mesh : parted)
       for (const MeshParts& some : of_mesh) {

@@ -403,7 +403,9 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
                                     : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
-    return best.score - other.score < (rule && keeps_rule ? kRuleLead : kLead) ||
+    // A rule that a file may break says less than doors and stairs that only the other reading has.
+    const bool by_rule = rule && keeps_rule && (has_ways(best) || !has_ways(other));
+    return best.score - other.score < (by_rule ? kRuleLead : kLead) ||
            (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) || drawn_otherwise(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {

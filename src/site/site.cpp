@@ -14,8 +14,8 @@
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
-#include "scene/door_leaf.hpp"
 #include "scene/scene_data.hpp"
+#include "scene/told_by_name.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
 

@@ -100,6 +100,8 @@ struct Score {
   std::size_t rooms = 0, visited = 0;  // of the truth, those that a way leads to
   std::vector<std::string> left_out;   // rooms, neither visited nor captured from others
   std::size_t off_ground = 0, near_pairs = 0, links = 0, through_walls = 0;
+  bool on_plane = false;
+  double closed = 0;  // the largest share of all floor that is closed, not planned and to be decided on
   bool met = false;
 };
 
@@ -127,10 +129,11 @@ std::vector<Place> open_rooms(const SweptSite& site) {
   return rooms;
 }
 
-bool stands_off(const SweptSite& site, const Vec3& ground) {
+// `entered`: what no way leads to is planned, too, and told.
+bool stands_off(const SweptSite& site, const Vec3& ground, bool entered) {
   const auto off = [&](const Vec3& p) {
     const test::Standing standing = site.truth->at(p);
-    return standing.surface != Surface::floor || site.shut.contains(standing.place);
+    return standing.surface != Surface::floor || (site.shut.contains(standing.place) && !entered);
   };
   for (const Vec3& aside : {Vec3{}, {kEdge_m, 0, 0}, {-kEdge_m, 0, 0}, {0, kEdge_m, 0}, {0, -kEdge_m, 0}})
     if (!off(ground + aside)) return false;
@@ -179,6 +182,9 @@ void judge_ground(const SweptSite& swept, Site& site, const PlanEntry& entry, Sc
   const std::vector<Place> rooms = open_rooms(swept);
   score.ground_m2 = area_of(site.area().mesh());
   score.by_thumb = rule_of_thumb(rooms, score.ground_m2, site.scanner(), site.simulator_config().point_spacing_m);
+  score.on_plane = site.area().on_plane();
+  for (const ClosedPart& part : site.area().not_entered())
+    if (part.to_decide() && part.kind != ClosedKind::hollow) score.closed = std::max(score.closed, part.share);
   if (!swept.truth) return;
   std::vector<Place> unvisited;
   for (const Place& place : rooms) {
@@ -189,8 +195,9 @@ void judge_ground(const SweptSite& swept, Site& site, const PlanEntry& entry, Sc
   }
   score.rooms = rooms.size(), score.visited = rooms.size() - unvisited.size();
   score.left_out = rooms_left_out(swept, site, entry, unvisited);
-  score.off_ground = static_cast<std::size_t>(std::ranges::count_if(
-      entry.stations, [&](const PlacedStation& station) { return stands_off(swept, station.ground); }));
+  score.off_ground = static_cast<std::size_t>(std::ranges::count_if(entry.stations, [&](const PlacedStation& station) {
+    return stands_off(swept, station.ground, !site.area().entered().empty());
+  }));
 }
 
 void judge_sight(Site& site, const PlanEntry& entry, const StationLinks& links, double wanted, Score& score) {
@@ -316,6 +323,9 @@ std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   none(score.off_ground, "stations off the true ground");
   none(score.through_walls, "links through walls");
   none(score.near_pairs, "pairs of stations nearer than a quarter of what they look at");
+  constexpr double kMostClosed = 0.1;
+  if (score.closed > kMostClosed) faults.push_back(percent(score.closed) + " of all floor is closed, and not planned");
+  if (site.truth && score.on_plane) faults.push_back("stations on a plane that was laid, though there is ground");
   // Without the truth the rule knows no rooms.
   if (site.truth && score.plan.stations > score.by_thumb)
     faults.push_back(number(score.plan.stations) + " stations, a person takes " + number(score.by_thumb));

@@ -5,10 +5,13 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "generate/sites/shapes.hpp"
+#include "sites/strange_sites.hpp"
 
 namespace vantage::test {
 namespace {
@@ -34,9 +37,14 @@ class Maker {
     made_.site.name = "random";
   }
 
-  RandomSite make() {
+  // `strange`: one of these kinds.
+  RandomSite make(std::optional<std::size_t> strange) {
     const double kind = uniform(0, 1);
-    if (kind < 0.7)
+    if (strange)
+      make_strange(made_, *strange,
+                   {[this](double low, double high) { return uniform(low, high); },
+                    [this](const char* english) { return word(english); }});
+    else if (kind < 0.7)
       building();
     else if (kind < 0.85)
       hall();
@@ -68,6 +76,14 @@ class Maker {
     const std::string number = std::to_string(++named_);
     if (language_ < kWords.size()) return std::string(kWords[language_][word]) + " " + number;
     return "3vB2YO$MX4xv5uCqZZG0" + number;
+  }
+
+  // The same for words of strange sites, of which water has no other sign than its name.
+  std::string word(const char* english) {
+    constexpr std::array<const char*, 5> kWater{"water", "Wasser", "eau", "вода", "水"};
+    const std::string number = " " + std::to_string(++named_);
+    if (std::string_view(english) == "water") return kWater[language_ % kWater.size()] + number;
+    return english + number;
   }
 
   // A rectangular building of rooms in rows; storeys over each other, with stairs in the first room.
@@ -250,10 +266,19 @@ class Maker {
 
 }  // namespace
 
-RandomSite make_random_site(std::uint64_t seed) { return Maker(seed * 2 + 1, seed % 3 == 0).make(); }
+RandomSite make_random_site(std::uint64_t seed) {
+  const bool strange = seed >= kFirstStrange;
+  RandomSite made = Maker(seed * 2 + 1, seed % 3 == 0)
+                        .make(strange ? std::optional<std::size_t>(seed % kStrangeKinds) : std::nullopt);
+  // Nothing but its name tells water from a floor.
+  if (strange && seed % kStrangeKinds == 0) made.variant.nameless = false;
+  return made;
+}
 
 void write_site(const RandomSite& random, const std::filesystem::path& file) {
   KnownSite site = random.site;
+  for (Part& part : site.parts)
+    if (const auto drawn = random.drawn.find(part.name); drawn != random.drawn.end()) part = drawn->second;
   site.parts.insert(site.parts.end(), random.leaves.begin(), random.leaves.end());
   if (random.turned)
     for (Part& part : site.parts)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,14 +14,17 @@
 namespace vantage::test {
 
 struct RandomSite {
-  KnownSite site;              // every room is one of its places
-  Variant variant;             // how it is written: unit, axis, origin, names
-  std::set<std::string> shut;  // rooms that no way leads to
-  std::vector<Part> leaves;    // of doors, closed in the file and open in truth
-  bool turned = false;         // sheets whose normals point away from the room
-  std::string told;            // in words, for messages
+  KnownSite site;                          // every room is one of its places
+  Variant variant;                         // how it is written: unit, axis, origin, names
+  std::set<std::string> shut;              // rooms that no way leads to
+  std::vector<Part> leaves;                // of doors, closed in the file and open in truth
+  std::map<std::string, Part> drawn = {};  // by the name of a part: what the file has instead, such as bars
+  bool turned = false;                     // sheets whose normals point away from the room
+  std::string told;                        // in words, for messages
 };
 
+// Seeds from here on are of the strange kinds in turn (strange_sites.hpp).
+inline constexpr std::uint64_t kFirstStrange = 1000;
 // The same seed gives the same site.
 RandomSite make_random_site(std::uint64_t seed);
 // Writes a GLB without roles, with its leaves. Sheets may be turned in the file; the truth keeps them upward.

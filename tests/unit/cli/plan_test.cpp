@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "program.hpp"
+#include "support/glb_builder.hpp"
 
 namespace vantage::test {
 namespace {
@@ -314,6 +315,37 @@ TEST_F(Plan, FirstInterruptEndsInGoodOrder) {
   const auto resumed = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "3", "--resume",
                                              "--iterations", std::to_string(done / 6 + 2)}));
   EXPECT_GT(resumed["evaluations"], done);
+}
+
+// A block in the void: the first line says that the ground is made up, and so does the exit code.
+TEST_F(Plan, OnAPlaneThatWasLaidIsForTheSurveyorToDecide) {
+  GlbBuilder glb;
+  std::vector<float> corners;
+  for (const float z : {-2.0F, 2.0F})
+    for (const float y : {0.0F, 3.0F})
+      for (const float x : {-3.0F, 3.0F}) corners.insert(corners.end(), {x, y, z});
+  const std::vector<std::uint32_t> faces{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  const int positions = glb.positions(corners), indices = glb.accessor(faces, 5125, "SCALAR");
+  glb.node({{"mesh", glb.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}, {"name", "block"}});
+  glb.write_glb(path("block.glb"));
+  const Outcome outcome = run_program({"plan",         path("block.glb"),
+                                       "--engine",     "embree",
+                                       "--step",       "1",
+                                       "--user-size",  "0.5",
+                                       "--spacing",    "0.2",
+                                       "--unit",       "m",
+                                       "--up",         "y",
+                                       "--problem",    "coverage-fix",
+                                       "--stations",   "2",
+                                       "--iterations", "2",
+                                       "--population", "6",
+                                       "--sample",     "200",
+                                       "--no-report",  "-o",
+                                       path("plan")});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_EQ(outcome.out.find("none in the model: the stations stand on a horizontal plane laid under the model"), 0u)
+      << outcome.out;
 }
 
 }  // namespace

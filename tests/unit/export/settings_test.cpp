@@ -149,6 +149,7 @@ const std::vector<Change<WalkableOptions>> kWalkable{
      [](WalkableOptions& o) {
        o.levels = {-1, 1};
      }},
+    {"enter_closed", [](WalkableOptions& o) { o.enter_closed = false; }},
     {"within",
      [](WalkableOptions& o) {
        o.within = {{{{{-9, -9}, {9, -9}, {9, 9}}}}};
@@ -156,7 +157,7 @@ const std::vector<Change<WalkableOptions>> kWalkable{
     {"without", [](WalkableOptions& o) {
        o.without = {{{{{-9, -9}, {9, -9}, {9, 9}}}}};
      }}};
-static_assert(member_count<WalkableOptions>() == 10);
+static_assert(member_count<WalkableOptions>() == 11);
 
 const std::vector<Change<SecurityVolume>> kSecurity{{"lower_m", [](SecurityVolume& v) { v.lower_m = 0.7; }},
                                                     {"upper_m", [](SecurityVolume& v) { v.upper_m = 1.5; }},

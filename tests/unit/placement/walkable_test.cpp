@@ -68,8 +68,8 @@ TEST(Walkable, AClosetIsNoEntranceOfALevelThatDwarfsIt) {
   EXPECT_GT(entered.not_entered()[0].area_m2, 1000);
 }
 
-// Open yards, each a step above the last that nobody takes, with walls around them: no plane is laid below. Blocks of
-// the same heights are no yards.
+// Open yards, each a step above the last that nobody takes, are ground with walls around them and without: no plane is
+// laid below.
 TEST(Walkable, FloorsWithWallsAroundAreAGround) {
   for (const double walls : {3.0, 0.0}) {
     test::Builder builder;
@@ -79,7 +79,7 @@ TEST(Walkable, FloorsWithWallsAroundAreAGround) {
       if (walls > 0) builder.box({x, -0.2, -0.2}, {x + 10, 0, z + walls}).box({x, 10, -0.2}, {x + 10, 10.2, z + walls});
     }
     if (walls > 0) builder.box({-0.2, 0, -0.2}, {0, 10, walls}).box({40, 0, -0.2}, {40.2, 10, 1.8 + walls});
-    EXPECT_EQ(SearchArea::build(builder.scene()).on_plane(), walls == 0);
+    EXPECT_FALSE(SearchArea::build(builder.scene()).on_plane());
   }
 }
 
@@ -141,7 +141,7 @@ TEST(Walkable, FloorUnderAHighPlatformStaysAndBothHaveTheirOwnPlacesWhereAStairL
 
   // Steps that are too high end the way, and are reported.
   WalkableOptions low_steps;
-  low_steps.climb_m = 0.15;
+  low_steps.climb_m = 0.15, low_steps.enter_closed = false;
   const SearchArea stopped = SearchArea::build(builder.scene(), low_steps);
   EXPECT_GT(left_out(stopped, LeftOutReason::unreachable), 15);
   EXPECT_NE(stopped.description().find("beyond steps of up to 0.2 m"), std::string::npos) << stopped.description();
@@ -162,7 +162,7 @@ test::Builder two_rooms(double width, double height, bool door = false) {
 
 TEST(Walkable, OpeningsLetAPersonThroughWhoIsNotTooWideOrTall) {
   const auto rooms = [](double width, double height) {
-    const SearchArea area = SearchArea::build(two_rooms(width, height).scene());
+    const SearchArea area = SearchArea::build(two_rooms(width, height).scene(), {.enter_closed = false});
     const double size = true_area(area.mesh());
     EXPECT_TRUE(size < 16 || size > 22) << size;
     EXPECT_EQ(left_out(area, LeftOutReason::sealed) > 8, size < 16);
@@ -184,8 +184,8 @@ TEST(Walkable, GlassStopsPeopleAndAGlassDoorDoesNot) {
       data.meshes = {{.name = "rooms", .triangle_count = last},
                      {.name = "leaf", .role = Role::blocking, .triangle_count = 2, .door = door, .glass = glass}};
       data.ranges = {{0, last, 0}, {last, 2, 0}};
-      const SearchArea area = SearchArea::build(Scene(std::make_shared<const SceneData>(data)));
-      EXPECT_EQ(true_area(area.mesh()) > 20, door) << glass;
+      const Scene scene(std::make_shared<const SceneData>(data));
+      EXPECT_EQ(true_area(SearchArea::build(scene, {.enter_closed = false}).mesh()) > 20, door) << glass;
     }
 }
 

@@ -189,5 +189,58 @@ TEST(OpenDoors, NoLeafOfAMeshThatIsNoCandidate) {
   EXPECT_TRUE(open_doors(site.raw, {1, 0}).empty());
 }
 
+// A wall of this thickness along x with an opening of 2.2 x 2.7 m from x = 4, on a floor.
+Joinery with_gateway(double thick) {
+  Joinery site;
+  site.raw = {};
+  site.mesh("part 1").box({0, 0, 0}, {4, thick, 4}).box({6.2, 0, 0}, {10, thick, 4}).box({4, 0, 2.7}, {6.2, thick, 4});
+  site.box({-5, -5, -0.2}, {15, 5, 0});
+  return site;
+}
+
+TEST(OpenDoors, TwoLeavesFillOneOpening) {
+  const auto leaves = [](Joinery site, double apart) {
+    site.mesh("part 2").box({4.01, 0.1, 0.01}, {5.09, 0.18, 2.68});
+    site.mesh("part 3").box({5.11, 0.1 + apart, 0.01}, {6.19, 0.18 + apart, 2.68});
+    return site;
+  };
+  EXPECT_EQ(leaves(with_gateway(0.5), 0).open(), (Names{"part 2", "part 3"}));
+  EXPECT_EQ(leaves(with_gateway(0.5), 0.1).open(), (Names{"part 2", "part 3"})) << "sliding past each other";
+  EXPECT_EQ(leaves(with_gateway(0.09), 0).open(), Names{}) << "panels of a wall that is no thicker";
+  Joinery one = with_gateway(0.5);
+  one.mesh("part 2").box({4.01, 0.1, 0.01}, {5.09, 0.18, 2.68}).box({5.11, 0.1, 0.01}, {6.19, 0.18, 2.68});
+  EXPECT_EQ(one.open(), (Names{"part 2", "part 2"})) << "both in one mesh";
+}
+
+TEST(OpenDoors, AGateIsAsWideAsItsWallLeavesRoom) {
+  const auto gate = [](const std::string& name, double thick) {
+    Joinery site = with_gateway(thick);
+    return site.mesh(name).box({4.01, 0.1, 0.01}, {6.19, 0.18, 2.68}).open();
+  };
+  EXPECT_EQ(gate("Tor 1", 0.5), Names{"Tor 1"});
+  EXPECT_EQ(gate("factory gate", 0.5), Names{"factory gate"});
+  EXPECT_EQ(gate("part 2", 0.5), Names{}) << "may be a panel of the wall";
+  EXPECT_EQ(gate("Motor 1", 0.5), Names{});
+}
+
+// Panes between posts, two leaves that slide before them, and what drives them above: only the leaves open.
+TEST(OpenDoors, LeavesOfGlassSlideBetweenPanes) {
+  const auto front = [](const char* left, const char* right) {
+    Joinery site;
+    site.raw = {};
+    site.mesh("SLAB").box({-5, -5, -0.2}, {15, 5, 0});
+    site.mesh("POSTS");
+    for (const double x : {0.0, 1.4, 4.2, 5.6}) site.box({x - 0.03, -0.05, 0}, {x + 0.03, 0.05, 2.9});
+    site.mesh("PANE-1").box({0.03, -0.006, 0.02}, {1.37, 0.006, 2.9});
+    site.mesh("PANE-2").box({4.23, -0.006, 0.02}, {5.57, 0.006, 2.9});
+    site.mesh("HEADER").box({1.4, -0.1, 2.3}, {4.2, 0.1, 2.55});
+    site.mesh(left).box({1.43, 0.02, 0.01}, {2.8, 0.04, 2.3});
+    site.mesh(right).box({2.8, 0.02, 0.01}, {4.17, 0.04, 2.3});
+    return site.open();
+  };
+  EXPECT_EQ(front("ASD-LEAF-L", "ASD-LEAF-R"), (Names{"ASD-LEAF-L", "ASD-LEAF-R"}));
+  EXPECT_EQ(front("PANE-3", "PANE-4"), Names{});
+}
+
 }  // namespace
 }  // namespace vantage

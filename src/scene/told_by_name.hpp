@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The meaning of the names of meshes, in a dozen languages.
+#pragma once
+
+#include <string>
+
+namespace vantage {
+
+// True for the name of a door or a gate, and of no part of furniture.
+bool names_a_door(const std::string& name);
+// True for that, and for the name of a leaf, which may be a plant's, too.
+bool names_a_leaf(const std::string& name);
+bool names_water(const std::string& name);
+
+}  // namespace vantage
