@@ -175,8 +175,9 @@ CoverSolution evaluate_cover(const CoverProblem& problem, std::vector<std::size_
 std::vector<std::size_t> greedy(const CoverProblem& problem);
 
 /// Local search: replaces one chosen candidate by another while coverage grows, with the best replacement of each in
-/// turn. Existing ones stay. Keeps coverage, exclusions and, if the problem has a `link`, connection. Deterministic
-/// unless stopped. REQUIRES: `chosen` begins with the existing candidates.
+/// turn. Existing ones stay. Keeps coverage, exclusions and, if the problem has a `link`, connection. Takes another 8
+/// bytes for each entry of the matrix. Deterministic unless stopped. REQUIRES: `chosen` begins with the existing
+/// candidates.
 std::vector<std::size_t> improve_by_swaps(const CoverProblem& problem, std::vector<std::size_t> chosen,
                                           std::stop_token stop = {});
 

@@ -75,13 +75,19 @@ class TabuSearch::BestSwap {
       for (const SwapGains::More& other : state_.gains.without(at))
         consider(other.candidate, now_[other.candidate] + other.gain);
     }
-    // Candidates that gain as much without the leaving one; a gain that is too small for others does no harm.
-    std::vector<std::size_t> promising;
+    // Candidates that gain as much without the leaving one, the most promising first; a gain that is too small for
+    // others does no harm.
+    std::vector<std::pair<double, std::size_t>> promising;
     for (std::size_t k = 0; k < problem_.matrix.candidates(); ++k)
-      if (is_enough(most_left + now_[k], k) && state_.joinable.against(k) < 2) promising.push_back(k);
+      if (is_enough(most_left + now_[k], k) && state_.joinable.against(k) < 2)
+        promising.emplace_back(for_links_[k] - static_cast<double>(now_[k]), k);
+    std::ranges::sort(promising);
     for (std::size_t at = first; at < size && !promising.empty(); ++at) {
       leave(at);
-      for (const std::size_t k : promising) consider(k, now_[k]);
+      for (const auto& [missing, k] : promising) {
+        if (static_cast<double>(left_) - missing < enough_) break;
+        consider(k, now_[k]);
+      }
     }
     return best_;
   }
