@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -125,8 +126,19 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
   };
   // It is read to report what is wrong with it, mostly from the cache; the cache of a site has nothing by hand.
   if (by_hand) write();
-  const Scene scene = by_hand ? Scene::load(*options.output, {.max_memory_bytes = read.max_memory_bytes})
-                              : Scene::load(options.file, read);
+  const Scene scene = [&] {
+    if (!by_hand) return Scene::load(options.file, read);
+    try {
+      return Scene::load(*options.output, {.max_memory_bytes = read.max_memory_bytes});
+    } catch (const Error& error) {
+      std::error_code failure;
+      std::filesystem::remove(*options.output, failure);
+      // It is named as what was given: the other is gone.
+      std::string text = error.what();
+      if (text.starts_with(*options.output)) text.replace(0, options.output->size(), options.file);
+      throw Error(error.code(), text, {error.details().begin(), error.details().end()});
+    }
+  }();
   if (!by_hand) write();
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
   if (options.json)

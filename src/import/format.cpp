@@ -48,6 +48,7 @@ constexpr std::array kMistaken{
     Mistaken{"%PDF"sv, "a PDF document; ask its author for the model"},
     Mistaken{"\x89PNG"sv, kPicture},
     Mistaken{"\xFF\xD8\xFF"sv, kPicture},
+    Mistaken{"AutoCAD Binary DXF"sv, "a DXF in binary form; export it as DXF text"},
     Mistaken{"AC10"sv, "a DWG drawing; export IFC, FBX, or DXF with faces"},
     Mistaken{"\xD0\xCF\x11\xE0"sv, "a file of Revit, 3ds Max or an office program; export IFC or FBX"},
     Mistaken{"\xFF\xFE\xFF\x0E"sv, "a SketchUp file; export glTF or COLLADA"},
@@ -121,7 +122,7 @@ bool holds_obj(std::string_view text) {
 bool holds_numbers(std::string_view text) {
   constexpr std::size_t kLines = 40;
   const auto three_numbers = [](std::string_view line) {
-    constexpr std::string_view kBetween = " \t,;";
+    constexpr std::string_view kBetween = " \t,;\"";
     std::size_t numbers = 0, others = 0;
     for (std::size_t at = line.find_first_not_of(kBetween); at < line.size();) {
       const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
@@ -214,9 +215,8 @@ const Format* format_by_content(const Head& head) {
   if (bytes.starts_with("LASF")) return &kLas;
   if (text.starts_with("# .PCD") || text.starts_with("VERSION .7") || text.starts_with("VERSION 0.7")) return &kPcd;
   if (bytes.size() >= 84 && head.size == 84 + std::uintmax_t{50} * little_endian_32(bytes.substr(80))) return &kStl;
-  if (text.starts_with("solid") && text.find("facet") != std::string_view::npos) return &kStl;
+  if (lower(text.substr(0, 5)) == "solid" && lower(text).find("facet") != std::string::npos) return &kStl;
   if (bytes.size() >= 6 && bytes.starts_with("MM") && head.size == little_endian_32(bytes.substr(2))) return &k3ds;
-  if (bytes.starts_with("AutoCAD Binary DXF")) return &kDxf;
   if (text.starts_with("<")) {
     const std::string root = root_element(text);
     if (root == "collada") return &kCollada;

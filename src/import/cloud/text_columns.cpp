@@ -25,6 +25,13 @@ std::string_view word_itself(std::string_view word) {
   return word;
 }
 
+// A number in quotes may be cut at its comma, so that it has one of them alone.
+std::string_view without_quotes(std::string_view word) {
+  if (word.starts_with('"')) word.remove_prefix(1);
+  if (word.ends_with('"')) word.remove_suffix(1);
+  return word;
+}
+
 std::string lower_case(std::string_view text) {
   std::string out(text);
   for (char& c : out)
@@ -152,7 +159,16 @@ enum class Role { x, y, z, degrees, other };
 struct Title {
   Role role = Role::other;
   double metres = 0;
+  bool direction = false;  // it says east or north, and no letter of an axis, which geodesists may give to the other
 };
+
+// Whether these look like northings before eastings: of UTM and the like, Swiss LV95, or Krovak.
+bool north_first(double a, double b) {
+  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
+  return (within(a, 2.6e6, 1e7) && within(b, 1e5, 9e5)) || (within(a, 1.07e6, 1.3e6) && within(b, 2.48e6, 2.84e6)) ||
+         (a < -9e5 && within(b, -9.1e5, -4e5));
+}
+constexpr const char* kGiveOrder = "give the setting columns, e.g. y,x,z where northings come first, or x,y,z";
 
 Title title_of(std::string_view word) {
   std::string name = lower_case(word_itself(word));
@@ -208,7 +224,23 @@ Title title_of(std::string_view word) {
                : is_in(kZ)       ? Role::z
                : is_in(kDegrees) ? Role::degrees
                                  : Role::other;
+  title.direction = name.find_first_of("xy01") == std::string::npos;
   return title;
+}
+
+// The middle one of the coordinates along an axis.
+double middle_of(std::span<const std::string> lines, const TextColumns& columns, std::size_t axis) {
+  std::vector<double> values;
+  Words words;
+  for (const std::string& line : lines) {
+    columns.split(line, words);
+    if (columns.place[axis] >= words.size()) continue;
+    if (const auto value = columns.numbers.value(words[columns.place[axis]])) values.push_back(*value);
+  }
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 // Places of x, y and z by the titles in a line; empty if it does not name all three once.
@@ -223,12 +255,14 @@ std::optional<TextColumns> by_titles(std::span<const std::string> lines, const s
   if (words.size() != values.size()) TextColumns{}.split(text, words);  // titles may stand apart by blanks alone
   if (words.size() > values.size()) return {};                          // prose
   std::array<int, 3> found{};
+  bool directions = false;
   for (std::size_t k = 0; k < words.size(); ++k) {
     const Title title = title_of(words[k]);
     if (title.role == Role::degrees)
       throw Refused("its columns are degrees of latitude and longitude; project them to metres, e.g. UTM");
     if (title.role == Role::other) continue;
     const auto axis = static_cast<std::size_t>(title.role);
+    directions = directions || (title.role != Role::z && title.direction);
     if (++found[axis] > 1) return {};
     out.place[axis] = k;
     if (title.metres > 0 && out.metres > 0 && title.metres != out.metres)
@@ -238,6 +272,8 @@ std::optional<TextColumns> by_titles(std::span<const std::string> lines, const s
   if (found[0] + found[1] == 2 && found[2] == 0 && words.size() >= 3)
     ask(lines, "none of its columns is titled as a height", kGiveColumns);
   if (found != std::array{1, 1, 1}) return {};
+  if (!directions && north_first(middle_of(lines, out, 0), middle_of(lines, out, 1)))
+    ask(lines, "which of its columns is east is not clear: the one titled x could be northings", kGiveOrder);
   return out;
 }
 
@@ -259,7 +295,9 @@ struct Column {
 // By the values of points alone.
 TextColumns by_values(std::span<const std::string> points, Layout layout) {
   TextColumns out{.between = layout.between, .numbers = layout.numbers};
-  if (out.numbers.decimal == '.' && !out.numbers.thousands) out.between = 0;  // usual words need no such care
+  const bool quotes = points.front().find('"') != std::string::npos;
+  if (out.numbers.decimal == '.' && !out.numbers.thousands && !quotes)
+    out.between = 0;  // usual words need no such care
   std::vector<Column> columns;
   Words words;
   for (const std::string& line : points) {
@@ -299,16 +337,9 @@ TextColumns by_values(std::span<const std::string> points, Layout layout) {
             kGiveColumns);
     }
   }
-  // Northings of UTM and the like before eastings mirror a site.
-  if (rest >= 3) {
-    constexpr double kLeastNorthing = 2.6e6, kMostNorthing = 1e7, kLeastEasting = 1e5, kMostEasting = 9e5;
-    const double a = at(0).middle(), b = at(1).middle();
-    const bool north_first = (a > kLeastNorthing && a <= kMostNorthing && b >= kLeastEasting && b <= kMostEasting) ||
-                             (a < -kMostEasting && b < -4e5 && b > -9.1e5);
-    if (north_first && points.size() >= kFew)
-      ask(points, "which of its columns are x, y and z is not clear: the first one could be northings",
-          "give the setting columns, e.g. y,x,z where northings come first, or x,y,z");
-  }
+  // They mirror a site.
+  if (rest >= 3 && points.size() >= kFew && north_first(at(0).middle(), at(1).middle()))
+    ask(points, "which of its columns are x, y and z is not clear: the first one could be northings", kGiveOrder);
   if (first > 0) {
     out.place = {first, first + 1, first + 2};
     out.note = "its columns " + std::to_string(first + 1) + " to " + std::to_string(first + 3) +
@@ -321,7 +352,7 @@ TextColumns as_told(std::span<const std::string> lines, const std::string& told,
   TextColumns out{.between = layout.between, .numbers = layout.numbers};
   std::array<int, 3> found{};
   Words words;
-  TextColumns{.between = ','}.split(told, words);
+  TextColumns{}.split(told, words);
   for (std::size_t k = 0; k < words.size(); ++k) {
     const Role role = title_of(words[k]).role;
     if (role == Role::other || role == Role::degrees) continue;
@@ -331,6 +362,18 @@ TextColumns as_told(std::span<const std::string> lines, const std::string& told,
   }
   if (found != std::array{1, 1, 1})
     ask(lines, "the setting columns=" + told + " does not name x, y and z once each", kGiveColumns);
+  std::array<std::size_t, 3> numbers{};
+  for (const std::string& line : lines) {
+    out.split(line, words);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (out.place[axis] < words.size() && out.numbers.value(words[out.place[axis]])) ++numbers[axis];
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (2 * numbers[axis] < lines.size())
+      ask(lines,
+          "the setting columns=" + told + " names column " + std::to_string(out.place[axis] + 1) + " " +
+              std::string(1, "xyz"[axis]) + ", and most lines have no number there",
+          kGiveColumns);
   return out;
 }
 
@@ -372,7 +415,9 @@ void TextColumns::split(std::string_view line, std::vector<std::string_view>& wo
     return;
   }
   for (;;) {
-    const std::size_t end = line.find(between);
+    const std::size_t first = std::min(line.find_first_not_of(kBlanks), line.size());
+    const std::size_t closing = first < line.size() && line[first] == '"' ? line.find('"', first + 1) : 0;
+    const std::size_t end = line.find(between, closing == std::string_view::npos ? 0 : closing);
     words.push_back(word_itself(line.substr(0, end)));
     if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
@@ -387,7 +432,7 @@ TextColumns columns_of(std::span<const std::string> lines, const std::string& to
     std::size_t numeric = 0, other = 0;
     std::string_view rest = line;
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest))
-      ++(looks_numeric(word) ? numeric : other);
+      ++(looks_numeric(without_quotes(word)) ? numeric : other);
     const bool comment = line.starts_with('#') || line.starts_with("//") || line.starts_with('%');
     if (!comment && numeric >= 3 && numeric >= other)
       points.push_back(line);

@@ -30,13 +30,13 @@ Shape united(std::vector<Shape> shapes);     // lines are cut where they meet
 Shape united(const Shape& a, const Shape& b);
 Shape common(const Shape& a, const Shape& b);
 Shape without(const Shape& a, const Shape& b);
-Shape odd(std::span<const Shape> shapes);            // what an odd number of them covers
-Shape grown(const Shape& shape, double by);          // shrunk if negative; corners stay sharp
-Shape closed(const Shape& shape, double gap);        // its gaps of up to this width filled
-Shape straightened(const Shape& shape, double error = kGrid);  // without corners on sides that are straight up to it
-Shape chained(const Shape& lines);                   // joined where two ends meet
-Shape strip(const Shape& lines, double half_width);  // ends are cut off flat
-Shape around(std::span<const Point> points);         // the smallest rectangle, turned as it may be
+Shape odd(std::span<const Shape> shapes);                      // what an odd number of them covers
+Shape grown(const Shape& shape, double by);                    // shrunk if negative; corners stay sharp
+Shape closed(const Shape& shape, double gap);                  // its gaps of up to this width filled
+Shape straightened(const Shape& shape, double error = kGrid);  // without corners on its straight sides
+Shape chained(const Shape& lines);                             // joined where two ends meet
+Shape strip(const Shape& lines, double half_width);            // ends are cut off flat
+Shape around(std::span<const Point> points);                   // the smallest rectangle, turned as it may be
 Shape hull(std::span<const Point> points);
 Shape clone(const Shape& shape);
 std::vector<Shape> faces(const Shape& cut_lines);  // areas that lines enclose

@@ -79,31 +79,40 @@ Model read_text_stl(std::string_view text) {
     }
     part = {};
   };
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    std::string_view line = take_line(text);
-    const std::string word = lower_case(take_word(line));
+  const auto refuse = [](std::size_t number, const std::string& what) {
+    throw Refused("line " + std::to_string(number) + what + "; export it again");
+  };
+  const auto read_word = [&](const std::string& word, std::string_view& line, std::size_t number) {
     if (word == "solid") {
       finish_solid();
-      name = trimmed_text(line);
+      // All may stand in one line.
+      const std::size_t end = std::min(lower_case(line).find(" facet normal"), line.size());
+      name = trimmed_text(line.substr(0, end));
+      line.remove_prefix(end);
+    } else if (word == "endsolid") {
+      const std::size_t next = std::min(lower_case(line).find(" solid "), line.size());
+      line.remove_prefix(next);  // its name
     } else if (word == "vertex") {
       glm::dvec3 p;
       for (int c = 0; c < 3; ++c) {
         const auto value = value_of<double>(take_word(line));
-        if (!value)
-          throw Refused("line " + std::to_string(number) + " has no number where one belongs; export it again");
-        p[c] = *value;
+        if (!value) refuse(number, " has no number where one belongs");
+        p[c] = value.value_or(0);
       }
       loop.push_back(p);
     } else if (word == "endloop") {
-      if (loop.size() != 3)
-        throw Refused("the facet that ends in line " + std::to_string(number) + " has " + std::to_string(loop.size()) +
-                      " corners instead of 3; export it again");
+      if (loop.size() != 3) refuse(number, " ends a facet of " + std::to_string(loop.size()) + " corners instead of 3");
       for (const glm::dvec3& p : loop) {
         part.indices.push_back(static_cast<std::uint32_t>(part.positions.size()));
         part.positions.push_back(p);
       }
       loop.clear();
     }
+  };
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view line = take_line(text);
+    for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
+      read_word(lower_case(word), line, number);
   }
   if (!loop.empty()) throw Refused("it is cut off in a facet; copy or export it again");
   finish_solid();
