@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -18,7 +18,7 @@ SwapGains::SwapGains(const CoverageMatrix& matrix, const ColumnIndex& columns, s
     : matrix_(matrix),
       columns_(columns),
       gains_(matrix, columns, network),
-      holders_of_(matrix.elements(), kNone),
+      holders_of_(matrix.elements(), kNobody),
       touched_(network.size()),
       changed_(matrix.candidates(), 0) {
   for (std::size_t at = 0; at < network.size(); ++at) {
@@ -90,7 +90,7 @@ void SwapGains::replace(std::size_t at, std::size_t joining) {
   const std::size_t leaving = std::exchange(members_[at].candidate, joining);
   for (const CoverGains::Change& change : gains_.replace(leaving, joining)) {
     const ColumnIndex::Element element = columns_.element(change.element);
-    for (std::uint32_t k = holders_of_[change.element]; k != kNone; k = holders_[k].next)
+    for (std::uint32_t k = holders_of_[change.element]; k != kNobody; k = holders_[k].next)
       if (element.missing(std::min(change.had, change.has) - holders_[k].amount) > 0)
         touched_[holders_[k].at].push_back({change, holders_[k].amount});
   }
