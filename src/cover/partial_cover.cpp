@@ -12,7 +12,7 @@ namespace vantage {
 namespace {
 
 // Units of a coverage of 1: as many as 64 bits hold sums of, and their changes.
-constexpr double kWhole = 0x1p60;
+constexpr double kCoverUnits = 0x1p60;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : offsets_(matrix.element
   for (std::size_t k = 0; k < matrix.candidates(); ++k)
     for (const CoverageMatrix::Entry& one : matrix.column(k))
       columns_[next[one.element]++] = {static_cast<std::uint32_t>(k), one.amount};
-  const double scale = matrix.total_weight() > 0 ? kWhole / matrix.total_weight() : 0;
+  const double scale = matrix.total_weight() > 0 ? kCoverUnits / matrix.total_weight() : 0;
   elements_.reserve(matrix.elements());
   CoverUnits whole = 0;
   for (std::size_t e = 0; e < matrix.elements(); ++e) {
