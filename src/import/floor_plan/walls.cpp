@@ -78,7 +78,7 @@ bool crosses_often(const std::vector<Line>& lines_in) {
 // 1999): ends and crossings are rounded to the grid, and each line goes through all of these whose square it touches.
 // GEOS would compare slanted lines each with each.
 std::vector<Line> cut_where_they_meet(const std::vector<Line>& lines_in) {
-  constexpr double kMostCells = 4000;  // that a line passes
+  constexpr double kMostCells = 4000;          // that a line passes
   constexpr double kHalf = 1.001 * kGrid / 2;  // what was rounded is not exact
   double cell = 1;
   for (const Line& line : lines_in)

@@ -237,6 +237,21 @@ TEST_F(MeshImportTest, StlMayHaveAnEmptySolidBeforeOthers) {
                [&] { Scene::load(write("b.stl", "solid facet\nendsolid facet\n")); });
 }
 
+TEST_F(MeshImportTest, StlMayBeInCapitalsOrInOneLine) {
+  std::string capitals, line;
+  for (const char c : std::string(kTriangleStl) + kTriangleStl) {
+    capitals += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    line += c == '\n' ? ' ' : c;
+  }
+  const Scene one = Scene::load(write("a.stl", kTriangleStl));
+  for (const std::string& text : {capitals, line}) {
+    const Scene scene = Scene::load(write("b.stl", text));
+    EXPECT_EQ(scene.triangle_count(), 1u) << text;  // the second is a duplicate
+    EXPECT_EQ(scene.meshes()[0].name.size(), 1u) << text;
+    expect_bounds(scene, one.bounds().min, one.bounds().max);
+  }
+}
+
 TEST_F(MeshImportTest, ObjMayReopenAnObject) {
   const Scene scene = Scene::load(write("a.obj",
                                         "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 2 0\nv 1 2 0\nv 1 2 1\n"
