@@ -137,8 +137,7 @@ TEST(Simulator, RefusesGoalDensitiesBelowOneAndNamesWhatWorks) {
 
 TEST(Simulator, RefusesBadConfigurations) {
   const Scene scene = wall_and_floor().scene();
-  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(0.5, 0)); }).find("spacing"),
-            std::string::npos);
+  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(0.5, 0)); }).find("spacing"), std::string::npos);
   EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(-1)); }).find("user size"), std::string::npos);
   EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(-1), config()); }).find("azimuth_step"),
             std::string::npos);
