@@ -69,10 +69,9 @@ ordered_json links_json(const PairMatrix& overlap, double min_overlap) {
 ordered_json visit_json(const Visit& visit, std::size_t kept) {
   ordered_json order = ordered_json::array();
   for (const std::size_t station : visit.order) order.push_back(kept + station + 1);
-  return {{"order", std::move(order)},      {"minutes", visit.minutes},        {"scan_min", visit.scan_min},
-          {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},  {"walk_min", visit.walk_min},
-          {"walk_m", visit.walk_m},         {"unconnected", visit.unconnected},
-          {"unlinked", visit.unlinked}};
+  return {{"order", std::move(order)},      {"minutes", visit.minutes},         {"scan_min", visit.scan_min},
+          {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},   {"walk_min", visit.walk_min},
+          {"walk_m", visit.walk_m},         {"unconnected", visit.unconnected}, {"unlinked", visit.unlinked}};
 }
 
 // NaN has no JSON; what is not known is null.
