@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -22,16 +23,23 @@ void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxe
   add(missed_style(WhyMissed::hidden));
   for (const MissedStyle& style : kMissedStyles)
     if (style.why != WhyMissed::hidden) add(style);
+  constexpr double kWords = 34;  // right of a colour
+  constexpr TextStyle text{.size = 12.5};
+  const auto words = [&](const MissedStyle& style) {
+    return std::string(style.words) + ", " + fixed(100 * missed.shares.front().share(style.why), 1) + " %";
+  };
   const auto legend = [&](Canvas& canvas, Point at) {
     for (const MissedStyle& style : kMissedStyles) {
       canvas.fill({at.x, at.y - 7, 24, 14}, style.colour);
-      const double percent = 100 * missed.shares.front().share(style.why);
-      canvas.text({at.x + 34, at.y}, std::string(style.words) + ", " + fixed(percent, 1) + " %", {.size = 12.5});
+      canvas.text({at.x + kWords, at.y}, words(style), text);
       at.y += 24;
     }
     return at;
   };
-  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above", legend);
+  double width = 0;
+  for (const MissedStyle& style : kMissedStyles)
+    width = std::max(width, kWords + Canvas(1, 1).text_width(words(style), text));
+  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above", width, legend);
 }
 
 }  // namespace vantage

@@ -101,6 +101,26 @@ std::optional<double> common_ground(const PlanView& view, const PlanLevel& level
   return 2 * static_cast<std::size_t>(same) > grounds.size() ? std::optional(to_centimetres(common)) : std::nullopt;
 }
 
+// Radius of stations' marks that leaves the site to be seen under them: smaller on a narrow map, and where most
+// stations stand close together.
+double mark_radius(const Rect& map, const std::vector<Point>& spots) {
+  constexpr double kLeast = 5.5, kOfMap = 1.0 / 12, kOfDistance = 0.4;
+  std::vector<double> apart;
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < spots.size(); ++j)
+      if (j != i) least = std::min(least, std::hypot(spots[i].x - spots[j].x, spots[i].y - spots[j].y));
+    apart.push_back(least);
+  }
+  double radius = std::min(kDisc, kOfMap * std::min(map.width, map.height));
+  if (!apart.empty()) {
+    const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2);
+    std::nth_element(apart.begin(), middle, apart.end());
+    radius = std::min(radius, kOfDistance * *middle);
+  }
+  return std::max(kLeast, radius);
+}
+
 // The stations of one map, with their links.
 class Stations {
  public:
@@ -115,7 +135,8 @@ class Stations {
     std::vector<Point> here;
     for (std::size_t k = 0; k < shown_.size(); ++k)
       if (on_level(k)) here.push_back(spots_[k]);
-    const auto placed = place_discs(here, kDisc, map_);
+    radius_ = mark_radius(map_, here);
+    const auto placed = place_discs(here, radius_, map_);
     for (const Target& target : view.targets)
       if (stands_on(target, level)) targets_.emplace_back(chart.at(target.centre.x, target.centre.y), &target);
     discs_ = spots_;
@@ -127,7 +148,7 @@ class Stations {
     draw_links(content);
     draw_ellipses();
     for (std::size_t k = 0; k < shown_.size(); ++k)
-      if (elsewhere(k)) draw_elsewhere(canvas_, spots_[k], name(k)), content.elsewhere = true;
+      if (elsewhere(k)) draw_elsewhere(canvas_, spots_[k], name(k), radius_), content.elsewhere = true;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!moved(k)) continue;
       content.moved = true;
@@ -135,11 +156,11 @@ class Stations {
       canvas_.line(spots_[k], discs_[k], {.colour = colour(k), .width = 1.5});
     }
     for (std::size_t k = 0; k < shown_.size(); ++k)
-      if (on_level(k)) draw_station(canvas_, discs_[k], name(k), station(k));
+      if (on_level(k)) draw_station(canvas_, discs_[k], name(k), station(k), radius_);
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!moved(k)) continue;
-      canvas_.disc(spots_[k], 4.6, {1, 1, 1});
-      canvas_.disc(spots_[k], 3.4, colour(k));
+      canvas_.disc(spots_[k], 0.44 * radius_, {1, 1, 1});
+      canvas_.disc(spots_[k], 0.32 * radius_, colour(k));
     }
     for (const auto& [at, target] : targets_) draw_target(canvas_, at, target->control_m > 0);
     draw_labels(content);
@@ -223,7 +244,7 @@ class Stations {
     std::vector<Rect> taken;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k) && !elsewhere(k)) continue;
-      const double r = on_level(k) ? kDisc : 0.7 * kDisc;
+      const double r = on_level(k) ? radius_ : 0.7 * radius_;
       taken.push_back({discs_[k].x - r, discs_[k].y - r, 2 * r, 2 * r});
       if (moved(k)) taken.push_back({spots_[k].x - 5, spots_[k].y - 5, 10, 10});
     }
@@ -232,7 +253,7 @@ class Stations {
       if (place) canvas_.text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
       return place.has_value();
     };
-    const auto put = [&](std::size_t k, const std::string& text) { return put_at(discs_[k], kDisc + 3, text); };
+    const auto put = [&](std::size_t k, const std::string& text) { return put_at(discs_[k], radius_ + 3, text); };
     for (const auto& [at, target] : targets_)
       taken.push_back({at.x - kTargetRadius, at.y - kTargetRadius, 2 * kTargetRadius, 2 * kTargetRadius});
     for (const auto& [at, target] : targets_) put_at(at, kTargetRadius + 2, target->name);
@@ -281,6 +302,7 @@ class Stations {
   Rect map_;
   const PlanView& view_;
   const PlanLevel& level_;
+  double radius_ = kDisc;
   std::vector<std::size_t> shown_;
   std::vector<Point> spots_, discs_;
   std::vector<bool> tied_;  // by a link that is drawn
@@ -452,11 +474,14 @@ void draw_station(Canvas& canvas, Point at, const std::string& text, const Place
                .across = Align::middle});
 }
 
-void draw_elsewhere(Canvas& canvas, Point at, const std::string& text) {
-  canvas.circle(at, 0.7 * kDisc, {.colour = style::faint, .width = 1.2, .dashes = {2.5, 2}});
+void draw_elsewhere(Canvas& canvas, Point at, const std::string& text, double radius) {
+  canvas.circle(at, 0.7 * radius, {.colour = style::faint, .width = 1.2, .dashes = {2.5, 2}});
   if (fits_disc(text))
     canvas.text(at, text,
-                {.size = text.size() > 3 ? 6.0 : 7.5, .colour = style::faint, .across = Align::middle, .halo = 1.5});
+                {.size = (text.size() > 3 ? 6.0 : 7.5) * radius / kDisc,
+                 .colour = style::faint,
+                 .across = Align::middle,
+                 .halo = 1.5});
 }
 
 void draw_target(Canvas& canvas, Point at, bool control, double radius) {

@@ -78,7 +78,7 @@ void draw_station(Canvas& canvas, Point at, const std::string& text, const Place
                   double radius = kDisc);
 // Whether a name is short enough to stand in a station's mark.
 bool fits_disc(const std::string& name);
-void draw_elsewhere(Canvas& canvas, Point at, const std::string& text);
+void draw_elsewhere(Canvas& canvas, Point at, const std::string& text, double radius = kDisc);
 // A checkered disc; a triangle around that of a control point.
 inline constexpr double kTargetRadius = 5;
 void draw_target(Canvas& canvas, Point at, bool control, double radius = kTargetRadius);

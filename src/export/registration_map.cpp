@@ -102,7 +102,9 @@ void draw_registration(const std::filesystem::path& file, Site& site, const Voxe
     canvas.text({at.x + 34, at.y}, "not seen", {.size = 12.5});
     return Point{at.x, at.y + 24};
   };
-  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above, the largest error on top", legend);
+  constexpr double kLegend = 230;
+  draw_voxel_map(file, site, voxels, stations, title, "Surveyed surfaces from above, the largest error on top", kLegend,
+                 legend);
 }
 
 }  // namespace vantage

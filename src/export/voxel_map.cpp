@@ -16,7 +16,6 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kFine = 2;  // pixels a unit of the canvas
-constexpr double kPanel = 264;    // the longest line of any legend, and a margin
 constexpr Colour kHead{0.10, 0.22, 0.45};
 // Up to which height over the floor what is cut shows, in heights of the cut: over the heads, below most ceilings.
 constexpr double kBelowCeiling = 1.7;
@@ -30,7 +29,7 @@ std::uint32_t opaque(const Colour& colour) {
 
 void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<const ColouredVoxel> voxels,
                     std::span<const PlacedStation> stations, const std::string& title, const std::string& subtitle,
-                    const std::function<Point(Canvas& canvas, Point at)>& legend) {
+                    double legend_width, const std::function<Point(Canvas& canvas, Point at)>& legend) {
   const Simulator& simulator = site.simulator();
   const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), site.area().mesh(), stations);
   Box box;
@@ -55,7 +54,8 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
                 kTop + static_cast<double>(k / grid.columns) * (down + kBottom + 30), across, down};
   };
   const Rect last{map_of(grid.columns - 1).x, kTop, across, down};  // of the first row
-  Canvas canvas(last.right() + 26 + kPanel, std::max(map_of(levels.size() - 1).bottom() + kBottom, last.y + 260));
+  Canvas canvas(last.right() + 24 + legend_width + 26,
+                std::max(map_of(levels.size() - 1).bottom() + kBottom, last.y + 260));
   const auto columns = static_cast<std::size_t>(last.width) * kFine,
              rows = static_cast<std::size_t>(last.height) * kFine;
   const auto pixel = [&](double metres, std::size_t size) {

@@ -35,17 +35,24 @@ std::vector<Vec3> grounds_on(const PlanLevel& level, std::span<const PlacedStati
   return spots;
 }
 
-// All ground of the storey where that is not much more than what lies around its stations, else the latter.
-SheetLayout layout_of(const PlanLevel& level, const SearchMesh& ground, const std::vector<Vec3>& spots) {
+// All ground of the storey where that is not much more than what lies around its stations, else the latter, with the
+// corners near them that distances are taken to.
+SheetLayout layout_of(const PlanLevel& level, const SearchMesh& ground, const std::vector<Vec3>& spots,
+                      const std::vector<WallCorner>& corners) {
   constexpr double kAround_m = 4, kRim_m = 1;
+  constexpr double kNear_m = 15;
   Box stations, storey;
   for (const Vec3& spot : spots) stations.extend(spot), storey.extend(spot);
+  stations = grown(stations, kAround_m);
+  for (const WallCorner& corner : corners)
+    if (corner.distance_m <= kNear_m)
+      for (const double side : {-kRim_m, kRim_m}) stations.extend({corner.x + side, corner.y + side, level.floor});
   for (const auto& t : ground.triangles)
     for (const std::uint32_t v : t)
       if (level.holds(ground.positions[v].z)) storey.extend(ground.positions[v]);
   const int coarsest = level.cut ? kCoarsestInside : kCoarsestOutside;
   const SheetLayout all = lay_out(grown(storey, kRim_m), spots, coarsest, kPanelWidth);
-  const SheetLayout part = lay_out(grown(stations, kAround_m), spots, coarsest, kPanelWidth);
+  const SheetLayout part = lay_out(stations, spots, coarsest, kPanelWidth);
   const bool worth_it = all.tiles.size() == 1 && all.ratio <= 2 * part.ratio;
   return worth_it || (all.tiles.size() == part.tiles.size() && all.ratio == part.ratio) ? all : part;
 }
@@ -539,7 +546,11 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     std::vector<Vec3> marks = spots;
     for (const Target& target : network.targets)
       if (stands_on(target, level)) marks.push_back(target.centre);
-    const SheetLayout layout = layout_of(level, site.area().mesh(), marks);
+    std::vector<WallCorner> corners;
+    for (std::size_t s = 0; s < stations.size(); ++s)
+      if (stations[s].status != StationStatus::hole && level.holds(stations[s].ground.z))
+        corners.insert(corners.end(), facts[s].corners.begin(), facts[s].corners.end());
+    const SheetLayout layout = layout_of(level, site.area().mesh(), marks, corners);
     if (layout.sheets() > 1) {
       Box box;
       for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);

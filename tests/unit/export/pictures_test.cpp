@@ -477,6 +477,26 @@ TEST(Pictures, EachFloorHasAPageAndItsWallsAreFilled) {
     EXPECT_EQ(test::Drawn(written[k]).patches(number, 600).size(), 2u) << "its own station, and the legend's";
 }
 
+// Marks of the usual size would hide a narrow site.
+TEST(Pictures, MarksAreSmallerOnANarrowSite) {
+  SearchMesh mesh;
+  mesh.positions = {{0, 0, 0}, {60, 0, 0}, {60, 3, 0}, {0, 3, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  std::vector<PlacedStation> stations;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 ground{4 + 7.5 * k, 1.5, 0};
+    stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+  }
+  const test::TemporaryFolder folder;
+  Site site = site_of(Scene::from_triangles(mesh.positions, mesh.triangles), SearchArea::from_mesh(mesh));
+  draw_plan_view(folder / "plan.png", site, stations, {.values = OverlapMatrix(8)}, "A tunnel");
+  const test::Drawn plan(folder / "plan.png");
+  constexpr Colour number{0.10, 0.22, 0.45};
+  EXPECT_EQ(plan.patches(number, 600).size(), 1u) << "the legend's";
+  EXPECT_EQ(plan.patches(number, 150).size(), 9u);
+}
+
 // A picture of all levels is an overview: each has one of its own.
 TEST(Pictures, ManyLevelsAreAContactSheet) {
   std::vector<Vec3> p;
