@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "program.hpp"
 #include "vantage/scene.hpp"
@@ -105,6 +108,58 @@ TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
   const auto again = json_of({"evaluate", path("room.obj"), "--unit", "m", "--up", "y", "--step", "1", "--engine",
                               "embree", "--stations", path("more") + "/front.json"});
   EXPECT_EQ(again["coverage"], more["front"][0]["exact"]["coverage"]);
+}
+
+// A room of 8 × 6 × 2.8 m, a point every 10 cm; each line by `line`.
+template <class Line>
+std::string room_text(Line&& line) {
+  std::string text;
+  const auto add = [&](double x, double y, double z) { text += line(x, y, z) + "\n"; };
+  const auto each = [](double to, auto&& visit) {
+    for (double at = 0.05; at < to; at += 0.1) visit(at);
+  };
+  each(8, [&](double x) { each(6, [&](double y) { add(x, y, 0), add(x, y, 2.8); }); });
+  each(8, [&](double x) { each(2.8, [&](double z) { add(x, 0, z), add(x, 6, z); }); });
+  each(6, [&](double y) { each(2.8, [&](double z) { add(0, y, z), add(8, y, z); }); });
+  return text;
+}
+
+TEST_F(ImportCommandTest, TakesColumnsUnitAndAxisOfPointsInText) {
+  const auto with = [](char decimal, const char* format) {
+    return [=](double a, double b, double c) {
+      char text[128];
+      std::snprintf(text, sizeof text, format, a, b, c);
+      std::string out = text;
+      std::ranges::replace(out, '.', decimal);
+      return out;
+    };
+  };
+  const auto expect_room = [&](const std::string& text, const std::vector<std::string>& options) {
+    write("room.csv", text);
+    std::vector<std::string> words{"import", path("room.csv"), "-o", path("room.glb")};
+    words.insert(words.end(), options.begin(), options.end());
+    json_of(words);
+    const Box box = Scene::load(path("room.glb")).bounds();
+    EXPECT_NEAR(box.size().x, 8, 0.3), EXPECT_NEAR(box.size().y, 6, 0.3), EXPECT_NEAR(box.size().z, 2.8, 0.3);
+  };
+  const auto plain = with('.', "%.2f %.2f %.2f"), comma = with(',', "7;%.2f;%.2f;%.2f");
+  expect_room(room_text(plain), {});
+  expect_room(room_text([&](double x, double y, double z) { return plain(z, y, x); }), {"--columns", "z,y,x"});
+  expect_room(room_text([&](double x, double y, double z) { return comma(y, x, z); }), {"--columns", "-;y;x;z"});
+  expect_room(room_text([&](double x, double y, double z) { return comma(1000 * x, 1000 * z, -1000 * y); }),
+              {"--columns", "-,x,y,z", "--unit", "mm", "--up", "y"});
+  expect_room("no,height,north,east\n" +
+                  room_text([&](double x, double y, double z) { return with('.', "1,%.2f,%.2f,%.2f")(z, y, x); }),
+              {});
+  // What is not clear is asked, and leaves no file.
+  write("turned.xyz", room_text([&](double x, double y, double z) { return plain(z, y, x); }));
+  expect_refused(run_program({"import", path("turned.xyz"), "--columns", "x,y,z", "-o", path("none.glb")}), 1,
+                 "turned.xyz: its unit");
+  EXPECT_FALSE(std::filesystem::exists(path("none.glb")));
+  expect_refused(run_program({"import", path("turned.xyz"), "--columns", "x,y,-,z", "-o", path("none.glb")}), 1,
+                 "names column 4 z");
+  expect_refused(run_program({"import", path("site.obj"), "--columns", "x,y,z", "-o", path("none.glb")}), 2,
+                 "--columns is for points");
 }
 
 }  // namespace
