@@ -13,6 +13,8 @@ namespace {
 
 // Units of a coverage of 1: as many as 64 bits hold sums of, and their changes.
 constexpr double kCoverUnits = 0x1p60;
+// Blocks of elements that are looked at side by side.
+constexpr std::size_t kBlocks = 64;
 
 }  // namespace
 
@@ -65,14 +67,25 @@ double PartialCover::value() const {
 }
 
 ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : offsets_(matrix.elements() + 1, 0) {
-  for (std::size_t k = 0; k < matrix.candidates(); ++k)
-    for (const CoverageMatrix::Entry& one : matrix.column(k)) ++offsets_[one.element + 1];
+  // Each task looks at all candidates' entries in a block of elements, which no other task writes to.
+  const auto each = [&](const auto& visit) {
+    parallel::for_all(std::size_t{0}, kBlocks, [&](std::size_t block) {
+      const std::size_t first = block * matrix.elements() / kBlocks, end = (block + 1) * matrix.elements() / kBlocks;
+      if (first == end) return;
+      for (std::size_t k = 0; k < matrix.candidates(); ++k) {
+        const std::span<const CoverageMatrix::Entry> column = matrix.column(k);
+        auto one = std::ranges::lower_bound(column, first, {}, &CoverageMatrix::Entry::element);
+        for (; one != column.end() && one->element < end; ++one) visit(k, *one);
+      }
+    });
+  };
+  each([&](std::size_t, const CoverageMatrix::Entry& one) { ++offsets_[one.element + 1]; });
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
   columns_.resize(offsets_.back());
   std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-  for (std::size_t k = 0; k < matrix.candidates(); ++k)
-    for (const CoverageMatrix::Entry& one : matrix.column(k))
-      columns_[next[one.element]++] = {static_cast<std::uint32_t>(k), one.amount};
+  each([&](std::size_t k, const CoverageMatrix::Entry& one) {
+    columns_[next[one.element]++] = {static_cast<std::uint32_t>(k), one.amount};
+  });
   const double scale = matrix.total_weight() > 0 ? kCoverUnits / matrix.total_weight() : 0;
   elements_.reserve(matrix.elements());
   CoverUnits whole = 0;

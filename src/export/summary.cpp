@@ -117,9 +117,10 @@ std::string beyond_text(const Evaluation& evaluation, const std::vector<std::str
 // "to about 2.1 mm, as predicted, with 6 targets (28.5 mm without); LOA30 (15 mm at 95 %) is met with 10.9 mm to spare"
 std::string registered_text(const Evaluation& evaluation, const Estimate& registered,
                             const std::vector<std::string>& names) {
+  constexpr double kLeastPrinted_mm = 0.005;
   const double rms_mm = registered.value, sampling_mm = registered.standard_error;
-  std::string text =
-      "to about " + fixed(rms_mm, 2) + (sampling_mm > 0 ? " ± " + fixed(sampling_mm, 2) : "") + " mm, as predicted";
+  std::string text = "to about " + fixed(rms_mm, 2) +
+                     (sampling_mm >= kLeastPrinted_mm ? " ± " + fixed(sampling_mm, 2) : "") + " mm, as predicted";
   const auto by = static_cast<std::size_t>(
       std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
   if (!evaluation.targets.empty()) {
