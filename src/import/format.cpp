@@ -378,9 +378,10 @@ Recognised recognise(const std::filesystem::path& file, const std::vector<std::s
     for (const std::filesystem::path& other : files) {
       const Format* const format = recognise(other).format;
       if (!format->several)
-        throw Error(Errc::invalid_argument, other.string() + ": this is " + format->name +
-                                                ", and several files are one site if they are IFC models, scans or "
-                                                "floor plans; give one file");
+        throw Error(beside.empty() ? Errc::malformed_file : Errc::invalid_argument,
+                    other.string() + ": this is " + format->name +
+                        ", and several files are one site if they are IFC models, scans or "
+                        "floor plans; give one file");
       if (format != first.format)
         throw Error(Errc::malformed_file, other.string() + ": this is " + format->name + ", and " +
                                               files.front().filename().string() + " is " + first.format->name +
