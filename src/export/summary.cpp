@@ -371,9 +371,8 @@ std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
   if (result.pays)
     lines.push_back({"pays", "a further station would capture some " + fixed(result.pays->next_m2, 0) +
-                                 " m² that the others do not, and is to capture " + number(result.pays->least_m2) +
-                                 " m²: " + percent(result.pays->capture) +
-                                 " of what is attainable is what was asked for"});
+                                 " m² of new surface, and has to capture " + number(result.pays->least_m2) +
+                                 " m²; so " + percent(result.pays->capture) + " of what is attainable was asked for"});
   for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))
