@@ -96,7 +96,7 @@ std::string in_words(const Requirement& requirement) {
   const Objective& objective = requirement.objective;
   return (objective.noun.empty() ? objective.name : objective.noun) +
          (requirement.bound == Requirement::Bound::at_least ? " at least " : " at most ") +
-         (objective.percent        ? number(100 * requirement.limit) + " %"
+         (objective.percent        ? number(std::round(1e8 * requirement.limit) / 1e6) + " %"
           : objective.unit.empty() ? number(requirement.limit)
                                    : number(requirement.limit) + " " + objective.unit);
 }

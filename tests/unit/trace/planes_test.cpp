@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/trace_scenes.hpp"
 
@@ -49,8 +50,9 @@ TEST(Planes, DistancesDoNotDependOnTheRaysBeside) {
 TEST(Planes, ARayInThePlaneStaysWithinTheTriangle) {
   const Planes planes(
       test::SceneBuilder().mesh(Role::surveyed, test::quad({-50, 3, -50}, {100, 0, 0}, {0, 0, 100})).finish());
-  for (const Float3& o : {Float3{-60, 3, 0}, Float3{-60, 3.0000005f, 0}, Float3{-60, 2.9f, 0}}) {
-    for (const Float3& d : {Float3{1, 0, 0}, Float3{1, 1e-7f, 0}, Float3{1, -1e-7f, 0}}) {
+  for (const Float3& d : {Float3{1, 0, 0}, Float3{1, 1e-7f, 0}, Float3{1, -1e-7f, 0}}) {
+    EXPECT_EQ(distance(planes, 0, {-60, 2.9f, 0}, d), std::numeric_limits<float>::infinity());  // beside it
+    for (const Float3& o : {Float3{-60, 3, 0}, Float3{-60, 3.0000005f, 0}}) {
       const float t = distance(planes, 0, o, d);
       EXPECT_GE(t, 10) << o.y << " " << d.y;
       EXPECT_LE(t, 110) << o.y << " " << d.y;
