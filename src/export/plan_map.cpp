@@ -427,7 +427,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
   }
   if (const auto ground = common_ground(view, level); ground && level.only() && !brief)
     subtitle += ", most stations on ground at z = " + fixed(*ground, 2) + " m";
-  const auto ticks = [](double length) { return std::max(2, static_cast<int>(length / 95)); };
+  const auto ticks = [](double length) { return std::max(3, static_cast<int>(length / 95)); };
   const Chart chart(canvas, map,
                     {.label = "x (m)",
                      .low = window.min.x,

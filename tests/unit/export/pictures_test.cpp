@@ -28,6 +28,7 @@ TEST(Chart, TicksAreRoundAndInside) {
   EXPECT_EQ(tick_labels(nice_ticks(-30, 30, 6)),
             (std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"}));
   EXPECT_EQ(tick_labels(nice_ticks(4'500'000.2, 4'500'020.1, 4)).front(), "4500005");
+  EXPECT_EQ(tick_labels({0}), (std::vector<std::string>{"0"}));
   std::mt19937 random(2);
   for (int round = 0; round < 1000; ++round) {
     const double low = std::ldexp(static_cast<double>(random()) - 2e9, -static_cast<int>(random() % 60));
