@@ -476,7 +476,7 @@ FILES = {
     "holds_itself.dae": (collada_holds_itself, False),
     "deep.dae": (collada_deep, False),
     "doubles.x3d": (x3d_doubles, False),
-    "entities.x3d": (x3d_entities, True),
+    "entities.x3d": (x3d_entities, False),
     "doubles.dxf": (dxf_doubles, False),
     "doubles.fbx": (fbx_doubles, False),
     "claims.fbx": (fbx_claims, False),
