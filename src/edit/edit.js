@@ -141,7 +141,7 @@
 
   // The first tile says how well its figures are known.
   function tellCaptured({ coverage, capture }) {
-    const sampled = (name, { value, error }) => `${name} ${value.toFixed(4)}${state.exact ? '' : ` ± ${error.toFixed(4)}`}`;
+    const sampled = (name, { value, standard_error: error }) => `${name} ${value.toFixed(4)}${state.exact ? '' : ` ± ${error.toFixed(4)}`}`;
     const share = capture && capture.value !== null ? `${capture.standard_error > 0 ? `± ${percent(capture.standard_error)} ` : ''}of what is attainable; ` : '';
     at('figures').querySelector('dd small').textContent = `${share}${sampled('coverage', coverage)}, ${state.exact ? 'by every ray' : 'from a sample'}`;
   }
