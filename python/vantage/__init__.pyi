@@ -274,6 +274,7 @@ class SearchArea:
         passage_height_m: float = 1.9,
         climb_m: float = 0.25,
         enter: Sequence[Sequence[float]] = [],
+        enter_closed: bool = True,
         levels: Optional[Tuple[float, float]] = None,
         within: Sequence[Rings] = [],
         without: Sequence[Rings] = [],
