@@ -760,6 +760,7 @@ class Site:
     def open(
         file: Path,
         *,
+        beside: Setting = None,
         surveyed: Setting = None,
         blocking: Setting = None,
         search: Setting = None,
