@@ -292,7 +292,7 @@ await page.close();
 const again = await watchedPage(browser, { width: 820, height: 1180 });
 await again.goto(url);
 await again.waitForSelector('html[data-ready]');
-const texts = (await again.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
+const texts = await again.locator('#stations tbody tr').evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent.trim())));
 assert.deepEqual(texts.map((row) => row.slice(0, 5)), heads.map((row) => row.slice(0, 5)));
 assert.equal(await again.locator('.label.locked').count(), 1);
 await again.locator('#exact').click();
