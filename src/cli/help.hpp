@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What --help prints: what a command does, examples, its own options, then those of every site.
+// Text of --help: the purpose of a command, examples, its own options, then those of every site.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -45,7 +45,7 @@ class ColumnIndex {
   struct Element {
     CoverUnits whole = 0, each = 0;  // covered, and by a unit of its amount
     std::uint64_t enough = 0;        // amount that covers it
-    // What so much covers of an element without any, and what is not covered with so much.
+    // Units that an amount alone covers, and units that are not covered with it.
     CoverUnits by(std::uint64_t amount) const { return each * static_cast<CoverUnits>(std::min(amount, enough)); }
     CoverUnits missing(std::uint64_t amount) const { return std::max(whole - by(amount), CoverUnits{0}); }
   };

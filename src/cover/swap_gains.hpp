@@ -14,7 +14,7 @@ namespace vantage {
 // what its two columns touch: the rows of their elements, once for each member that has them, too.
 class SwapGains {
  public:
-  // What a candidate gains more without a member than with it.
+  // The gain of a candidate without a member, less its gain with it.
   struct More {
     std::uint32_t candidate;
     CoverUnits gain;

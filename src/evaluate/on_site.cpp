@@ -37,7 +37,7 @@ class Walk {
  public:
   explicit Walk(const Matrix& costs) : costs_(costs) {}
 
-  // By nearest neighbour, then improved.
+  // The round begins as the one to the nearest neighbour, and is improved.
   std::vector<std::size_t> order() {
     const std::size_t n = costs_.size();
     std::vector<bool> seen(n, false);

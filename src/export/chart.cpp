@@ -32,7 +32,7 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
 }
 
 std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
-  // What a decimal adds is judged by the distance between ticks: coordinates may be millions of times as large.
+  // The distance between ticks tells how many decimals count: coordinates may be millions of times as large.
   const double step = ticks.size() > 1                 ? std::abs(ticks[1] - ticks[0])
                       : ticks.empty() || ticks[0] == 0 ? 1
                                                        : std::abs(ticks[0]);

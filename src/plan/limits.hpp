@@ -20,7 +20,7 @@ inline std::optional<double> limit_of(const SurveyProblem& problem, Objective::K
   return limit;
 }
 
-// Whether it says how much of what is attainable has to be captured.
+// Tells whether a requirement says how much of what is attainable has to be captured.
 inline bool requires_capture(const Requirement& r) {
   return r.objective.kind == Objective::Kind::coverage && r.objective.needs.attainable &&
          r.bound == Requirement::Bound::at_least;

@@ -65,7 +65,7 @@ bool holds(const MapTile& tile, const Vec3& p) {
   return p.x >= window.min.x && p.x <= window.max.x && p.y >= window.min.y && p.y <= window.max.y;
 }
 
-// Without tiles whose stations others show, those with fewest stations first.
+// Leaves out tiles whose stations others show, those with fewest stations first.
 void drop_repeating(std::vector<MapTile>& tiles, const std::vector<Vec3>& spots) {
   const auto count = [&](const MapTile& tile) {
     return std::ranges::count_if(spots, [&](const Vec3& p) { return holds(tile, p); });
