@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "export/chart.hpp"
+#include "export/distance_apart.hpp"
 #include "export/left_out_hatch.hpp"
 #include "export/place_discs.hpp"
 #include "export/relief.hpp"
@@ -105,19 +106,8 @@ std::optional<double> common_ground(const PlanView& view, const PlanLevel& level
 // stations stand close together.
 double mark_radius(const Rect& map, const std::vector<Point>& spots) {
   constexpr double kLeast = 5.5, kOfMap = 1.0 / 12, kOfDistance = 0.4;
-  std::vector<double> apart;
-  for (std::size_t i = 0; i < spots.size(); ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < spots.size(); ++j)
-      if (j != i) least = std::min(least, std::hypot(spots[i].x - spots[j].x, spots[i].y - spots[j].y));
-    apart.push_back(least);
-  }
-  double radius = std::min(kDisc, kOfMap * std::min(map.width, map.height));
-  if (!apart.empty()) {
-    const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2);
-    std::nth_element(apart.begin(), middle, apart.end());
-    radius = std::min(radius, kOfDistance * *middle);
-  }
+  const double radius =
+      std::min({kDisc, kOfMap * std::min(map.width, map.height), kOfDistance * distance_apart(spots, 2)});
   return std::max(kLeast, radius);
 }
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "export/distance_apart.hpp"
 
 namespace vantage {
 namespace {
@@ -37,21 +38,6 @@ SheetLayout best_way(const Paper& paper, const Vec3& size, double panel) {
     if (best.ratio == 0 || ratio < best.ratio) best = {.paper = way, .map = map, .ratio = ratio};
   }
   return best;
-}
-
-// How far apart stations are, but for a quarter of them; infinity for one.
-double distance_apart(const std::vector<Vec3>& spots) {
-  std::vector<double> apart;
-  for (std::size_t i = 0; i < spots.size(); ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < spots.size(); ++j)
-      if (j != i) least = std::min(least, std::hypot(spots[i].x - spots[j].x, spots[i].y - spots[j].y));
-    apart.push_back(least);
-  }
-  if (apart.empty()) return std::numeric_limits<double>::infinity();
-  const auto quarter = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 4);
-  std::nth_element(apart.begin(), quarter, apart.end());
-  return *quarter;
 }
 
 Box around(double x, double y, const SheetLayout& layout) {
@@ -170,7 +156,7 @@ Paper a4() { return {"A4", 595.28, 841.89}; }
 Paper lying(Paper paper) { return {paper.name, paper.height, paper.width}; }
 
 SheetLayout lay_out(const Box& storey, const std::vector<Vec3>& spots, int coarsest, double panel) {
-  const double clear = kPointsPerMetre * distance_apart(spots) / kMarkWidth;
+  const double clear = kPointsPerMetre * distance_apart(spots, 4) / kMarkWidth;
   const auto limit = [&](int most) {
     int found = kRatios[0];
     for (const int ratio : kRatios)
