@@ -171,7 +171,8 @@ struct Connectivity {
   std::pair<std::size_t, std::size_t> weakest_link{0, 0};
   double weakest_overlap = 0;
 };
-/// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
+/// Links are the pairs whose overlap is above 0 and at least `min_overlap`, from 0 to 1.
+/// Throws Error: invalid_argument.
 Connectivity connectivity(const PairMatrix& overlap, double min_overlap);
 /// Smallest overlap (equation 11) at which stations count as linked, by default. Figure 12 of the method draws links
 /// from 0.01 on; its figure 16 those above 0.05.

@@ -101,14 +101,18 @@ double target_reach_m(const Scanner& scanner, const TargetOptions& options) {
   return std::min(std::sqrt(points_at(scanner, 1, options) / points), scanner.max_range_m);
 }
 
+void check(const Target& target, const Vec3& origin) {
+  require_in_reach(target.centre, origin, "target \"" + target.name + "\" is");
+  check_number(target.control_m, "targets: the sigma of " + target.name, any_share);
+}
+
 std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,
                                               std::span<const PlacedStation> stations, std::vector<Target>& targets,
                                               const TargetOptions& options) {
   check(options);
   std::vector<RegistrationTarget> sighted;
   for (Target& target : targets) {
-    require_in_reach(target.centre, simulator.origin(), "target \"" + target.name + "\" is");
-    check_number(target.control_m, "targets: the sigma of " + target.name, any_share);
+    check(target, simulator.origin());
     RegistrationTarget one{.centre = target.centre - simulator.origin(), .control_m = target.control_m};
     target.stations.clear();
     for (std::size_t k = 0; k < stations.size(); ++k) {

@@ -10,6 +10,10 @@
 
 namespace vantage {
 
+// Throws Error invalid_argument unless the target's place is within reach of the scene's origin and its sigma is a
+// length, survey frame and metres.
+void check(const Target& target, const Vec3& origin);
+
 // Fills `Target::stations`, and returns the targets as `registration_error()` takes them. A station measures a target
 // if the line between them is free, it lies within the scanner's field and range, and enough points fall on it: the
 // target's disc over range² · Δazimuth · Δzenith · sin zenith. The variance of a centre is sigma² + 3 σ²/N for N

@@ -74,6 +74,7 @@ struct SearchArea::Impl {
 };
 
 SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options) {
+  check(options);
   const SceneData& data = scene.data();
   WalkableSurface surface;
   if (!has_station_area(data) && !data.search_uvs.empty() &&

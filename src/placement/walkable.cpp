@@ -13,6 +13,9 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/parse.hpp"
+#include "core/setting_table.hpp"
+#include "core/site_reach.hpp"
 #include "placement/area_limits.hpp"
 #include "placement/charts.hpp"
 #include "placement/ground_field.hpp"
@@ -447,32 +450,25 @@ bool is_scanned(const SceneData& scene) {
   return scanned != defaults.end() && scanned->is_boolean() && scanned->get<bool>();
 }
 
-void check(const WalkableOptions& options) {
-  const double slope = options.max_slope.in_degrees();
-  const auto refuse = [](const char* what, double value, const char* wanted) {
-    std::ostringstream text;
-    text << what << " must be " << wanted << "; it is " << value;
-    throw Error(Errc::invalid_argument, text.str());
-  };
-  if (!(slope >= 0 && slope < 90)) refuse("the largest slope of a walkable surface", slope, "in [0°, 90°)");
-  if (!(options.headroom_m >= 0) || !std::isfinite(options.headroom_m))
-    refuse("the headroom above a walkable surface, in metres,", options.headroom_m, "finite and not negative");
-  if (!(options.min_area_m2 >= 0) || !std::isfinite(options.min_area_m2))
-    refuse("the smallest area of a walkable part, in m²,", options.min_area_m2, "finite and not negative");
-  if (!(options.passage_width_m > 0) || !std::isfinite(options.passage_width_m))
-    refuse("the width of the narrowest passage, in metres,", options.passage_width_m, "finite and above 0");
-  if (!(options.climb_m >= 0) || !std::isfinite(options.climb_m))
-    refuse("the highest step, in metres,", options.climb_m, "finite and not negative");
-  if (!(options.passage_height_m > options.climb_m) || !std::isfinite(options.passage_height_m))
-    refuse("the height of the lowest passage, in metres,", options.passage_height_m,
-           "finite and above the highest step");
-  AreaLimits{options};
-}
-
 }  // namespace
 
 double piece_spacing(const WalkableOptions& options, const Box& bounds) {
   return std::max(options.headroom_m / 5, extent_of(bounds) / 512);
+}
+
+void check(const WalkableOptions& options) {
+  // Lengths as far as any position may be; beyond, floats of rays overflow.
+  constexpr Interval length{.low = 0, .high = kSiteReach_m};
+  check_number(whole_degrees(options.max_slope), "the largest slope of a walkable surface",
+               {.low = 0, .high = 90, .high_included = false});
+  check_number(options.headroom_m, "the headroom above a walkable surface, in metres,", length);
+  check_number(options.min_area_m2, "the smallest area of a walkable part, in m²,", not_negative);
+  check_number(options.passage_width_m, "the width of the narrowest passage, in metres,",
+               {.low = 0, .high = kSiteReach_m, .low_included = false});
+  check_number(options.climb_m, "the highest step, in metres,", length);
+  check_number(options.passage_height_m, "the height of the lowest passage, in metres,",
+               {.low = options.climb_m, .high = kSiteReach_m, .low_included = false});
+  AreaLimits{options};
 }
 
 bool has_station_area(const SceneData& scene) {
@@ -480,7 +476,6 @@ bool has_station_area(const SceneData& scene) {
 }
 
 WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOptions& options) {
-  check(options);
   const bool named = has_station_area(scene);
   if (!named && !scene.search_triangles.empty()) {
     WalkableSurface marked = unfold_marked(scene, options);

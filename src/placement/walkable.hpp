@@ -23,7 +23,11 @@ struct WalkableSurface {
 // Returns the first non-empty of: meshes marked as station area; the marked search area unfolded into charts; upward,
 // gentle and clear surfaces reached on foot, if they form a ground around the model; a plane laid under the model.
 // Throws Error invalid_argument if the scene has no mesh at all, or nothing lies within the limits.
+// `options` have been checked.
 WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOptions& options);
+
+// Throws Error invalid_argument for a setting out of bounds.
+void check(const WalkableOptions& options);
 
 // Size of the pieces into which surfaces are cut.
 double piece_spacing(const WalkableOptions& options, const Box& bounds);

@@ -5,6 +5,7 @@
 
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
+#include "evaluate/sight_targets.hpp"
 #include "plan/limits.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
@@ -32,8 +33,7 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
     check_number(requirement.limit, "the limit of " + requirement.objective.name);
   for (std::size_t k = 0; k < problem.existing.size(); ++k)
     require_in_reach(problem.existing[k], origin, "existing station " + std::to_string(k + 1) + " stands");
-  for (const Target& target : problem.existing_targets)
-    require_in_reach(target.centre, origin, "target \"" + target.name + "\" is");
+  for (const Target& target : problem.existing_targets) check(target, origin);
   if (problem.on_site.entrance) require_in_reach(*problem.on_site.entrance, origin, "the entrance is");
 }
 

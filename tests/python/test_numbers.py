@@ -102,12 +102,14 @@ class Numbers(unittest.TestCase):
 
     def test_numbers_of_calls(self):
         site, matrix, graph = self.site, self.matrix, self.graph
-        # Its ground is derived by the settings; the site's is marked.
+        evaluation = site.evaluate([HEAD, [-8, 0, 1.5]])
         floor = vantage.Scene.from_triangles([[0, 0, 0], [8, 0, 0], [8, 8, 0], [0, 8, 0]], np.array([[0, 1, 2], [0, 2, 3]]))
         calls = {
             "reach_m": lambda v: site.nearest_place(HEAD, v),
             "limit_m": lambda v: site.clash.distance([HEAD], v),
             "height_m": lambda v: site.clash.clashes([HEAD], v),
+            "connectivity": lambda v: evaluation.connectivity(v).parts,
+            "control_m": lambda v: site.plan(**TINY_PLAN, existing_targets=[vantage.Target("T", HEAD, v)]).front,
             "link": lambda v: site.evaluate([HEAD], link=v),
             "sample_voxels": lambda v: site.evaluate([HEAD], sample_voxels=v),
             "heading": lambda v: self.simulator.evaluate([vantage.Station(HEAD, vantage.StationSetup(heading_deg=v))]),
@@ -154,8 +156,9 @@ class Numbers(unittest.TestCase):
             calls["Simulator " + member] = lambda v, member=member: vantage.Simulator(
                 site.scene, vantage.Scanner(azimuth_step_deg=4, zenith_step_deg=4),
                 **{"engine": "embree", "user_size_m": 1, "point_spacing_m": 0.3, member: v}).evaluate([HEAD])
-        for member in ("max_slope_deg", "headroom_m", "min_area_m2", "passage_width_m", "climb_m"):
-            calls["SearchArea " + member] = lambda v, member=member: vantage.SearchArea(floor, **{member: v}).uv_max
+        for name, scene in {"derived": floor, "marked": site.scene}.items():
+            for member in ("max_slope_deg", "headroom_m", "min_area_m2", "passage_width_m", "passage_height_m", "climb_m"):
+                calls[f"SearchArea {name} {member}"] = lambda v, member=member, scene=scene: vantage.SearchArea(scene, **{member: v}).uv_max
         for name, call in calls.items():
             for value in ODD:
                 self.ends(f"{name}: {value}", lambda: call(value), refused=isinstance(value, float) and math.isnan(value))
