@@ -203,6 +203,9 @@ struct SampleOptions {
   std::optional<RegistrationModel> registration = std::nullopt;
   /// Fills `NetworkCounts::groups` and `successive_difference_sum`. Standard errors need them; a search can do without.
   bool groups = true;
+  /// Optional, a byte for each voxel of the sample: those that are not 0 need not be counted, and the results are then
+  /// without the points there, or with them.
+  std::span<const std::uint8_t> leave_out = {};
 };
 
 /// The surface in a voxel, as the plane that holds most of it.

@@ -200,7 +200,8 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
 
 void add_bound(CLI::App& app, Program& program) {
   add_command<BoundOptions>(app, program, "bound",
-                            "Bound the coverage of a number of stations, and the number for a coverage", bound);
+                            "Bound the coverage of a number of stations, and the number for a coverage", bound,
+                            {"vantage bound site.glb --stations 10,20 --capture 0.9"});
 }
 
 }  // namespace vantage::cli

@@ -183,7 +183,8 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
 }  // namespace
 
 void add_edit(CLI::App& app, Program& program) {
-  add_command<EditCommandOptions>(app, program, "edit", "Move stations by hand, in a browser on this machine", edit);
+  add_command<EditCommandOptions>(app, program, "edit", "Move stations by hand, in a browser on this machine", edit,
+                                  {"vantage edit site.glb --stations hall/front.json"});
 }
 
 }  // namespace vantage::cli

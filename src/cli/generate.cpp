@@ -54,7 +54,8 @@ int generate(CLI::App&, GenerateOptions& options, Program& program) {
 }  // namespace
 
 void add_generate(CLI::App& app, Program& program) {
-  add_command<GenerateOptions>(app, program, "generate", "Write a built-in scene", generate);
+  add_command<GenerateOptions>(app, program, "generate", "Write a built-in scene", generate,
+                               {"vantage generate office -o office.glb"});
 }
 
 }  // namespace vantage::cli

@@ -42,7 +42,7 @@ std::string HelpText::make_option(const CLI::Option* option, bool is_positional)
 std::string HelpText::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
   if (mode == CLI::AppFormatMode::Sub) return Formatter::make_help(app, std::move(name), mode);
   std::string text = make_description(app) + make_usage(app, std::move(name));
-  if (const auto found = examples_.find(app); found != examples_.end()) {
+  if (const auto found = examples_.find(app); found != examples_.end() && !found->second.empty()) {
     text += "\nExamples:\n";
     for (const std::string& line : found->second) text += "  " + line + "\n";
   }

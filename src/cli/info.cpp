@@ -129,7 +129,8 @@ int info(CLI::App&, InfoOptions& options, Program& program) {
 }  // namespace
 
 void add_info(CLI::App& app, Program& program) {
-  add_command<InfoOptions>(app, program, "info", "List engines, devices and scanners, and why one was chosen", info);
+  add_command<InfoOptions>(app, program, "info", "List engines, devices and scanners, and why one was chosen", info,
+                           {"vantage info --measure site.glb"});
 }
 
 }  // namespace vantage::cli

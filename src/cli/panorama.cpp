@@ -105,8 +105,9 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
 }  // namespace
 
 void add_panorama(CLI::App& app, Program& program) {
-  add_command<PanoramaCommandOptions>(app, program, "panorama",
-                                      "Draw the views of stations as equirectangular pictures", panorama);
+  add_command<PanoramaCommandOptions>(
+      app, program, "panorama", "Draw the views of stations as equirectangular pictures", panorama,
+      {"vantage panorama site.glb --stations hall/stations.csv --views colour -o hall"});
 }
 
 }  // namespace vantage::cli

@@ -63,4 +63,18 @@ inline void wait(tbb::task_group& group) {
   if (group.wait() == tbb::canceled) throw CutShort{};
 }
 
+// Runs `other` in a task while this thread runs `own`, whose loops do not take that task up.
+template <class Other, class Own>
+void beside(const Other& other, const Own& own) {
+  tbb::task_group group;
+  group.run(other);
+  try {
+    tbb::this_task_arena::isolate(own);
+  } catch (...) {
+    group.wait();
+    throw;
+  }
+  wait(group);
+}
+
 }  // namespace vantage::parallel

@@ -103,6 +103,9 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
     std::vector<Network> alone;
     for (const Station& station : stations.subspan(first, std::min(kStationsAtOnce, stations.size() - first)))
       if (station.active) alone.push_back({station});
+    // Voxels that have their goal cannot rise.
+    std::vector<std::uint8_t> enough(attainable.voxels().size());
+    for (std::size_t e = 0; e < enough.size(); ++e) enough[e] = attainable.has_goal(e);
     std::size_t counted = 0;
     const auto share = [&](double done) {
       progress((static_cast<double>(first) + done * static_cast<double>(alone.size())) /
@@ -119,7 +122,8 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
                                         attainable.raise(points);
                                         ++counted;
                                       },
-                                  .groups = false},
+                                  .groups = false,
+                                  .leave_out = enough},
                                  {share, progress.stop});
     if (counted < alone.size() || progress.stopped()) return false;
   }

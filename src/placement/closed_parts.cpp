@@ -121,9 +121,24 @@ GroundField::Ways GroundField::ways_from_reached() const {
   Ways ways{std::vector<std::uint8_t>(z_.size(), kEfforts), std::vector<std::uint32_t>(z_.size(), nowhere)};
   std::array<std::vector<std::uint32_t>, kEfforts> open;
   std::vector<std::uint8_t> done(z_.size(), 0);
-  for (std::uint32_t s = 0; s < z_.size(); ++s)
-    if (has_room(s) && access_[part_[s]] == Access::reached) ways.effort[s] = walk, open[walk].push_back(s);
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
+  const auto reached = [&](std::uint32_t s) { return has_room(s) && access_[part_[s]] == Access::reached; };
+  // Most of what is reached lies among what is reached, from where nothing new begins.
+  parallel::for_all(std::size_t{0}, z_.size(), [&](std::size_t k) {
+    const auto s = static_cast<std::uint32_t>(k);
+    if (!reached(s)) return;
+    ways.effort[s] = walk;
+    bool leads_on = false;
+    for_neighbours(s, [&](std::uint32_t n) { leads_on = leads_on || !reached(n); });
+    for_columns_beside(column_[s], across, [&](std::uint32_t other) {
+      for (std::uint32_t n = first_[other]; n < first_[other + 1] && !leads_on; ++n) leads_on = !reached(n);
+    });
+    done[s] = !leads_on;
+  });
+  for (const auto& link : climbs_)
+    if (reached(link.first)) done[link.first] = 0;
+  for (std::uint32_t s = 0; s < z_.size(); ++s)
+    if (ways.effort[s] == walk && !done[s]) open[walk].push_back(s);
   for (std::size_t now = 0; now < kEfforts;) {
     if (open[now].empty()) {
       ++now;

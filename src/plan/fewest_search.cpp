@@ -10,7 +10,9 @@ namespace {
 
 // Stations that the search may trace for each traced candidate.
 constexpr double kSearchShare = 2;
-constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
+constexpr std::size_t kMostIterations = 100;
+// Networks tried for each coordinate, below which CMA-ES has not even learnt a direction, and keeps what it began with.
+constexpr std::size_t kLeastTries = 10;
 // First steps: about the distance between candidates, not the size of the site.
 constexpr double kRefiningSigma = 0.03;
 
@@ -32,13 +34,13 @@ PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std:
   if (config.iterations == 0) {
     const double stations = kSearchShare * static_cast<double>(candidates);
     const auto each = static_cast<double>(population_of(problem, config) * problem.stations_max);
-    config.iterations = std::clamp(static_cast<std::size_t>(stations / each), kLeastIterations, kMostIterations);
+    config.iterations = std::clamp<std::size_t>(static_cast<std::size_t>(stations / each), 1, kMostIterations);
   }
   return config;
 }
 
 bool worth_searching(const SurveyProblem& problem, const PlanConfig& config) {
-  return config.iterations * population_of(problem, config) >= problem.stations_max;
+  return config.iterations * population_of(problem, config) >= kLeastTries * 2 * problem.stations_max;
 }
 
 }  // namespace vantage

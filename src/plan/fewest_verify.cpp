@@ -162,6 +162,13 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   const DecisionSpace space(oracle_, narrowed);
   SearchOutcome ordered = found;
   for (ParetoPoint& point : ordered.front) point.x = in_order(space, point.x, visit_order_);
+  // A search may keep the network that it began with.
+  const auto known = [&](const ParetoPoint& point) {
+    return std::ranges::any_of(entries_, [&](const PlanEntry& entry) { return entry.exact && entry.x == point.x; });
+  };
+  for (std::size_t k = ordered.front.size(); k-- > 0;)
+    if (known(ordered.front[k])) drop_point(ordered, k);
+  if (ordered.front.empty()) return;
   for (PlanEntry& entry :
        confirm_front(ordered, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
     entry.violation = violation_of(entry, problem_.requirements);

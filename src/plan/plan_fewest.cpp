@@ -253,9 +253,7 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   // Registration draws stations together; those that do the same do not need each other.
   const DecisionSpace space(context.oracle(), asked);
   for (std::size_t k = found.front.size(); k-- > 0;) {
-    if (choice.table.spaced(space.decode(found.front[k].x))) continue;
-    found.front.erase(found.front.begin() + static_cast<std::ptrdiff_t>(k));
-    if (k < found.estimates.size()) found.estimates.erase(found.estimates.begin() + static_cast<std::ptrdiff_t>(k));
+    if (!choice.table.spaced(space.decode(found.front[k].x))) drop_point(found, k);
   }
   if (report.stopped() && (found.stop_reason == StopReason::running || found.front.empty()))
     found.stop_reason = StopReason::cancelled;

@@ -247,4 +247,10 @@ class Search {
 
 SearchOutcome search(const SearchSetup& setup) { return Search(setup).run(); }
 
+void drop_point(SearchOutcome& found, std::size_t k) {
+  const auto at = static_cast<std::ptrdiff_t>(k);
+  found.front.erase(found.front.begin() + at);
+  if (k < found.estimates.size()) found.estimates.erase(found.estimates.begin() + at);
+}
+
 }  // namespace vantage

@@ -47,4 +47,7 @@ struct SearchOutcome {
 
 SearchOutcome search(const SearchSetup& setup);
 
+// Takes a network out of the front.
+void drop_point(SearchOutcome& found, std::size_t k);
+
 }  // namespace vantage

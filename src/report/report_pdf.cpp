@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/missed_colours.hpp"
@@ -379,10 +380,11 @@ bool write_report_pdf(const std::filesystem::path& file, const Report& report, S
                       const std::stop_token& stop) {
   const Evaluation& network = report.shown();
   const std::vector<StationFacts> facts = station_facts(report, site.simulator());
-  std::vector<Sheet> sheets;
-  sheets.push_back(front_sheet(report, site, stop));
   const std::vector<TargetFacts> of_targets = target_facts(report, site.simulator());
-  FieldSheets maps = field_sheets(report, facts, of_targets, site, stop);
+  std::vector<Sheet> sheets;
+  FieldSheets maps;
+  parallel::both([&] { sheets.push_back(front_sheet(report, site, stop)); },
+                 [&] { maps = field_sheets(report, facts, of_targets, site, stop); });
   if (stop.stop_requested()) return false;
   const std::size_t first_map = sheets.size() + 1;
   std::ranges::move(maps.sheets, std::back_inserter(sheets));

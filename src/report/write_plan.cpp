@@ -87,9 +87,14 @@ class FolderWriter {
     remove_earlier_plan(folder_);
     const VoxelField* const known = field.count.empty() ? nullptr : &field;
     write_tables();
-    draw(known);
-    if (known) judge(*known);
-    if (options_.reports && why_no_report().empty()) report(known);
+    // Progress is told on the calling thread, by those that take longest.
+    const Deadline drawn_by(seconds(), watch_.stop);
+    progress(kDraw, 0, 1, drawn_by)(0);
+    parallel::beside([&] { draw(known, drawn_by.stop()); },
+                     [&] {
+                       if (known) judge(*known);
+                       if (options_.reports && why_no_report().empty()) report(known);
+                     });
     std::ranges::sort(written_.left_out);
     return std::move(written_);
   }
@@ -140,11 +145,9 @@ class FolderWriter {
   }
 
   // Clouds and pictures are made side by side. Both files of a picture are made by one thread, since they share it.
-  void draw(const VoxelField* field) {
-    const Deadline due(seconds(), watch_.stop);
-    progress(kDraw, 0, 1, due)(0);
+  void draw(const VoxelField* field, const std::stop_token& late) {
     tbb::task_group files;
-    files.run([&] { draw_plan(due.stop()); });
+    files.run([&] { draw_plan(late); });
     if (field) files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field); });
     if (field && entry_.registration) {
       files.run([&] {
@@ -212,14 +215,12 @@ class FolderWriter {
     ReportOptions shown = options_.report;
     shown.field = field;
     shown.missed = written_.missed ? &*written_.missed : nullptr;
-    constexpr double kPage = 0.7;  // its share of the time
-    for (const char* name : {"report.html", "report.pdf"}) {
-      const bool page = name == std::string_view("report.html");
-      const Deadline due(seconds(), watch_.stop);
-      if (!write_report(folder_ / name, result_, site_, shown,
-                        progress(kReport, page ? 0 : kPage, page ? kPage : 1, due)))
-        leave_out(name);
-    }
+    const Deadline due(seconds(), watch_.stop);
+    const auto write = [&](const char* name, const Progress& told) {
+      if (!write_report(folder_ / name, result_, site_, shown, told)) leave_out(name);
+    };
+    parallel::beside([&] { write("report.pdf", {.report = {}, .stop = due.stop()}); },
+                     [&] { write("report.html", progress(kReport, 0, 1, due)); });
   }
 
   const std::filesystem::path& folder_;

@@ -691,6 +691,9 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   if (large && networks.size() > 1) return evaluate_one_by_one(networks, options, progress);
   const Sample& taken = sample_of(options.voxels, options.from);
   const std::vector<std::uint32_t>& sample = taken.voxel_indices;
+  if (!options.leave_out.empty() && options.leave_out.size() != sample.size())
+    throw Error(Errc::invalid_argument, "evaluate_sampled: leave_out has " + std::to_string(options.leave_out.size()) +
+                                            " voxels, and the sample " + std::to_string(sample.size()));
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> tracing;
@@ -732,7 +735,8 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
                               .masks = options.overlap,
                               .stop_at = stop_at(options.count_to, goal),
                               .points = options.points ? decltype(options.points)(points) : nullptr,
-                              .registration = registration ? &*registration : nullptr};
+                              .registration = registration ? &*registration : nullptr,
+                              .leave_out = options.leave_out};
   std::vector<NetworkCounts> counts;
   if (large)
     counts.push_back(count_sampled_in_passes(*tracer, tracing.front(), sizes.front(), job, *grid, goal, progress));

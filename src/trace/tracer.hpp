@@ -186,6 +186,8 @@ class Tracer {
     // for every network that was counted to its end, on the calling thread.
     std::function<void(std::size_t first_network, std::span<const std::uint64_t> masks)> station_masks = {};
     const RegistrationJob* registration = nullptr;  // optional, with masks
+    // Optional, a byte for each voxel of the sample: an engine need not count those that are not 0.
+    std::span<const std::uint8_t> leave_out = {};
   };
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,

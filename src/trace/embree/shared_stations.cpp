@@ -6,6 +6,7 @@
 #include <bit>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace vantage {
 namespace {
@@ -30,18 +31,26 @@ Key key_of(const TraceStation& station, bool noisy) {
 
 }  // namespace
 
+StationIds station_ids(std::span<const StationRays> scanners, std::span<const std::vector<TraceStation>> networks) {
+  std::map<Key, std::size_t> known;
+  StationIds ids;
+  for (const std::vector<TraceStation>& network : networks) {
+    std::vector<std::size_t>& own = ids.of.emplace_back();
+    for (const TraceStation& station : network) {
+      const Key key = key_of(station, scanners[station.scanner].noise().enabled());
+      own.push_back(known.try_emplace(key, known.size()).first->second);
+    }
+  }
+  ids.different = known.size();
+  return ids;
+}
+
 SharedStations::SharedStations(std::span<const StationRays> scanners,
                                std::span<const std::vector<TraceStation>> networks, std::size_t most_bytes)
     : most_bytes_(most_bytes) {
-  std::map<Key, std::size_t> known;
-  for (const std::vector<TraceStation>& network : networks) {
-    std::vector<std::size_t>& ids = ids_.emplace_back();
-    for (const TraceStation& station : network) {
-      const Key key = key_of(station, scanners[station.scanner].noise().enabled());
-      ids.push_back(known.try_emplace(key, known.size()).first->second);
-    }
-  }
-  uses_.resize(known.size());
+  StationIds ids = station_ids(scanners, networks);
+  ids_ = std::move(ids.of);
+  uses_.resize(ids.different);
   put_in_order();
   for (std::size_t k = 0; k < order_.size(); ++k)
     for (const std::size_t id : ids_[order_[k]]) uses_[id].push_back(k);

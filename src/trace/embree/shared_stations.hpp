@@ -12,6 +12,13 @@
 
 namespace vantage {
 
+// Numbers of the stations of each network; stations have one number if all their rays give the same points.
+struct StationIds {
+  std::vector<std::vector<std::size_t>> of;  // [network][station]
+  std::size_t different = 0;
+};
+StationIds station_ids(std::span<const StationRays> scanners, std::span<const std::vector<TraceStation>> networks);
+
 class SharedStations {
  public:
   // Keeps at most `most_bytes` of points.

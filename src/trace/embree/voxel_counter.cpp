@@ -67,11 +67,13 @@ SampledVoxelCounter::SampledVoxelCounter(std::span<const StationRays> scanners, 
 }
 
 void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
-                                std::span<std::uint32_t> counts, std::span<std::uint64_t> masks) {
+                                std::span<std::uint32_t> counts, std::span<std::uint64_t> masks,
+                                std::span<const std::uint8_t> leave_out) {
   first_ = first;
   stop_at_ = stop_at;
   counts_ = counts;
   masks_ = masks;
+  leave_out_ = leave_out;
   for (const TraceStation& station : stations) {
     station_ = &station;
     rays_ = &scanners_[station.scanner];

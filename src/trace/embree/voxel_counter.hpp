@@ -31,9 +31,11 @@ class SampledVoxelCounter {
 
   // Counts voxels first, first + 1, …: points of all stations (saturating), and a bit for each station with a point
   // there. Unless `stop_at` is 0, counting stops once a voxel has that many points and its stations are known. `masks`
-  // is empty or as long as `counts`. REQUIRES: at most `block` voxels; counts and masks are 0.
+  // and `leave_out`, whose voxels with a byte other than 0 are not counted, are empty or as long as `counts`. REQUIRES:
+  // at most `block` voxels; counts and masks are 0.
   void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
-             std::span<std::uint32_t> counts, std::span<std::uint64_t> masks);
+             std::span<std::uint32_t> counts, std::span<std::uint64_t> masks,
+             std::span<const std::uint8_t> leave_out = {});
   std::uint64_t traced() const { return traced_; }
 
  private:
@@ -86,6 +88,7 @@ class SampledVoxelCounter {
   void look_from(std::size_t first, std::size_t n);
   // Whether the current station can skip voxel number i of the block.
   bool full(std::uint32_t i) const {
+    if (!leave_out_.empty() && leave_out_[i] != 0) return true;
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
   }
   bool look_at(std::uint32_t i, Look& look);
@@ -126,6 +129,7 @@ class SampledVoxelCounter {
   std::uint32_t stop_at_ = 0;
   std::span<std::uint32_t> counts_;
   std::span<std::uint64_t> masks_;
+  std::span<const std::uint8_t> leave_out_;
   std::uint64_t traced_ = 0;
 
   BoxBatch boxes_;

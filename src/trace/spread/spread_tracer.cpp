@@ -216,7 +216,7 @@ std::vector<NetworkCounts> SpreadTracer::count_by_voxels(std::span<const std::ve
       runs.size(), runs_, progress, [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const auto&) {
         const std::vector<std::uint32_t> voxels = runs.runs(job.sample, chunk.first, chunk.end);
         SampleJob part = job;
-        part.sample = voxels;
+        part.sample = voxels, part.leave_out = {};
         const std::vector<NetworkCounts> counts = tracer.count_sampled(networks, station_counts, part, own);
         if (!came_to_end(counts)) return false;
         const std::lock_guard lock(mutex);

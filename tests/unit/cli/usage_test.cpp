@@ -44,6 +44,15 @@ TEST_F(Usage, HelpBeginsWithWhatAUserLooksFor) {
   EXPECT_EQ(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--user-size", "0.5", "--json"}).exit_code, 0);
 }
 
+TEST_F(Usage, EveryCommandShowsAnExample) {
+  for (const std::string command :
+       {"plan", "evaluate", "scan", "panorama", "next", "bound", "info", "import", "generate", "edit"}) {
+    const std::string help = run_program({command, "--help"}).out;
+    if (help.find("not in this build") != std::string::npos) continue;
+    EXPECT_NE(help.find("\nExamples:\n  vantage " + command + " "), std::string::npos) << help;
+  }
+}
+
 TEST_F(Usage, CommandsAndOptionsMustExist) {
   expect_refused(run_program({}), 2, "no command given");
   expect_refused(run_program({"survey"}), 2, "survey");

@@ -111,6 +111,19 @@ TEST(Attainable, IsNoMoreThanTheirCoverageAndEachOfThemCapturesAllOfItsOwn) {
       << "of one station, its coverage";
 }
 
+TEST(Attainable, CountsNoMoreWhereAStationReachedTheGoal) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.5), config());
+  const Network stations = heads();
+  const std::uint64_t sample = simulator.voxel_count() / 2;
+  AttainableCounts together(simulator, sample), one_by_one(simulator, sample);
+  ASSERT_TRUE(raise_attainable(together, simulator, stations));
+  const std::uint64_t alone = simulator.work().sampled_rays;
+  for (const Station& station : stations) ASSERT_TRUE(raise_attainable(one_by_one, simulator, {&station, 1}));
+  EXPECT_EQ(one_by_one.counts(), together.counts());
+  EXPECT_GT(std::ranges::count(together.counts(), together.goal()), 10);
+  EXPECT_LT(simulator.work().sampled_rays - alone, 2 * alone / 3);
+}
+
 TEST(Attainable, GoesByTheGoalAndWeightOfEachVoxel) {
   Scanner scanner = coarse_scanner(2);
   scanner.beam_divergence = Angle::radians(1e-4), scanner.exit_diameter_m = 0.005;

@@ -33,19 +33,19 @@ TEST(FewestSearch, TracesTwoStationsForEachCandidate) {
   EXPECT_EQ(problem.stations_max, 5u);
   PlanConfig config{.population = 10, .iterations = 0};
   EXPECT_EQ(refining_config(problem, config, 1000).iterations, 40u);  // 2 × 1000 / (10 × 5)
-  EXPECT_EQ(refining_config(problem, config, 10).iterations, 10u) << "at least";
+  EXPECT_EQ(refining_config(problem, config, 10).iterations, 1u) << "at least";
   EXPECT_EQ(refining_config(problem, config, 100'000).iterations, 100u) << "at most";
   EXPECT_LT(refining_config(problem, config, 10).sigma0, config.sigma0);
   config.iterations = 7;
   EXPECT_EQ(refining_config(problem, config, 1000).iterations, 7u) << "as asked";
 }
 
-TEST(FewestSearch, TriesAsManyNetworksAsThereAreStationsOrNone) {
+TEST(FewestSearch, TriesTenNetworksForEachCoordinateOrNone) {
   const PlanConfig config{.population = 10, .iterations = 10};
   SurveyProblem problem = test::floor_problem(0.7);
-  problem.stations_max = 100;
+  problem.stations_max = 5;
   EXPECT_TRUE(worth_searching(problem, config));
-  problem.stations_max = 101;
+  problem.stations_max = 6;
   EXPECT_FALSE(worth_searching(problem, config));
 }
 

@@ -405,6 +405,42 @@ TEST(Evaluate, StoppedLargeNetworksAreAllSaidToBe) {
   for (const NetworkCounts& one : counts) EXPECT_TRUE(one.cancelled);
 }
 
+TEST(Evaluate, SampledNetworksThatShareStationsCountAsEachAlone) {
+  for (const bool noisy : {false, true}) {
+    Scanner scanner = coarse_scanner(1);
+    if (noisy) scanner.noise = load_noise("rtc360");
+    Simulator simulator(wall_and_floor().scene(), scanner, config());
+    const std::vector<Station> heads{{{0, 0, 0}}, {{1, 1, 0}}, {{-2, 1, 0.5}}, {{0, -2, 0}}};
+    std::vector<Network> networks;
+    for (unsigned chosen = 1; chosen < 16; ++chosen) {
+      Network& network = networks.emplace_back();
+      for (unsigned k = 0; k < heads.size(); ++k)
+        if ((chosen >> k & 1) != 0) network.push_back(heads[k]);
+    }
+    for (const CountTo count_to : {CountTo::all, CountTo::goal, CountTo::one}) {
+      const SampleOptions options{.voxels = 200, .count_to = count_to, .registration = RegistrationModel{}};
+      const std::uint64_t before = simulator.work().sampled_rays;
+      const auto together = simulator.evaluate_sampled(networks, options);
+      const std::uint64_t rays = simulator.work().sampled_rays - before;
+      std::uint64_t alone_rays = 0;
+      for (std::size_t k = 0; k < networks.size(); ++k) {
+        const NetworkCounts alone = simulator.evaluate_sampled({&networks[k], 1}, options)[0];
+        alone_rays += alone.rays;
+        EXPECT_EQ(together[k].seen, alone.seen) << k;
+        EXPECT_EQ(together[k].shared, alone.shared) << k;
+        EXPECT_EQ(together[k].registration.pairs, alone.registration.pairs) << k;
+        if (count_to == CountTo::one) continue;  // the rest of the points are as they come
+        EXPECT_EQ(together[k].saturated, alone.saturated) << k;
+        EXPECT_EQ(together[k].partial_points, alone.partial_points) << k;
+        EXPECT_EQ(together[k].successive_difference_sum, alone.successive_difference_sum) << k;
+      }
+      EXPECT_GT(rays, 0u);
+      // Noise depends on the place in a network, by which there are 9 different stations, and without it 4, of 32.
+      EXPECT_LT(rays, alone_rays / 2) << noisy;
+    }
+  }
+}
+
 TEST(Evaluate, StopsBeforeThePlanesOfRegistrationAndMakesThemLater) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config()),
       fresh(wall_and_floor().scene(), coarse_scanner(), config());
