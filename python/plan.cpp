@@ -200,12 +200,15 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
 
 std::vector<std::string> write_folder(const Plan& plan, const std::filesystem::path& folder,
                                       const std::optional<std::string>& title, bool reports,
-                                      std::optional<double> max_seconds, py::object progress) {
+                                      std::optional<double> max_seconds, bool doubles, py::object progress) {
   const auto lock = plan.site->taken();
   LongCall call(std::move(progress));
   return call.run([&] {
     return write_plan(folder, plan.result, plan.site->site,
-                      {.report = {.title = title.value_or("")}, .reports = reports, .max_seconds = max_seconds},
+                      {.report = {.title = title.value_or("")},
+                       .reports = reports,
+                       .ply = doubles ? PlyCoordinates::doubles : PlyCoordinates::floats,
+                       .max_seconds = max_seconds},
                       {.report = [&](const FolderProgress& now) { call.report([&] { return now.whole; }); },
                        .stop = call.stop()})
         .left_out;
@@ -270,12 +273,13 @@ void add_results(py::module_& m) {
           "Content of front.json: the front, every parameter, engine, seed and version. Entries count from 1.")
       .def(
           "write", &write_folder, py::arg("folder"), py::kw_only(), py::arg("title") = py::none(),
-          py::arg("reports") = true, py::arg("max_seconds") = py::none(), py::arg("progress") = py::none(),
+          py::arg("reports") = true, py::arg("max_seconds") = py::none(), py::arg("doubles") = false,
+          py::arg("progress") = py::none(),
           "Writes the result folder, all that `vantage plan` writes of a plan: tables, drawings, pictures, captured "
           "and "
           "missed\nsurface, reports (docs/files.md). Counts the answer with every ray once. Returns the names of files "
           "that were left out\nsince `max_seconds` were over, or progress returned False. title: of the reports; None: "
-          "the site's name. Raises\nError: io, invalid_argument.")
+          "the site's name.\ndoubles: as for `write_point_cloud`. Raises\nError: io, invalid_argument.")
       .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = py::none(),
            py::arg("progress") = py::none(),
            "Writes report.html or report.pdf by the file's extension, with the surfaces that the answer captures and "

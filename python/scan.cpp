@@ -87,7 +87,7 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
 
 std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
                                 const std::vector<std::string>& outputs, const std::string& crs,
-                                const std::optional<BeamOptions>& beam, py::object progress) {
+                                const std::optional<BeamOptions>& beam, bool doubles, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
   const std::uint32_t bits =
@@ -95,7 +95,8 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
   LongCall call(std::move(progress));
   return call.run([&]() -> std::uint64_t {
     Simulator& simulator = self.simulator;
-    PointCloudWriter writer(file, simulator.origin(), bits, crs.empty() ? crs : coordinate_system(crs));
+    PointCloudWriter writer(file, simulator.origin(), bits, crs.empty() ? crs : coordinate_system(crs),
+                            doubles ? PlyCoordinates::doubles : PlyCoordinates::floats);
     for (std::size_t k = 0; k < placed.size(); ++k) {
       const StationSetup& setup = placed[k].setup;
       if (setup.scanner < simulator.scanners().size() && active(placed[k]))
@@ -240,12 +241,13 @@ void add_scans(py::module_& m) {
 void add_clouds(py::module_& m) {
   m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
         py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
-        py::arg("beam") = py::none(), py::arg("progress") = py::none(),
+        py::arg("beam") = py::none(), py::arg("doubles") = false, py::arg("progress") = py::none(),
         "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
         "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
         "as for `scan`;\nLAS has 'reflectivity' and 'colour', and like E57 always the first, as intensity. crs: of the "
         "survey frame, such as 'EPSG:25832'; '': none is written. beam: as for `scan`; numbers of returns are written "
-        "too. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
+        "too. doubles: coordinates\nof a .ply are doubles; otherwise floats about an origin that its header's comment "
+        "`origin X Y Z` tells. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

@@ -41,17 +41,22 @@ struct StationScan {
 /// Returns `outputs` and what such a file always has: the reflectivity, as intensity, in .las and .e57.
 std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32_t outputs);
 
+/// What the coordinates of a PLY are. Floats, which all viewers read, are about an origin of whole kilometres near the
+/// site that the header's comment `origin X Y Z` tells: 0 0 0 where coordinates are small. Doubles are in the survey
+/// frame.
+enum class PlyCoordinates : std::uint8_t { floats, doubles };
+
 /// Streams a point cloud to a file in constant memory. The extension decides the format: .ply (binary little endian),
 /// .las (1.4) or .e57 (ASTM E2807: a scan for each station, with its pose, points in the scanner's own frame). The file
 /// gets its name at close(); if the writer is destroyed before, no file remains.
 class PointCloudWriter {
  public:
   /// `outputs` are the ScanOutput bits of the chunks; position is required. `origin` is the simulator's: chunks are in
-  /// the local frame, the file is in the survey frame. `crs`: its `coordinate_system()`; empty: none is written. Throws
-  /// Error: io, invalid_argument (unknown extension, outputs that the format cannot hold: LAS has only intensity, for
-  /// reflectivity, and colour).
+  /// the local frame, the file is in the survey frame. `crs`: its `coordinate_system()`; empty: none is written. `ply`:
+  /// of a .ply. Throws Error: io, invalid_argument (unknown extension, outputs that the format cannot hold: LAS has
+  /// only intensity, for reflectivity, and colour).
   PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
-                   const std::string& crs = {});
+                   const std::string& crs = {}, PlyCoordinates ply = PlyCoordinates::floats);
   PointCloudWriter(PointCloudWriter&&) noexcept;
   PointCloudWriter& operator=(PointCloudWriter&&) noexcept;
   ~PointCloudWriter();
@@ -70,8 +75,9 @@ class PointCloudWriter {
 
 /// The coverage cartography (figures 7b, 11, 17 of the method): every surveyed voxel as a coloured point, from red (no
 /// point) through yellow to green (goal reached), with its ratio, count and station mask; of more than 64 stations the
-/// number of those that have a point in it. Binary PLY, survey frame.
-void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field);
+/// number of those that have a point in it. Binary PLY.
+void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                        PlyCoordinates coordinates = PlyCoordinates::floats);
 
 /// Square matrix with a header line; row and column i are station i.
 void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
@@ -164,8 +170,9 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
 void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> rooms, std::span<const RoomShare> shares,
                      std::span<const PlacedStation> stations, std::span<const std::string> names);
 /// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
-/// count. Binary PLY, survey frame.
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);
+/// count. Binary PLY.
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,
+                      PlyCoordinates coordinates = PlyCoordinates::floats);
 /// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
 /// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of
 /// these are undersides.
@@ -174,9 +181,9 @@ void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxe
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
 /// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the
-/// largest). `field`: with station masks, of the network of `error`. Binary PLY, survey frame. Throws Error.
+/// largest). `field`: with station masks, of the network of `error`. Binary PLY. Throws Error.
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
-                            const RegistrationError& error);
+                            const RegistrationError& error, PlyCoordinates coordinates = PlyCoordinates::floats);
 /// The same in plan view, .png or .svg, a map for each floor as by `draw_missed`, with unseen parts in grey.
 void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
                        const RegistrationError& error, std::span<const PlacedStation> stations,

@@ -431,6 +431,7 @@ def write_point_cloud(
     outputs: Sequence[str] = ["reflectivity"],
     crs: str = "",
     beam: Optional[BeamOptions] = None,
+    doubles: bool = False,
     progress: Optional[Progress] = None,
 ) -> int: ...
 
@@ -1258,6 +1259,7 @@ class PlanResult:
         title: Optional[str] = None,
         reports: bool = True,
         max_seconds: Optional[float] = None,
+        doubles: bool = False,
         progress: Optional[Progress] = None,
     ) -> List[str]: ...
     def write_report(

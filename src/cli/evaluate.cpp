@@ -33,6 +33,7 @@ struct EvaluateCommandOptions {
   std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
   ReportHead report_head;
+  PlyCoordinates ply = PlyCoordinates::floats;
   bool json = false;
 
   void add(CLI::App& command) {
@@ -112,6 +113,7 @@ struct EvaluateCommandOptions {
               "Write all of it as a page for a browser, .html, or on paper, .pdf; may be repeated", reports)
         ->group("Results");
     report_head.add(command);
+    add_ply_doubles(command, ply)->group("Results");
     add_number(command, "--link-overlap", "W",
                "Draw as links overlaps (equation 11) of at least W, 0 to 1, in place of scan overlaps", link_overlap,
                {.low = 0, .high = 1})
@@ -206,17 +208,17 @@ StationLinks drawn_links(const EvaluateCommandOptions& options, const Evaluation
 // `judged`: where it was looked at.
 void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& simulator, const Evaluation& found,
                  const std::vector<std::string>& names, const MissedVoxels* judged, Program& program) {
-  if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field);
+  if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field, options.ply);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
-                 site, found.stations);
+                 site, found.stations, options.ply);
   if (judged && options.rooms)
     write_rooms_csv(*options.rooms, site.scene().rooms(), judged->rooms, found.stations, names);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
   for (const std::string& file : options.registration_files) {
     if (file.ends_with(".ply"))
-      write_registration_ply(file, simulator, found.field, *found.registration);
+      write_registration_ply(file, simulator, found.field, *found.registration, options.ply);
     else
       draw_registration(file, site, found.field, *found.registration, found.stations,
                         "Registration error on the surface (predicted)");

@@ -51,12 +51,12 @@ std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Pr
 }
 
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, Site& site,
-                  std::span<const PlacedStation> stations) {
+                  std::span<const PlacedStation> stations, PlyCoordinates ply) {
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".csv")
       write_missed_csv(file, judged.shares);
     else if (file.extension() == ".ply")
-      write_missed_ply(file, site.simulator(), judged);
+      write_missed_ply(file, site.simulator(), judged, ply);
     else
       draw_missed(file, site, judged, stations, "Why surfaces are not captured");
   }

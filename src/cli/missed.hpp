@@ -31,6 +31,6 @@ std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Pr
 
 // Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view.
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, Site& site,
-                  std::span<const PlacedStation> stations);
+                  std::span<const PlacedStation> stations, PlyCoordinates ply);
 
 }  // namespace vantage::cli

@@ -91,6 +91,15 @@ CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::strin
                     [&target](const std::string& text, const std::string&) { target.push_back(text); });
 }
 
+CLI::Option* add_ply_doubles(CLI::App& app, PlyCoordinates& target) {
+  CLI::Option* option = app.add_flag_function(
+      "--ply-doubles",
+      [&target](std::int64_t given) { target = given > 0 ? PlyCoordinates::doubles : PlyCoordinates::floats; },
+      "Write coordinates of .ply files as doubles; otherwise as floats about an origin that a comment tells");
+  set_advanced(app, option);
+  return option;
+}
+
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string&)>& accepts) {
   for (const auto& [written_key, value] : values.items()) {

@@ -12,6 +12,7 @@
 #include "cli/help.hpp"
 #include "cli/parse.hpp"
 #include "vantage/error.hpp"
+#include "vantage/export.hpp"
 #include "vantage/settings.hpp"
 
 namespace vantage::cli {
@@ -34,6 +35,9 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string
                       std::optional<std::string>& target);
 CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        std::vector<std::string>& target);
+
+// How coordinates of .ply files are written.
+CLI::Option* add_ply_doubles(CLI::App& app, PlyCoordinates& target);
 
 // Adds an option for each row of a table, under the heading `group`, if given.
 template <class Options>

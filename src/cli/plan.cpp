@@ -36,6 +36,7 @@ struct PlanOptions {
   SurveyQuestion question;
   PlanConfig config;
   ReportHead report_head;
+  PlyCoordinates ply = PlyCoordinates::floats;
   bool force = false, prove = false, no_report = false, json = false;
   double seed_seconds = ExactConfig().max_seconds;
   std::string seed_with;  // nothing, greedy or exact
@@ -82,6 +83,7 @@ struct PlanOptions {
         ->group("Results");
     report_head.add(command);
     command.add_flag("--no-report", no_report, "Leave out report.html and report.pdf")->group("Results");
+    add_ply_doubles(command, ply)->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
 };
@@ -239,7 +241,9 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
   spdlog::info("writing {}", folder.string());
   remove_earlier(folder, {"bound.json"});
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
-  FolderOptions wanted{.report = options.report_head.with({.command = program.command}), .reports = !options.no_report};
+  FolderOptions wanted{.report = options.report_head.with({.command = program.command}),
+                       .reports = !options.no_report,
+                       .ply = options.ply};
   if (options.config.max_seconds > 0) wanted.max_seconds = all_by.seconds_left();
   WrittenFolder written;
   {

@@ -34,6 +34,7 @@ struct ScanCommandOptions {
   std::vector<Panorama> panoramas;
   std::uint32_t outputs = scan_position | scan_reflectivity | scan_colour;
   std::optional<BeamOptions> beam;
+  PlyCoordinates ply = PlyCoordinates::floats;
   bool json = false;
 
   void add(CLI::App& command) {
@@ -58,6 +59,7 @@ struct ScanCommandOptions {
         "station's",
         [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
     add_settings(command, beam_settings(), beam);
+    add_ply_doubles(command, ply);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -181,7 +183,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     options.outputs = point_cloud_outputs(*options.output, options.outputs);
     if (std::ranges::any_of(simulator.scene().meshes(), &MeshInfo::mirror)) options.outputs |= scan_ghost;
     if (options.beam) options.outputs |= scan_returns;
-    writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
+    writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site), options.ply);
   }
   Scans scans = scan_each(stations, names, options, site, writer ? &*writer : nullptr, program);
   if (scans.sum.cancelled) {

@@ -7,7 +7,8 @@
 
 namespace vantage {
 
-void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field) {
+void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                        PlyCoordinates coordinates) {
   if (file.extension() != ".ply")
     throw Error(Errc::invalid_argument,
                 "the cartography's counts and stations of each voxel need a .ply file, not " + file.string());
@@ -21,7 +22,7 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
   // stations would be gigabytes.
   if (words == 1) more.push_back({"uint", "stations_low"}), more.push_back({"uint", "stations_high"});
   if (words > 1) more.push_back({"uint", "stations"});
-  write_voxel_ply(file, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
+  write_voxel_ply(file, coordinates, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
     const double ratio = std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
     append(bytes, static_cast<float>(ratio));
     append(bytes, field.count[rank]);

@@ -43,8 +43,9 @@ void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> ro
   write_atomically(file, text);
 }
 
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed) {
-  write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.ranks.size(),
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,
+                      PlyCoordinates coordinates) {
+  write_voxel_ply(file, coordinates, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.ranks.size(),
                   [&](std::uint64_t k, std::string& bytes) {
                     const WhyMissed why = missed.status[k].why;
                     append(bytes, static_cast<std::uint8_t>(why));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, binary little endian. Coordinates are doubles: georeferenced ones need more digits than a float has.
+// PLY, binary little endian.
 #include "core/atomic_file.hpp"
 #include "export/ply_header.hpp"
 #include "export/point_sink.hpp"
@@ -7,8 +7,8 @@
 namespace vantage {
 namespace {
 
-std::vector<PlyProperty> properties(std::uint32_t outputs) {
-  std::vector<PlyProperty> p{{"double", "x"}, {"double", "y"}, {"double", "z"}};
+std::vector<PlyProperty> attributes(std::uint32_t outputs) {
+  std::vector<PlyProperty> p;
   if (outputs & scan_normal) p.insert(p.end(), {{"float", "nx"}, {"float", "ny"}, {"float", "nz"}});
   if (outputs & scan_colour) p.insert(p.end(), {{"uchar", "red"}, {"uchar", "green"}, {"uchar", "blue"}});
   if (outputs & scan_reflectivity) p.push_back({"float", "reflectivity"});
@@ -23,8 +23,9 @@ std::vector<PlyProperty> properties(std::uint32_t outputs) {
 
 class PlySink final : public PointSink {
  public:
-  PlySink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs, const std::string& crs)
-      : file_(file), header_(properties(outputs), crs), origin_(origin), outputs_(outputs) {
+  PlySink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs, const std::string& crs,
+          PlyCoordinates coordinates)
+      : file_(file), header_(coordinates, origin, attributes(outputs), crs), origin_(origin), outputs_(outputs) {
     file_.write(header_.text(0));
   }
 
@@ -33,8 +34,7 @@ class PlySink final : public PointSink {
     for (std::size_t k = 0; k < chunk.ray_count; ++k) {
       if (!hit(chunk, k)) continue;
       const auto& p = chunk.position[k];
-      append(bytes_, origin_.x + double{p[0]}), append(bytes_, origin_.y + double{p[1]}),
-          append(bytes_, origin_.z + double{p[2]});
+      header_.append_place(bytes_, {origin_.x + double{p[0]}, origin_.y + double{p[1]}, origin_.z + double{p[2]}});
       if (outputs_ & scan_normal)
         for (const float c : chunk.normal[k]) append(bytes_, c);
       if (outputs_ & scan_colour)
@@ -72,8 +72,8 @@ class PlySink final : public PointSink {
 }  // namespace
 
 std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
-                                         const std::string& crs) {
-  return std::make_unique<PlySink>(file, origin, outputs, crs);
+                                         const std::string& crs, PlyCoordinates coordinates) {
+  return std::make_unique<PlySink>(file, origin, outputs, crs, coordinates);
 }
 
 }  // namespace vantage

@@ -19,13 +19,13 @@ std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32
 }
 
 PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
-                                   const std::string& crs)
+                                   const std::string& crs, PlyCoordinates ply)
     : impl_(std::make_unique<Impl>()) {
   if (!(outputs & scan_position)) throw Error(Errc::invalid_argument, "a point cloud needs the output scan_position");
   impl_->outputs = outputs;
   const std::string extension = file.extension().string();
   if (extension == ".ply")
-    impl_->sink = make_ply_sink(file, origin, outputs, crs);
+    impl_->sink = make_ply_sink(file, origin, outputs, crs, ply);
   else if (extension == ".las")
     impl_->sink = make_las_sink(file, origin, outputs, crs);
   else if (extension == ".e57")

@@ -8,11 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "vantage/simulator.hpp"
+#include "vantage/export.hpp"
 
 namespace vantage {
-
-struct StationScan;  // vantage/export.hpp
 
 static_assert(std::endian::native == std::endian::little, "the point cloud writers copy little-endian values");
 
@@ -27,7 +25,7 @@ class PointSink {
 
 // `crs`: well-known text in one line, or empty.
 std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
-                                         const std::string& crs);
+                                         const std::string& crs, PlyCoordinates coordinates);
 // Throws Error invalid_argument for outputs that LAS cannot hold.
 std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
                                          const std::string& crs);

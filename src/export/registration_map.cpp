@@ -54,7 +54,7 @@ std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField&
 }
 
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
-                            const RegistrationError& error) {
+                            const RegistrationError& error, PlyCoordinates coordinates) {
   check(simulator, field);
   std::vector<std::uint32_t> ranks;
   for (std::uint32_t rank = 0; rank < simulator.voxel_count(); ++rank) {
@@ -64,10 +64,11 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
   }
   const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
   const double most = largest(errors);
-  write_voxel_ply(file, simulator, {{"float", "error_mm"}}, ranks.size(), [&](std::uint64_t k, std::string& bytes) {
-    append(bytes, errors[k]);
-    return VoxelVertex{ranks[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
-  });
+  write_voxel_ply(file, coordinates, simulator, {{"float", "error_mm"}}, ranks.size(),
+                  [&](std::uint64_t k, std::string& bytes) {
+                    append(bytes, errors[k]);
+                    return VoxelVertex{ranks[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
+                  });
 }
 
 void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,

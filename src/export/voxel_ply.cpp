@@ -8,15 +8,15 @@
 
 namespace vantage {
 
-void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulator,
+void write_voxel_ply(const std::filesystem::path& file, PlyCoordinates coordinates, const Simulator& simulator,
                      const std::vector<PlyProperty>& more, std::uint64_t voxels,
                      const std::function<VoxelVertex(std::uint64_t k, std::string& bytes)>& vertex) {
   constexpr std::uint64_t kChunk = 1u << 14, kChunksAtOnce = 64;  // vertices; chunks that are made side by side
-  std::vector<PlyProperty> properties{{"double", "x"},  {"double", "y"},    {"double", "z"},
-                                      {"uchar", "red"}, {"uchar", "green"}, {"uchar", "blue"}};
+  std::vector<PlyProperty> properties{{"uchar", "red"}, {"uchar", "green"}, {"uchar", "blue"}};
   properties.insert(properties.end(), more.begin(), more.end());
   AtomicFile out(file);
-  out.write(PlyHeader(properties).text(voxels));
+  const PlyHeader header(coordinates, simulator.origin(), properties);
+  out.write(header.text(voxels));
   std::vector<std::string> chunks(kChunksAtOnce);
   for (std::uint64_t first = 0; first < voxels; first += kChunk * kChunksAtOnce) {
     parallel::for_all(std::uint64_t{0}, kChunksAtOnce, [&](std::uint64_t c) {
@@ -26,8 +26,7 @@ void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulat
       for (std::uint64_t k = begin; k < std::min(begin + kChunk, voxels); ++k) {
         own.clear();
         const auto [rank, colour] = vertex(k, own);
-        const Vec3 centre = simulator.voxel_centre(rank);
-        append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
+        header.append_place(bytes, simulator.voxel_centre(rank));
         for (const std::uint8_t channel : to_bytes(colour)) append(bytes, channel);
         bytes += own;
       }

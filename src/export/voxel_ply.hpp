@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Voxels as a binary PLY: centre (survey frame) and colour of each, then further properties.
+// Voxels as a binary PLY: centre and colour of each, then further properties.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct VoxelVertex {
   std::uint32_t rank;
   Colour colour;
 };
-void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulator,
+void write_voxel_ply(const std::filesystem::path& file, PlyCoordinates coordinates, const Simulator& simulator,
                      const std::vector<PlyProperty>& more, std::uint64_t voxels,
                      const std::function<VoxelVertex(std::uint64_t k, std::string& bytes)>& vertex);
 

@@ -148,10 +148,12 @@ class FolderWriter {
   void draw(const VoxelField* field, const std::stop_token& late) {
     tbb::task_group files;
     files.run([&] { draw_plan(late); });
-    if (field) files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field); });
+    if (field)
+      files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field, options_.ply); });
     if (field && entry_.registration) {
       files.run([&] {
-        write_registration_ply(folder_ / "registration.ply", site_.simulator(), *field, *entry_.registration);
+        write_registration_ply(folder_ / "registration.ply", site_.simulator(), *field, *entry_.registration,
+                               options_.ply);
       });
       for (const char* extension : {".png", ".svg"})
         files.run([&, extension] {
@@ -204,7 +206,7 @@ class FolderWriter {
       return;
     }
     write_missed_csv(folder_ / "missed.csv", missed.shares);
-    write_missed_ply(folder_ / "missed.ply", site_.simulator(), missed);
+    write_missed_ply(folder_ / "missed.ply", site_.simulator(), missed, options_.ply);
     draw_missed(folder_ / "missed.png", site_, missed, entry_.stations, "Why surfaces are not captured");
     if (!missed.rooms.empty())
       write_rooms_csv(folder_ / "rooms.csv", rooms, missed.rooms, entry_.stations, entry_.names);

@@ -8,7 +8,7 @@ import { at, read, run, vantage } from './vantage.mjs';
 
 vantage('generate', 'four-walls', '-o', 'walls.glb');
 const scan = ['scan', 'walls.glb', '--station', '2.5,2,1.85', '--station', '3.25,2.5,1.7', '--step', '0.8', '--engine', 'embree'];
-vantage(...scan, '--outputs', 'reflectivity,colour', '-o', 'points.ply');
+vantage(...scan, '--outputs', 'reflectivity,colour', '--ply-doubles', '-o', 'points.ply');
 const ply = readPly(read('points.ply'));
 assert.ok(ply.x.length > 1000);
 

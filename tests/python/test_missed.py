@@ -60,9 +60,15 @@ class AfterASearch(unittest.TestCase):
                 header, body = file.read().split(b"end_header\n", 1)
             self.assertIn(f"element vertex {len(expected)}\n".encode(), header)
             row = len(body) // len(expected)
-            first = struct.unpack_from("<3d", body)
-            last = struct.unpack_from("<3d", body, row * (len(expected) - 1))
+            self.assertIn(b"\ncomment origin 0 0 0\n", header)
+            first = struct.unpack_from("<3f", body)
+            last = struct.unpack_from("<3f", body, row * (len(expected) - 1))
             np.testing.assert_allclose([first, last], [expected[0], expected[-1]], atol=1e-4)
+            vantage.write_point_cloud(ply, self.simulator, stations, outputs=[], doubles=True)
+            with open(ply, "rb") as file:
+                header, body = file.read().split(b"end_header\n", 1)
+            self.assertIn(b"\nproperty double x\n", header)
+            np.testing.assert_allclose(struct.unpack_from("<3d", body), expected[0], atol=1e-4)
             for file in (las, e57):
                 count = vantage.write_point_cloud(file, self.simulator, stations, crs="EPSG:25832")
                 self.assertEqual(count, len(expected))

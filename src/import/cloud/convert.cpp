@@ -296,6 +296,14 @@ class Converter {
                            ? "the file does not say where its scans were taken: what lies between points counts as free"
                            : counted(scans - posed_, "scans have no pose: what lies between points counts as free"));
     if (!unit_note_.empty()) notes_.push_back(unit_note_);
+    // Steps of more than a twentieth of a cell bend what should be flat.
+    constexpr double kCoarse = 0.05;
+    const auto farthest = static_cast<float>(grid_->middle().cwiseAbs().maxCoeff());
+    const double step = static_cast<double>(std::nextafter(farthest, HUGE_VALF) - farthest);
+    if (source_->floats() && step > kCoarse * grid_->cell_m())
+      notes_.push_back("its coordinates are float32, which so far from 0 are told only to " +
+                       with_unit(step, metric_ ? "m" : "of the file's unit") +
+                       "; export doubles, or coordinates about a nearer origin");
     if (metric_ && unknown_m2_ >= 0.1)
       notes_.push_back(
           with_unit(unknown_m2_, "m² of ground lie below space that no scan saw; no station stands there"));

@@ -23,6 +23,9 @@ class JoinedSource : public PointSource {
   bool metric() const override {
     return std::ranges::all_of(sources_, [](const auto& source) { return source->metric(); });
   }
+  bool floats() const override {
+    return std::ranges::any_of(sources_, [](const auto& source) { return source->floats(); });
+  }
 
   void read(const PointSink& sink) override {
     scans_.clear(), notes_.clear();
@@ -53,6 +56,7 @@ class MovedSource : public PointSource {
 
   std::uint64_t announced() const override { return source_->announced(); }
   bool metric() const override { return source_->metric(); }
+  bool floats() const override { return source_->floats(); }
 
   void read(const PointSink& sink) override {
     std::vector<Eigen::Vector3d> positions;

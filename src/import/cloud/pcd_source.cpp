@@ -33,6 +33,7 @@ class PcdSource final : public PointSource {
 
   std::uint64_t announced() const override { return count_; }
   bool metric() const override { return false; }
+  bool floats() const override { return data_ != "ascii" && !moved_ && are_floats(fields_, place_); }
 
   void read(const PointSink& sink) override {
     file_.seek(data_at_);

@@ -2,6 +2,7 @@
 // PLY (Turk, The PLY Polygon File Format, 1994) without faces: text, or binary in either order of bytes.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "import/cloud/points.hpp"
 #include "import/cloud/scalar_field.hpp"
@@ -49,6 +50,7 @@ class PlySource final : public PointSource {
 
   std::uint64_t announced() const override { return elements_[vertex_].count; }
   bool metric() const override { return metric_; }
+  bool floats() const override { return !text_ && origin_.isZero(0) && are_floats(elements_[vertex_].fields, place_); }
 
   void read(const PointSink& sink) override {
     file_.seek(data_);
@@ -79,7 +81,7 @@ class PlySource final : public PointSource {
       Eigen::Vector3f normal = Eigen::Vector3f::Zero();
       if (!normal_.empty())
         normal = Eigen::Vector3d(values[normal_[0]], values[normal_[1]], values[normal_[2]]).cast<float>();
-      points.add({values[place_[0]], values[place_[1]], values[place_[2]]}, normal);
+      points.add(origin_ + Eigen::Vector3d(values[place_[0]], values[place_[1]], values[place_[2]]), normal);
     }
     points.flush();
   }
@@ -100,7 +102,9 @@ class PlySource final : public PointSource {
           throw Refused("it is of no format that PLY knows; export it again");
       } else if (word == "comment") {
         const std::string_view about = next_word(line);
-        metric_ |= about == "crs" || about == "vantage";
+        own_ |= about == "vantage";
+        metric_ |= own_ || about == "crs";
+        if (own_ && about == "origin") read_origin(line);
         if (about == "crs") crs_ = line.substr(std::min(line.find_first_not_of(' '), line.size()));
       } else if (word == "element") {
         Element element;
@@ -127,6 +131,15 @@ class PlySource final : public PointSource {
     throw Refused("its header does not end; copy or export it again");
   }
 
+  void read_origin(std::string_view line) {
+    for (double& value : origin_) {
+      const auto number = number_of(next_word(line));
+      if (!number || !std::isfinite(*number))
+        throw Refused("its comment tells an origin that is no place; export it again");
+      value = *number;
+    }
+  }
+
   std::size_t index_of(const char* name) const {
     const std::size_t k = find_field(elements_[vertex_].fields, name);
     if (k == elements_[vertex_].fields.size())
@@ -145,7 +158,9 @@ class PlySource final : public PointSource {
 
   ByteFile file_;
   bool text_ = false, big_endian_ = false;
-  bool metric_ = false;  // this program wrote it
+  bool own_ = false;  // this program wrote it
+  bool metric_ = false;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // added to what the points hold
   std::vector<Element> elements_;
   std::size_t vertex_ = 0;
   std::vector<std::size_t> place_, normal_;

@@ -56,6 +56,10 @@ inline std::vector<std::size_t> find_fields(std::span<const ScalarField> fields,
   return places;
 }
 
+inline bool are_floats(std::span<const ScalarField> fields, std::span<const std::size_t> places) {
+  return std::ranges::all_of(places, [&](std::size_t k) { return fields[k].kind == 'F' && fields[k].bytes == 4; });
+}
+
 // Next word of a line, which it leaves without; empty at the end.
 inline std::string_view next_word(std::string_view& line) {
   constexpr std::string_view kBetween = " \t,;";

@@ -35,7 +35,8 @@ export function open(ifc, api, bytes, unit) {
     model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: chords });
     step = new Step(ifc, api, model);
   }
-  return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, unknown: unknownEntities(step, bytes), located: attempt(() => geolocation(step, metres ?? 1, mentions), { crs: "", name: "", place: null, notes: ["its map conversion is damaged, and not applied"] }) };
+  const types = api.GetAllTypesOfModel(model);
+  return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, types, unknown: unknownEntities(step, bytes, types), located: attempt(() => geolocation(step, metres ?? 1, mentions), { crs: "", name: "", place: null, notes: ["its map conversion is damaged, and not applied"] }) };
 }
 
 function largestChords(step, metres) {
@@ -46,9 +47,9 @@ function largestChords(step, metres) {
 }
 
 // Entities that the reader does not know, by name: how many, and the first ones.
-function unknownEntities(step, bytes) {
+function unknownEntities(step, bytes, types) {
   const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map(), { api, model } = step;
-  const known = api.GetAllTypesOfModel(model).reduce((sum, { typeID }) => sum + api.GetLineIDsWithType(model, typeID).size(), 0);
+  const known = types.reduce((sum, { typeID }) => sum + api.GetLineIDsWithType(model, typeID).size(), 0);
   if (known === api.GetAllLines(model).size()) return found;
   for (let at = 0; at < bytes.length; at += BLOCK) {
     const text = bytes.latin1Slice(at, Math.min(bytes.length, at + BLOCK + OVERLAP));
@@ -81,11 +82,11 @@ const several = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one 
 const listed = (all) => all.slice(0, LISTED).join("; ") + (all.length > LISTED ? `; and ${all.length - LISTED} more` : "");
 
 // Adds an open model. `place` takes it to the site. Returns its notes.
-export function read(site, { schema, step, metres, given, length, angle, unknown }, place) {
+export function read(site, { schema, step, metres, given, length, angle, types, unknown }, place) {
   const { api, model } = step;
   if (given || !length || length.value !== 1) stateLength(step, metres);
   const plain = new Plain(step, CHORD_M / metres, angle.value);
-  const products = api.GetAllTypesOfModel(model).filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
+  const products = types.filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
     .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
   const analysis = step.kinds("IFCSTRUCTURALITEM").filter((id) => step.args(id)[6]).length;
   const opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));

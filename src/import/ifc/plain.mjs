@@ -31,6 +31,7 @@ export class Plain {
     this.done = new Set();      // placements, profiles and operators
     this.curved = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE").length > 0;
     this.gridAxes = 0;          // products on a grid without a direction
+    this.local = step.ids("IFCGRIDPLACEMENT", "IFCLINEARPLACEMENT").length === 0;  // no placement is of another kind
   }
 
   // Makes a product plain. Returns {parts, problems, left}: parts are lists of the geometries that web-ifc may give one
@@ -38,7 +39,7 @@ export class Plain {
   product(id, opened) {
     const [, , , , , placement, shape] = this.step.args(id);
     const problems = [];
-    if (placement) problems.push(...this.#placement(placement.ref));
+    if (placement && !this.local) problems.push(...this.#placement(placement.ref));
     if (!shape) return { parts: [], problems, left: [] };
     if (!this.shapes.has(shape.ref)) this.shapes.set(shape.ref, this.#shape(shape.ref));
     const { parts, problems: more, left } = this.shapes.get(shape.ref);

@@ -9,6 +9,7 @@ const MANY = 500;  // faces, above which a body is not looked at
 export class Skins {
   constructor(step, axes, solids, metres) {
     Object.assign(this, { step, axes, solids, metres });
+    this.hosts = new Map();  // bodies of what is opened, which may be opened in several places
   }
 
   // Opens skins of up to a centimetre. Returns {opening, host, skin_m, opened} of all that are left or were.
@@ -17,7 +18,8 @@ export class Skins {
     for (const id of step.ids("IFCRELVOIDSELEMENT")) {
       const [, , , , host, opening] = step.args(id);
       if (!host || !opening || this.#isRecess(opening.ref)) continue;
-      const wall = this.#body(host.ref), hole = this.#body(opening.ref);
+      if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, this.#body(host.ref));
+      const wall = this.hosts.get(host.ref), hole = this.#body(opening.ref);
       if (wall.length === 0 || hole.length === 0) continue;
       const across = mainNormal(wall), reach = (bodies) => bodies.flatMap(({ points }) => points).map((point) => dot(point, across));
       const [low, high] = ends(reach(wall)), [from, to] = ends(reach(hole));

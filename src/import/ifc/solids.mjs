@@ -130,7 +130,8 @@ export class Solids {
     this.curves.like = Math.max(0, ...[profile, end].map((one) => this.step.args(one.ref)).map((args) => (typeof args[3] === "number" ? args[3] : 0)));
     let from, to;
     try {
-      [from, to] = [profile, end].map((one) => this.profiles.regions(one));
+      from = this.profiles.regions(profile);
+      to = end === profile ? from : this.profiles.regions(end);
     } finally {
       this.curves.like = 0;
     }
@@ -143,8 +144,9 @@ export class Solids {
         const [a, b] = [ring, other].map((one) => (flip ? [...one].reverse() : one));
         faces.strip(faces.ring(a.map(low)), faces.ring(b.map(high)));
       });
-      for (const [one, place, up] of [[region, low, down], [to[i], high, !down]]) {
-        const { points, triangles } = triangulated(one), all = points.map((p) => faces.add(place(p)));
+      const cut = triangulated(region);
+      for (const [{ points, triangles }, place, up] of [[cut, low, down], [to === from ? cut : triangulated(to[i]), high, !down]]) {
+        const all = points.map((p) => faces.add(place(p)));
         for (const [a, b, c] of triangles) up ? faces.face(all[a], all[b], all[c]) : faces.face(all[a], all[c], all[b]);
       }
     });

@@ -44,14 +44,17 @@ export class Step {
     const all = [];
     for (const name of names) {
       const found = this.api.GetLineIDsWithType(this.model, this.ifc[name]);
-      for (let i = 0; i < found.size(); ++i) if (this.type(found.get(i)) === name) all.push(found.get(i));
+      for (let i = 0, count = found.size(); i < count; ++i) {
+        const id = found.get(i);
+        if (this.type(id) === name) all.push(id);
+      }
     }
     return all;
   }
   // Those of a type and all below it.
   kinds(name) {
     const found = this.api.GetLineIDsWithType(this.model, this.ifc[name], true), all = [];
-    for (let i = 0; i < found.size(); ++i) all.push(found.get(i));
+    for (let i = 0, count = found.size(); i < count; ++i) all.push(found.get(i));
     return all;
   }
 

@@ -45,7 +45,7 @@ struct Model {
   std::vector<Material> materials;
   std::vector<Node> nodes = std::vector<Node>(1);  // the first is the root
   bool unit = false, up = false;  // whether the file declares them; the root's transform leads to metres and Y up then
-  bool rounded = false;           // whether its reader rounded coordinates to float, so that no origin helps
+  bool rounded = false;           // whether coordinates were floats in the file or its reader, so that no origin helps
   std::size_t lines_or_points = 0;
   std::map<std::string, std::size_t> left_out;  // numbers of other things that are not read, by kind
   std::vector<std::string> notes;

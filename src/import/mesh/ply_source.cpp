@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/text.hpp"
 #include "import/mesh/polygon.hpp"
 #include "import/mesh/sources.hpp"
 #include "import/mesh/text.hpp"
@@ -51,6 +52,7 @@ class PlyReader {
       throw Refused("a face names vertex " + std::to_string(*beyond) + "; there are " +
                     std::to_string(part_.positions.size()));
     cut_polygons();
+    model.rounded = rounded_;
     if (part_.indices.empty()) model.lines_or_points = part_.positions.size();
     model.nodes[0].meshes.push_back(model.add_mesh({{}, {}}));
     model.meshes[0].parts.push_back(std::move(part_));
@@ -106,7 +108,7 @@ class PlyReader {
           type = take_word(line);
         }
         property.type = type_of(type);
-        property.name = take_word(line);
+        property.name = lower_case(std::string(take_word(line)));  // some writers put capitals
         elements_.back().properties.push_back(std::move(property));
       } else if (word == "end_header") {
         if (!format) throw Refused("its header names no format; export it again");
@@ -168,6 +170,8 @@ class PlyReader {
                          [&](std::size_t k) { return k < none; });
     };
     if (!given(place, 3)) throw Refused("its vertices have no x, y and z; export it again");
+    rounded_ =
+        !text_ && std::ranges::all_of(place, [&](std::size_t k) { return element.properties[k].type == PlyType::f32; });
     const bool normals = given(normal, 3), colours = given(colour, 3);
     std::vector<double> row(none);
     for (std::uint64_t k = 0; k < element.count; ++k) {
@@ -284,7 +288,7 @@ class PlyReader {
 
   const std::string bytes_;
   std::string_view rest_;
-  bool text_ = false, big_endian_ = false;
+  bool text_ = false, big_endian_ = false, rounded_ = false;
   std::vector<PlyElement> elements_;
   Part part_;
   std::vector<std::uint32_t> polygons_;

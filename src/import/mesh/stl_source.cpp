@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/text.hpp"
 #include "import/mesh/sources.hpp"
 #include "import/mesh/text.hpp"
 
@@ -10,13 +11,6 @@ namespace vantage::importer {
 namespace {
 
 constexpr std::size_t kStlHeader = 84, kStlFacet = 50;
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
 
 template <class T>
 T little_endian_at(std::string_view bytes, std::size_t offset) {  // as the host
@@ -61,6 +55,7 @@ Model read_binary_stl(std::string_view bytes) {
   if (coloured)
     for (const Rgba& colour : colours) part.colours.insert(part.colours.end(), 3, colour);
   Model model;
+  model.rounded = true;
   model.nodes[0].meshes.push_back(model.add_mesh({{}, {}}));
   model.meshes[0].parts.push_back(std::move(part));
   return model;
@@ -86,11 +81,11 @@ Model read_text_stl(std::string_view text) {
     if (word == "solid") {
       finish_solid();
       // All may stand in one line.
-      const std::size_t end = std::min(lower_case(line).find(" facet normal"), line.size());
+      const std::size_t end = std::min(lower_case(std::string(line)).find(" facet normal"), line.size());
       name = trimmed_text(line.substr(0, end));
       line.remove_prefix(end);
     } else if (word == "endsolid") {
-      const std::size_t next = std::min(lower_case(line).find(" solid "), line.size());
+      const std::size_t next = std::min(lower_case(std::string(line)).find(" solid "), line.size());
       line.remove_prefix(next);  // its name
     } else if (word == "vertex") {
       glm::dvec3 p;
@@ -112,7 +107,7 @@ Model read_text_stl(std::string_view text) {
   for (std::size_t number = 1; !text.empty(); ++number) {
     std::string_view line = take_line(text);
     for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
-      read_word(lower_case(word), line, number);
+      read_word(lower_case(std::string(word)), line, number);
   }
   if (!loop.empty()) throw Refused("it is cut off in a facet; copy or export it again");
   finish_solid();
@@ -126,7 +121,8 @@ Model read_stl(const std::filesystem::path& file) {
   const std::string_view text = trimmed_text(std::string_view(bytes).substr(0, 1024));
   const bool whole_binary =
       bytes.size() >= kStlHeader && bytes.size() == kStlHeader + kStlFacet * little_endian_at<std::uint32_t>(bytes, 80);
-  const bool is_text = !whole_binary && lower_case(text.substr(0, 5)) == "solid" && bytes.find('\0') == bytes.npos;
+  const bool is_text =
+      !whole_binary && lower_case(std::string(text.substr(0, 5))) == "solid" && bytes.find('\0') == bytes.npos;
   return is_text ? read_text_stl(bytes) : read_binary_stl(bytes);
 }
 

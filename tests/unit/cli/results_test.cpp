@@ -284,6 +284,20 @@ TEST_F(Results, ScanCountsWhatItWrites) {
   EXPECT_EQ(files(), (std::vector<std::string>{"cloud.las", "cloud.ply"}));
 }
 
+TEST_F(Results, PliesHaveDoublesOnRequest) {
+  const auto begins = [this](const char* name, const char* properties) {
+    EXPECT_NE(read(name).find(properties), std::string::npos) << name;
+  };
+  for (const bool doubles : {false, true}) {
+    auto scan = coarse("scan", {"--station", "8,0,1.5", "-o", path("cloud.ply")});
+    auto measure = evaluate({"--cartography", path("coverage.ply"), "--missed", path("missed.ply")});
+    if (doubles) scan.push_back("--ply-doubles"), measure.push_back("--ply-doubles");
+    json_of(scan), json_of(measure);
+    for (const char* name : {"cloud.ply", "coverage.ply", "missed.ply"})
+      begins(name, doubles ? "\nproperty double x\n" : "\nproperty float x\n");
+  }
+}
+
 TEST_F(Results, ScanWithoutAFileOnlyCounts) {
   const auto result = json_of(coarse("scan", four_heads));
   EXPECT_GT(result["points"].get<std::uint64_t>(), 0u);

@@ -398,16 +398,22 @@ TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
   RegistrationError error;
   error.stations.resize(count), error.poses.resize(count);
   error.poses[0][21] = 1e-6, error.poses[last][21] = 49e-6;
-  write_registration_ply(folder / "error.ply", simulator, field, error);
-  const std::string ply = test::content(folder / "error.ply");
-  std::size_t at = ply.find("end_header\n") + 11;
-  EXPECT_NE(ply.find("element vertex " + std::to_string(voxels - 1) + "\n"), std::string::npos);
-  for (std::size_t k = 1; k < voxels; ++k) {
-    ASSERT_EQ(test::take<double>(ply, at), simulator.voxel_centre(k).x);
-    at += 19;
-    ASSERT_FLOAT_EQ(test::take<float>(ply, at), k % 2 ? 1.0f : 5.0f) << k;
+  for (const PlyCoordinates coordinates : {PlyCoordinates::floats, PlyCoordinates::doubles}) {
+    write_registration_ply(folder / "error.ply", simulator, field, error, coordinates);
+    const std::string ply = test::content(folder / "error.ply");
+    std::size_t at = ply.find("end_header\n") + 11;
+    EXPECT_NE(ply.find("element vertex " + std::to_string(voxels - 1) + "\n"), std::string::npos);
+    for (std::size_t k = 1; k < voxels; ++k) {
+      const double x = simulator.voxel_centre(k).x;
+      if (coordinates == PlyCoordinates::doubles)
+        ASSERT_EQ(test::take<double>(ply, at), x);
+      else
+        ASSERT_EQ(test::take<float>(ply, at), static_cast<float>(x));
+      at += coordinates == PlyCoordinates::doubles ? 19 : 11;
+      ASSERT_FLOAT_EQ(test::take<float>(ply, at), k % 2 ? 1.0f : 5.0f) << k;
+    }
+    EXPECT_EQ(at, ply.size());
   }
-  EXPECT_EQ(at, ply.size());
   write_coverage_ply(folder / "coverage.ply", simulator, field);
   const std::string coverage = test::content(folder / "coverage.ply");
   EXPECT_EQ(coverage.find("property uint stations_low\nproperty uint stations_high\n") == std::string::npos,

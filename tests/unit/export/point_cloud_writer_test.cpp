@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "support/temporary_folder.hpp"
@@ -39,7 +40,7 @@ constexpr std::uint32_t kAll =
 TEST(PointCloudWriter, PlyHoldsJustWhatWasAskedFor) {
   const test::TemporaryFolder folder;
   for (const auto& [outputs, record] :
-       {std::pair<std::uint32_t, std::size_t>{scan_position, 26}, {kAll, 26 + 12 + 3 + 4 + 4 + 8 + 4}}) {
+       {std::pair<std::uint32_t, std::size_t>{scan_position, 14}, {kAll, 14 + 12 + 3 + 4 + 4 + 8 + 4}}) {
     PointCloudWriter writer(folder / "a.ply", kOrigin, outputs);
     writer.write(chunk_of(outputs), 2);
     writer.write(chunk_of(outputs), 7);
@@ -55,13 +56,37 @@ TEST(PointCloudWriter, PlyHoldsJustWhatWasAskedFor) {
   }
 }
 
-TEST(PointCloudWriter, PlyReadsBack) {
+// Viewers read floats, which hold no national coordinates: those are about an origin of whole kilometres.
+TEST(PointCloudWriter, PlyIsAboutAnOriginThatItTells) {
   const test::TemporaryFolder folder;
-  PointCloudWriter writer(folder / "a.ply", kOrigin, kAll);
+  for (const auto& [site, told] : {std::pair{kOrigin, "500000 4500000 0"},
+                                   {{-412'678.9, 1'499.5, 1'712.4}, "-413000 1000 2000"},
+                                   {{499.75, -499.75, 3}, "0 0 0"}}) {
+    PointCloudWriter writer(folder / "a.ply", site, scan_position);
+    writer.write(chunk_of(scan_position), 7);
+    writer.close();
+    const std::string bytes = content(folder / "a.ply");
+    std::size_t at = bytes.find("end_header\n") + 11;
+    const std::string header = bytes.substr(0, at);
+    EXPECT_NE(header.find(std::string("\ncomment origin ") + told + "\n"), std::string::npos) << header;
+    EXPECT_NE(header.find("\nproperty float x\nproperty float y\nproperty float z\n"), std::string::npos) << header;
+    double x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(told, "%lf %lf %lf", &x, &y, &z), 3);
+    EXPECT_NEAR(x + double{take<float>(bytes, at)}, site.x + 1.5, 3.1e-5);
+    EXPECT_NEAR(y + double{take<float>(bytes, at)}, site.y - 2.25, 3.1e-5);
+    EXPECT_NEAR(z + double{take<float>(bytes, at)}, site.z + 0.125, 3.1e-5);
+    std::filesystem::remove(folder / "a.ply");
+  }
+}
+
+TEST(PointCloudWriter, PlyOfDoublesReadsBack) {
+  const test::TemporaryFolder folder;
+  PointCloudWriter writer(folder / "a.ply", kOrigin, kAll, {}, PlyCoordinates::doubles);
   writer.write(chunk_of(kAll), 7);
   writer.close();
   const std::string bytes = content(folder / "a.ply");
   const std::size_t end = bytes.find("end_header\n");
+  EXPECT_EQ(bytes.substr(0, end).find("origin"), std::string::npos);
   std::string names;
   for (std::size_t at = bytes.find("property "); at < end; at = bytes.find("property ", at + 1))
     names += bytes.substr(at + 9, bytes.find('\n', at) - at - 9) + ",";

@@ -139,6 +139,15 @@ TEST_F(MeshImportTest, PlyStripsMakeTrianglesThatWindAlike) {
   }
 }
 
+TEST_F(MeshImportTest, PlyMayNameItsPropertiesInCapitals) {
+  const Scene scene = Scene::load(
+      write("capitals.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float X\nproperty float Y\nproperty float Z\n"
+            "element face 1\nproperty list uchar int Vertex_Indices\nend_header\n0 0 0\n3 0 0\n0 2 0\n3 0 1 2\n"),
+      with_axes(Unit::metre, UpAxis::z));
+  expect_bounds(scene, {0, 0, 0}, {3, 2, 0});
+}
+
 TEST_F(MeshImportTest, PlyMayBeginItsDataWithTheByteOfALineEnd) {
   const auto number = [](float value) { return std::string(reinterpret_cast<const char*>(&value), sizeof value); };
   std::uint32_t bits = 0x3F80000A;  // just above 1
@@ -289,6 +298,29 @@ TEST_F(MeshImportTest, TextsAtNationalCoordinatesAreReadInDouble) {
       EXPECT_NEAR(is.z, wanted.z, 1e-6);
     }
     for (const std::string& note : scene.notes()) EXPECT_EQ(note.find("float"), note.npos) << note;
+  }
+}
+
+// Half a metre is lost where no digit is missing in the file.
+TEST_F(MeshImportTest, FloatsAtNationalCoordinatesAreTold) {
+  const auto bytes = [](auto value) { return std::string(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (const float north : {5'621'391.0F, 91.0F}) {
+    std::string corners;
+    for (const auto& [x, y] : {std::pair{0.0F, 0.0F}, {40.0F, 0.0F}, {40.0F, 30.0F}})
+      corners += bytes(500'000 + x) + bytes(north + y) + bytes(87.0F);
+    const std::string ply =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+        corners + '\3' + bytes(0) + bytes(1) + bytes(2);
+    const std::string stl =
+        std::string(80, ' ') + bytes(std::uint32_t{1}) + std::string(12, '\0') + corners + std::string(2, '\0');
+    for (const auto& [name, content] : {std::pair{"a.ply", ply}, {"a.stl", stl}}) {
+      const Scene scene = Scene::load(write(name, content), with_axes(Unit::metre, UpAxis::z));
+      const std::string wanted = north > 1000 ? "only to 0.5 m" : "only to 0.0312 m";
+      EXPECT_TRUE(
+          std::ranges::any_of(scene.notes(), [&](const std::string& note) { return note.find(wanted) != note.npos; }))
+          << name << " " << north;
+    }
   }
 }
 

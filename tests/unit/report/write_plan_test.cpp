@@ -2,8 +2,10 @@
 // The whole way on a small site: plan, write the folder, read it back, evaluate what was written.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "scene/scene_data.hpp"
 #include "support/boxes_on_ground.hpp"
@@ -124,15 +126,17 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
 
   // coverage.ply: a vertex a voxel, coloured and counted
   const std::string ply = test::content(folder / "out" / "coverage.ply");
-  const std::size_t start = ply.find("end_header\n") + 11, record = 24 + 3 + 4 + 4 + 8;
+  const std::size_t start = ply.find("end_header\n") + 11, record = 12 + 3 + 4 + 4 + 8;
   ASSERT_EQ(ply.size() - start, survey.simulator.voxel_count() * record);
+  std::array<double, 3> origin{};
+  std::istringstream(ply.substr(ply.find("comment origin ") + 15, 60)) >> origin[0] >> origin[1] >> origin[2];
   double filled = 0;
   for (std::uint64_t k = 0; k < survey.simulator.voxel_count(); ++k) {
     std::size_t at = start + k * record;
     const Vec3 centre = survey.simulator.voxel_centre(k);
-    ASSERT_EQ(test::take<double>(ply, at), centre.x);
-    ASSERT_EQ(test::take<double>(ply, at), centre.y);
-    at += 8;
+    ASSERT_EQ(test::take<float>(ply, at), static_cast<float>(centre.x - origin[0]));
+    ASSERT_EQ(test::take<float>(ply, at), static_cast<float>(centre.y - origin[1]));
+    at += 4;
     const int red = test::take<std::uint8_t>(ply, at), green = test::take<std::uint8_t>(ply, at);
     at += 1;
     const float ratio = test::take<float>(ply, at);
@@ -143,6 +147,18 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
     filled += ratio;
   }
   EXPECT_NEAR(filled / static_cast<double>(survey.simulator.voxel_count()), entry.value("coverage"), 1e-6);
+}
+
+TEST_P(WritePlan, PliesHaveDoublesOnRequest) {
+  const test::TemporaryFolder folder;
+  Survey survey;
+  const PlanResult result = plan(survey.site, asked(GetParam()), {.population = 6, .iterations = 2, .seed = 3});
+  write_plan(folder / "out", result, survey.site, {.reports = false, .ply = PlyCoordinates::doubles});
+  for (const char* name : {"coverage.ply", "missed.ply"}) {
+    const std::string ply = test::content(folder / "out" / name);
+    EXPECT_NE(ply.find("\nproperty double x\nproperty double y\nproperty double z\n"), std::string::npos) << name;
+    EXPECT_EQ(ply.find("comment origin"), std::string::npos) << name;
+  }
 }
 
 TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {

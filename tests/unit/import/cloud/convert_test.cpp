@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import/cloud/convert.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -242,6 +243,28 @@ TEST_F(ConvertTest, NationalMillimetresAndDegreesAreKnown) {
     degrees += std::to_string(9 + 1e-6 * (k % 60)) + " " + std::to_string(48 + 1e-6 * (k % 50)) + " " +
                std::to_string(300 + 0.001 * (k % 2800)) + "\n";
   expect_refused_for("look like degrees", [&] { importer::convert_cloud({write("b.xyz", degrees)}, "xyz"); });
+}
+
+// They are steps of 8 mm at 100 km, in cells of 2.5 cm.
+TEST_F(ConvertTest, FloatsAtNationalCoordinatesAreTold) {
+  const auto told = [this](const Vec3& origin, const std::string& type) {
+    std::string body;
+    std::uint64_t count = 0;
+    for (const Eigen::Vector3d& p : Room().scan({3, 2, 1.5}, 0.5, 0.001)) {
+      ++count;
+      for (const double value : {origin.x + p.x(), origin.y + p.y(), origin.z + p.z()})
+        type == "float" ? put(body, static_cast<float>(value)) : put(body, value);
+    }
+    std::string head =
+        "ply\nformat binary_little_endian 1.0\ncomment crs none\nelement vertex " + std::to_string(count);
+    for (const char* name : {"x", "y", "z"}) head += "\nproperty " + type + " " + name;
+    const Scene scene = scene_of(write("a.ply", head + "\nend_header\n" + body), "ply");
+    return std::ranges::any_of(
+        scene.notes(), [](const std::string& note) { return note.find("told only to 0.00781 m") != note.npos; });
+  };
+  EXPECT_TRUE(told({100'000, 60'000, 300}, "float"));
+  EXPECT_FALSE(told({100'000, 60'000, 300}, "double"));
+  EXPECT_FALSE(told({100, 60, 3}, "float"));
 }
 
 TEST_F(ConvertTest, AnotherAxisMayPointUp) {

@@ -33,21 +33,51 @@ TEST_F(PlySourceTest, TextAndBothOrdersOfBytes) {
   }
 }
 
+TEST_F(PlySourceTest, NamesMayBeCapitals) {
+  const auto points = points_of(
+      *open_ply(write("a.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float X\nproperty float Y\nproperty float Z\n"
+                      "property float NX\nproperty float NY\nproperty float NZ\nend_header\n1.5 -2 0.25 0 0 1\n")));
+  ASSERT_EQ(points.size(), 1u);
+  expect_at(points[0], 1.5, -2, 0.25);
+  EXPECT_EQ(points[0].normal, Eigen::Vector3f(0, 0, 1));
+}
+
 TEST_F(PlySourceTest, ReadsWhatVantageWrites) {
   const auto file = folder_.path() / "own.ply";
-  PointCloudWriter writer(file, {500'000, 0, 0}, scan_position | scan_normal, "PROJCS[\"a b\"]");
-  ScanChunk chunk;
-  chunk.ray_count = 1;
-  chunk.position = {{1, 2, 3}};
-  chunk.normal = {{0, 1, 0}};
-  writer.write(chunk, 1);
-  writer.close();
-  const auto source = open_ply(file);
-  const auto points = points_of(*source);
-  ASSERT_EQ(points.size(), 1u);
-  expect_at(points[0], 500'001, 2, 3);
-  EXPECT_EQ(points[0].normal, Eigen::Vector3f(0, 1, 0));
-  EXPECT_EQ(source->crs(), "PROJCS[\"a b\"]");
+  const Vec3 site{412'345.678, 5'698'765.432, 1'712.3};
+  for (const PlyCoordinates coordinates : {PlyCoordinates::floats, PlyCoordinates::doubles}) {
+    PointCloudWriter writer(file, site, scan_position | scan_normal, "PROJCS[\"a b\"]", coordinates);
+    ScanChunk chunk;
+    chunk.ray_count = 1;
+    chunk.position = {{31.4567F, -2, 3}};
+    chunk.normal = {{0, 1, 0}};
+    writer.write(chunk, 1);
+    writer.close();
+    const auto source = open_ply(file);
+    EXPECT_TRUE(source->metric());
+    const auto points = points_of(*source);
+    ASSERT_EQ(points.size(), 1u);
+    // Half a step of a float of less than a kilometre.
+    const double within = coordinates == PlyCoordinates::floats ? 3.1e-5 : 1e-9;
+    EXPECT_NEAR(points[0].position.x(), site.x + double{31.4567F}, within);
+    EXPECT_NEAR(points[0].position.y(), site.y - 2, within);
+    EXPECT_NEAR(points[0].position.z(), site.z + 3, within);
+    EXPECT_EQ(points[0].normal, Eigen::Vector3f(0, 1, 0));
+    EXPECT_EQ(source->crs(), "PROJCS[\"a b\"]");
+  }
+}
+
+// Another program's comment may begin with the same word.
+TEST_F(PlySourceTest, OnlyItsOwnCommentMovesPoints) {
+  const std::string rest =
+      "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+  const std::string head = "ply\nformat ascii 1.0\n";
+  const auto read = [&](const std::string& comments) {
+    return points_of(*open_ply(write("a.ply", head + comments + rest))).at(0);
+  };
+  expect_at(read("comment origin 1000 2000 0\n"), 1, 2, 3);
+  expect_at(read("comment vantage 1.0.0 ...\ncomment origin 1000 -2000 0\n"), 1001, -1998, 3);
 }
 
 TEST_F(PlySourceTest, PointsThatAreNotFiniteAreLeftOut) {
@@ -73,6 +103,8 @@ TEST_F(PlySourceTest, SaysWhatIsWrong) {
   refused("element vertex 1\n" + xyz + "end_header\n1 2 3\n", "names no format");
   refused("format ascii 1.0\nelement vertex 1\n", "does not end");
   refused("format ascii 1.0\nelement face 1\nend_header\n", "no vertices");
+  for (const char* origin : {"1000 2000", "1000 east 0", "nan 0 0"})
+    refused("format ascii 1.0\ncomment vantage 1.0.0\ncomment origin " + std::string(origin) + "\n", "no place");
   refused("comment " + std::string(100'000, 'a'), "longer than");
 }
 
