@@ -225,7 +225,8 @@ RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Pr
         hits.mesh[k] = static_cast<std::int32_t>(mesh);
         hits.primitive[k] = found.triangle;
       });
-  return whole ? hits : RayHits{};
+  if (!whole) return {};
+  return hits;
 }
 
 std::vector<std::uint8_t> RayTracer::blocked(const Rays& rays, const RayOptions& options,
@@ -235,7 +236,8 @@ std::vector<std::uint8_t> RayTracer::blocked(const Rays& rays, const RayOptions&
                                      [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
                                        blocked[k] = impl_->run<BlockedQuery>(ray, end).found;
                                      });
-  return whole ? blocked : std::vector<std::uint8_t>{};
+  if (!whole) return {};
+  return blocked;
 }
 
 std::vector<std::uint32_t> RayTracer::count(const Rays& rays, const RayOptions& options,
@@ -245,7 +247,8 @@ std::vector<std::uint32_t> RayTracer::count(const Rays& rays, const RayOptions& 
                                      [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
                                        counts[k] = impl_->run<CountQuery>(ray, end).count;
                                      });
-  return whole ? counts : std::vector<std::uint32_t>{};
+  if (!whole) return {};
+  return counts;
 }
 
 }  // namespace vantage
