@@ -61,6 +61,12 @@ std::span<const Row> rows_of(const Doubles& array, const char* what) {
                                           ") is wanted, and this one's is " + shape_text(array));
 }
 
+/// Points of (n, 3), or one of (3,).
+inline std::span<const Vec3> points_of(const Doubles& array, const char* what) {
+  if (array.ndim() == 1 && array.shape(0) == 3) return {reinterpret_cast<const Vec3*>(array.data()), 1};
+  return rows_of<Vec3>(array, what);
+}
+
 /// Indices of corners. Throws Error invalid_argument for another shape, no integers, or values outside of 0 to 2³² − 1.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array);
 

@@ -229,6 +229,10 @@ void add_evaluations(py::module_& m) {
           },
           "Station masks: bit i is set if station i has a point in the voxel: (N_v,), a copy. Beyond 64 stations the "
           "masks of the next\n64 follow, and so on.")
+      .def("value", &Evaluation::value, py::arg("name"),
+           "A measure by its name in `vantage evaluate --json`, in its unit. Raises Error invalid_argument if it was "
+           "not "
+           "requested, and\nsuggests one that was.")
       .def_readonly("voxels", &Evaluation::voxels, "Surveyed voxels of the site, N_v.")
       .def_property_readonly(
           "sample", [](const Evaluation& e) { return e.counts.voxels; },

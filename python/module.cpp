@@ -48,6 +48,7 @@ PYBIND11_MODULE(_core, m) {
   add_simulators(m);
   add_sites(m);
   add_on_site(m);
+  add_rays(m);
   add_missed(m);
   add_candidates(m);
   add_problems(m);

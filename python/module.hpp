@@ -16,6 +16,7 @@ void add_evaluations(pybind11::module_& m);
 void add_simulators(pybind11::module_& m);
 void add_sites(pybind11::module_& m);
 void add_on_site(pybind11::module_& m);
+void add_rays(pybind11::module_& m);
 void add_missed(pybind11::module_& m);
 void add_candidates(pybind11::module_& m);
 void add_problems(pybind11::module_& m);

@@ -21,9 +21,13 @@ inline auto members(RegistrationSums& s) {
 }
 inline auto members(NetworkCounts& c) {
   return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_weight, c.rays, c.stations, c.points,
-                  c.points_on_surveyed, c.dropped, c.mixed, c.seen, c.shared, c.registration, c.groups,
+                  c.points_on_surveyed, c.dropped, c.mixed, c.seen, c.shared, c.meshes, c.registration, c.groups,
                   c.successive_difference_sum, c.trace_seconds, c.cancelled);
 }
+inline auto members(RayHits& h) {
+  return std::tie(h.range_m, h.position, h.normal, h.reflectivity, h.diffuse, h.mesh, h.primitive);
+}
+inline auto members(UncoveredVoxels& u) { return std::tie(u.voxels, u.centres, u.meshes, u.points); }
 inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
 inline auto members(RegistrationError& e) {
   return std::tie(e.rms_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);

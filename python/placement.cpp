@@ -207,8 +207,23 @@ void add_clash(py::module_& m) {
           py::arg("grounds"), py::arg("height_m") = py::none(),
           "Whether something is within the volume above each ground of (n, 3), survey frame, metres: (n,). "
           "With\nheight_m, that of the head above the ground, mast and head are kept clear too.")
-      .def("sees", &ClashChecker::sees, py::arg("a"), py::arg("b"),
-           "Whether nothing stands between two points (x, y, z), survey frame.")
+      .def(
+          "sees",
+          [](const ClashChecker& clash, const py::object& a, const py::object& b) -> py::object {
+            const Doubles first = doubles_of(a, "a"), second = doubles_of(b, "b");
+            const std::span<const Vec3> from = points_of(first, "a"), to = points_of(second, "b");
+            std::vector<std::uint8_t> free = [&] {
+              const py::gil_scoped_release unlocked;
+              return clash.sees(from, to);
+            }();
+            if (first.ndim() == 1 && second.ndim() == 1) return py::bool_(free.front() != 0);
+            const auto count = static_cast<py::ssize_t>(free.size());
+            return adopt<bool>(std::move(free), {count});
+          },
+          py::arg("a"), py::arg("b"),
+          "Whether nothing stands between two points (x, y, z), survey frame; between the rows of two arrays of (n, "
+          "3), "
+          "or of\none and a point: (n,).")
       .def(
           "distance",
           [](const ClashChecker& clash, const py::object& points, double limit_m) {

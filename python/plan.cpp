@@ -125,13 +125,8 @@ void add_entries(py::module_& m) {
           },
           "MeasuredValue by the names of the plan's measures.")
       .def(
-          "value",
-          [](const Entry& e, const std::string& name) {
-            const auto found = e.get().values.find(name);
-            if (found == e.get().values.end()) throw py::key_error(name);
-            return found->second.value;
-          },
-          py::arg("name"), "values[name].best_known")
+          "value", [](const Entry& e, const std::string& name) { return e.get().value(name); }, py::arg("name"),
+          "values[name].best_known. Raises Error invalid_argument for a name that the plan did not measure.")
       .def_property_readonly(
           "confirmed", [](const Entry& e) { return e.get().exact; }, "Whether the exact values were computed.")
       .def_property_readonly(

@@ -14,6 +14,7 @@ struct Measured {
   std::size_t existing = 0, visible_parts = 0;
   double minutes_on_site = 0;
   std::optional<Evaluation> surroundings = std::nullopt;
+  std::optional<Scene> scene = std::nullopt;
 };
 
 // Figures from a network's counts, with pairs if there are any.
@@ -37,6 +38,7 @@ Measured copy_of(const MeasuredNetwork& network, const std::optional<Registratio
                 .existing = network.existing,
                 .visible_parts = network.visible_parts,
                 .minutes_on_site = network.minutes_on_site};
+  if (network.scene) copy.scene = *network.scene;
   if (network.surroundings)
     copy.surroundings = figures_of({.counts = *network.surroundings,
                                     .stations = network.stations,
@@ -66,16 +68,20 @@ Measure measure_of(const py::function& function, const std::optional<Registratio
 
 Objective objective_of(std::string name, const py::function& value, const Scale& scale, std::string label,
                        std::string unit, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
-                       const std::optional<RegistrationOptions>& registration,
+                       bool meshes, const std::optional<RegistrationOptions>& registration,
                        const std::optional<py::function>& standard_error, std::string parameters) {
-  Objective made{
-      .name = std::move(name),
-      .label = std::move(label),
-      .unit = std::move(unit),
-      .scale = scale,
-      .needs = {.counts = counts, .pairs = pairs, .visibility = visibility, .surroundings = surroundings, .time = time},
-      .value = measure_of(value, registration),
-      .parameters = std::move(parameters)};
+  Objective made{.name = std::move(name),
+                 .label = std::move(label),
+                 .unit = std::move(unit),
+                 .scale = scale,
+                 .needs = {.counts = counts,
+                           .pairs = pairs,
+                           .visibility = visibility,
+                           .surroundings = surroundings,
+                           .time = time,
+                           .meshes = meshes},
+                 .value = measure_of(value, registration),
+                 .parameters = std::move(parameters)};
   if (registration) {
     const bool by_all = registration->surfaces == RegistrationSurfaces::all;
     made.needs.pairs = true;
@@ -100,7 +106,19 @@ void add_objectives(py::module_& m) {
                     "Connected components of the stations that see each other; 0 unless needed.")
       .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Time without existing stations; 0 unless needed.")
       .def_readonly("surroundings", &Measured::surroundings,
-                    "Counts on all surfaces, surveyed or not; None unless needed.");
+                    "Counts on all surfaces, surveyed or not; None unless needed.")
+      .def(
+          "captured",
+          [](const Measured& network, const std::string& meshes) {
+            return captured({.counts = network.evaluation.counts,
+                             .stations = network.stations,
+                             .scene = network.scene ? &*network.scene : nullptr},
+                            meshes);
+          },
+          py::arg("meshes"),
+          "Share of voxels that reached their goal density, of surveyed meshes whose name matches a shell glob: "
+          "'facade*'. The\nobjective is made with meshes=True. 0 if a sample holds none of their voxels.\nRaises Error "
+          "invalid_argument if no surveyed mesh has such a name.");
   py::class_<Scale> scale(m, "Scale", "The relevant range of an objective's values; made by `minimise` or `maximise`.");
   scale.def_readonly("best", &Scale::best, "Value scaled to 0.")
       .def_readonly("worst", &Scale::worst, "Value scaled to 1: the reference point of the hypervolume.")
@@ -118,10 +136,12 @@ void add_objectives(py::module_& m) {
       .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::arg("scale"), py::kw_only(),
            py::arg("label") = "", py::arg("unit") = "", py::arg("counts") = true, py::arg("pairs") = false,
            py::arg("visibility") = false, py::arg("surroundings") = false, py::arg("time") = false,
-           py::arg("registration") = py::none(), py::arg("standard_error") = py::none(), py::arg("parameters") = "",
+           py::arg("meshes") = false, py::arg("registration") = py::none(), py::arg("standard_error") = py::none(),
+           py::arg("parameters") = "",
            "name: lower-case letters, digits, `_`. value: a pure function of a MeasuredNetwork. scale: `minimise(best, "
            "worst)`\nor `maximise(best, worst)`, for search and hypervolume. counts, pairs, visibility, surroundings, "
-           "time, registration\n(RegistrationOptions): inputs that it needs; others are not computed. standard_error: "
+           "time, meshes, registration\n(RegistrationOptions): inputs that it needs; others are not computed. "
+           "standard_error: "
            "a function like value; None:\nby the jackknife. parameters: its own parameters; runs resume only under the "
            "same ones.")
       .def_readonly("name", &Objective::name, "Its key in tables and results.")

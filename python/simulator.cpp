@@ -100,6 +100,38 @@ py::array_t<double> goal_densities(const Simulators& self) {
   return adopt<double>(std::move(goals), {count});
 }
 
+void add_uncovered(py::module_& m) {
+  py::class_<UncoveredVoxels> type(m, "UncoveredVoxels", "Surveyed voxels below their goal density: k of them.");
+  const auto numbers = [](std::vector<std::uint32_t> UncoveredVoxels::*member) {
+    return [member](const py::object& self) {
+      return view<std::uint32_t>(std::span<const std::uint32_t>(self.cast<const UncoveredVoxels&>().*member), self);
+    };
+  };
+  type.def_property_readonly("voxels", numbers(&UncoveredVoxels::voxels),
+                             "Voxel indices, in the order of `Simulator.voxel_centres`: (k,), ascending, read-only.")
+      .def_property_readonly(
+          "centres",
+          [](const py::object& self) {
+            return view<double>(std::span(self.cast<const UncoveredVoxels&>().centres), self, 3);
+          },
+          "Their centres, survey frame: (k, 3), metres, read-only.")
+      .def_property_readonly("meshes", numbers(&UncoveredVoxels::meshes),
+                             "Index into `Scene.meshes` of the mesh with most surface in each: (k,), read-only.")
+      .def_property_readonly("points", numbers(&UncoveredVoxels::points),
+                             "Points of the network in each: (k,), read-only.")
+      .def("__len__", [](const UncoveredVoxels& self) { return self.voxels.size(); });
+  add_pickle(type);
+  m.def(
+      "uncovered",
+      [](const Simulators& self, const Evaluation& evaluation) {
+        const py::gil_scoped_release unlocked;
+        return uncovered(self.simulator, evaluation);
+      },
+      py::arg("simulator"), py::arg("evaluation"),
+      "Voxels that a network does not capture. evaluation: of this simulator, with field=True.\nRaises Error "
+      "invalid_argument.");
+}
+
 void add_engines(py::module_& m) {
   py::class_<EngineInfo>(m, "EngineInfo", "An engine on a device.")
       .def_property_readonly(
@@ -208,6 +240,7 @@ void add_simulators(py::module_& m) {
       });
   refuse_pickle(type, "a Simulator owns a device and is not pickled; make another of its scene, scanners and options");
   add_clouds(m);
+  add_uncovered(m);
 }
 
 }  // namespace vantage::python

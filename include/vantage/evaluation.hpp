@@ -94,8 +94,8 @@ struct Evaluation {
   /// Sum of the violations of requirements, as shares of their objectives' scales; 0: all are met.
   double violation = 0;
 
-  /// Throws std::out_of_range for a measure that was not requested.
-  double value(const std::string& measure) const { return values.at(measure).value; }
+  /// Throws Error invalid_argument for a measure that was not requested, and suggests one of those that were.
+  double value(const std::string& measure) const;
   /// Links by scan overlap if known, otherwise by overlap; empty if neither is.
   std::optional<StationLinks> links() const;
 };
@@ -146,6 +146,17 @@ struct EvaluationOptions {
   double link_overlap = default_link_overlap, link = default_link;  ///< As in `Evaluation`.
   std::vector<std::string> names = {};                              ///< The stations' names, one each, or none.
 };
+
+/// Surveyed voxels that a network leaves below their goal density.
+struct UncoveredVoxels {
+  std::vector<std::uint32_t> voxels;  ///< Voxel indices, ascending.
+  std::vector<Vec3> centres;          ///< Survey frame.
+  std::vector<std::uint32_t> meshes;  ///< Index into `Scene::meshes()` of the mesh with most surface in each.
+  std::vector<std::uint32_t> points;  ///< Points of the network in each.
+};
+/// Voxels that an evaluated network does not capture. Throws Error invalid_argument unless the evaluation has the
+/// points of every voxel of this simulator (`EvaluationOptions::field`).
+UncoveredVoxels uncovered(const Simulator& simulator, const Evaluation& evaluation);
 
 /// Evaluates a network. Scan overlaps take every ray of the coarser `surroundings`, sampled or not. A cancelled
 /// evaluation has `counts.cancelled` set and no values. Throws Error invalid_argument if a measure needs something that

@@ -36,6 +36,7 @@ struct MeasuredNetwork {
   double minutes_on_site = 0;  ///< By `OnSite`, without existing stations; 0 where no objective needs it.
   /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
   Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
+  const Scene* scene = nullptr;  ///< The surveyed scene, for `captured()`.
 };
 
 /// Inputs of an objective besides the stations. Inputs that no objective needs are not computed.
@@ -51,6 +52,7 @@ struct RequiredInputs {
   /// `MeasuredNetwork::captured`, and with it `ObjectiveSettings::attainable`: a search makes the objective anew once
   /// that is known.
   bool attainable = false;
+  bool meshes = false;  ///< `NetworkCounts::meshes`, for `captured()`.
 };
 constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs& b) {
   return {a.counts || b.counts,
@@ -60,8 +62,16 @@ constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs
           a.time || b.time,
           a.registration ? a.registration : b.registration,
           a.surroundings_registration || b.surroundings_registration,
-          a.attainable || b.attainable};
+          a.attainable || b.attainable,
+          a.meshes || b.meshes};
 }
+
+/// Share of voxels that reached their goal density, of surveyed meshes whose name matches a shell glob: "facade*", "*".
+/// Each voxel counts once, whatever its weight. 0 if a sample holds none of theirs.
+/// Throws Error invalid_argument if no surveyed mesh has such a name, or unless the objective needs `meshes`.
+double captured(const MeasuredNetwork& network, std::string_view meshes);
+/// The same of counts in `scene`. REQUIRES: `counts.meshes`, of that scene.
+double captured(const NetworkCounts& counts, const Scene& scene, std::string_view meshes);
 
 /// The relevant range of an objective's values, in its unit, made by `minimise` or `maximise`. The search minimises
 /// (best − value) / (best − worst). `worst` is the reference point of the hypervolume. Values beyond either end are

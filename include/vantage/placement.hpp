@@ -201,6 +201,9 @@ class ClashChecker {
   std::optional<Vec3> ground_below(const Vec3& point, double limit_m) const;
   /// Whether the line between two points (survey frame), e.g. two heads, is free.
   bool sees(const Vec3& a, const Vec3& b) const;
+  /// The same of many pairs, 1 if free, else 0; an array of one element is for all of the other. Throws Error
+  /// invalid_argument, with the row, for a point that is not in reach, and for arrays that do not fit together.
+  std::vector<std::uint8_t> sees(std::span<const Vec3> a, std::span<const Vec3> b) const;
   /// Tells whether a scanner's ray gets from `a` to `b`: as `sees`, but through glass.
   bool ray_passes(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.

@@ -173,6 +173,7 @@ struct EvaluateOptions {
   VoxelField* field = nullptr;  ///< Receives the voxel field, if given.
   /// Fills `NetworkCounts::registration`, if given. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
+  bool meshes = false;  ///< Fills `NetworkCounts::meshes`. Keeps the points of every voxel meanwhile.
   /// Voxels that registration is summed over, in groups: a sample costs the planes of its own voxels alone. It grows
   /// fourfold until `registration_known` returns true for the counts of a network, by its number, or has every voxel.
   std::uint64_t registration_voxels = every_voxel;
@@ -201,6 +202,7 @@ struct SampleOptions {
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
   /// Fills `NetworkCounts::registration`, if given. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
+  bool meshes = false;  ///< Fills `NetworkCounts::meshes`. Not with `CountTo::one`.
   /// Fills `NetworkCounts::groups` and `successive_difference_sum`. Standard errors need them; a search can do without.
   bool groups = true;
   /// Optional, a byte for each voxel of the sample: those that are not 0 need not be counted, and the results are then

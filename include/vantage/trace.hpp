@@ -113,6 +113,13 @@ struct MixedPoints {
   }
 };
 
+/// Counted voxels of one mesh. A voxel belongs to the mesh with most surface in it.
+struct MeshVoxels {
+  std::uint64_t voxels = 0;
+  std::uint64_t captured = 0;  ///< Those that reached their goal density.
+  friend bool operator==(const MeshVoxels&, const MeshVoxels&) = default;
+};
+
 /// A simulated network's result in the surveyed voxels, reduced to integers. Exact, so independent of engine, order and
 /// chunking.
 struct NetworkCounts {
@@ -134,7 +141,8 @@ struct NetworkCounts {
   std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
   /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
   std::vector<std::uint64_t> shared;
-  RegistrationSums registration;  ///< If asked for.
+  std::vector<MeshVoxels> meshes;  ///< Per mesh of the scene, in its order; empty unless asked for.
+  RegistrationSums registration;   ///< If asked for.
   /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
   std::vector<NetworkCounts> groups;
   /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1), for the standard error of

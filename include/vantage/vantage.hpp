@@ -20,6 +20,7 @@
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/question.hpp"
+#include "vantage/rays.hpp"
 #include "vantage/report.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"

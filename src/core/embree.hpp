@@ -74,4 +74,12 @@ inline Device new_device() {
   return device;
 }
 
+// Of which rays may start and end anywhere.
+inline Scene new_scene(RTCDevice device) {
+  Scene scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+  return scene;
+}
+
 }  // namespace vantage::embree

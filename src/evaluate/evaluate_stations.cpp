@@ -90,13 +90,16 @@ EvaluateOptions registered_by(EvaluateOptions counting, std::uint64_t voxels) {
 std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const RequiredInputs& needs,
                                  const EvaluationOptions& options, VoxelField* field, const Progress& progress) {
   if (options.sample_voxels)
-    return simulator.evaluate_sampled(
-        networks, {.voxels = *options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
-        progress);
+    return simulator.evaluate_sampled(networks,
+                                      {.voxels = *options.sample_voxels,
+                                       .overlap = options.overlap,
+                                       .registration = needs.registration,
+                                       .meshes = needs.meshes},
+                                      progress);
   EvaluateOptions every_ray =
       registered_by(count_surveyed(needs, registration_of(needs, options), simulator), options.registration_voxels);
   every_ray.overlap = options.overlap, every_ray.skip = options.skip;
-  every_ray.field = field, every_ray.beam = options.beam;
+  every_ray.field = field, every_ray.beam = options.beam, every_ray.meshes = needs.meshes;
   if (networks.size() == 1) return {simulator.evaluate(networks.front(), every_ray, progress)};
   return simulator.evaluate_each(networks, every_ray, progress);
 }
@@ -181,7 +184,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
                              : 0,
         .surroundings = counts_around ? &around[k] : nullptr,
         .surroundings_voxels = counts_around ? site.surroundings->voxel_count() : 0,
-        .minutes_on_site = visit ? visit->minutes : 0};
+        .minutes_on_site = visit ? visit->minutes : 0,
+        .scene = &site.simulator.scene()};
     if (options.attainable) measured.captured = captured[k];
     std::vector<Target> targets = options.targets;
     std::vector<RegistrationTarget> sighted;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/closest_name.hpp"
+#include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {
@@ -42,6 +44,20 @@ double violation_of(const Evaluation& evaluation, std::span<const Requirement> r
   for (const Requirement& requirement : requirements)
     violation += requirement.missed_by(evaluation.value(requirement.objective.name));
   return violation;
+}
+
+double Evaluation::value(const std::string& measure) const {
+  const auto found = values.find(measure);
+  if (found != values.end()) return found->second.value;
+  if (counts.cancelled) throw Error(Errc::invalid_argument, measure + ": the evaluation was stopped and has no values");
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  std::string what = "the evaluation has no \"" + measure + "\"";
+  if (const std::string near = did_you_mean(measure, names); !near.empty())
+    throw Error(Errc::invalid_argument, what + near);
+  what += "; it has ";
+  for (const std::string& name : names) what += (&name == names.data() ? "" : ", ") + name;
+  throw Error(Errc::invalid_argument, what + (names.empty() ? "no values" : "; name others in what is to be measured"));
 }
 
 Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,

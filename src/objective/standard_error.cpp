@@ -36,7 +36,7 @@ NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
   rest.stations = all.stations;
   rest.voxels = all.voxels, rest.weight = all.weight;
   rest.saturated = all.saturated, rest.partial_points = all.partial_points, rest.point_weight = all.point_weight;
-  rest.seen = all.seen, rest.shared = all.shared;
+  rest.seen = all.seen, rest.shared = all.shared, rest.meshes = all.meshes;
   if (sums == Sums::none) return rest;
   const RegistrationSums& registration = all.registration;
   rest.registration = {.voxels = registration.voxels,
@@ -58,6 +58,10 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   rest.saturated -= group.saturated, rest.partial_points -= group.partial_points;
   subtract(rest.seen, group.seen);
   subtract(rest.shared, group.shared);
+  for (std::size_t m = 0; m < group.meshes.size(); ++m) {
+    rest.meshes[m].voxels -= group.meshes[m].voxels;
+    rest.meshes[m].captured -= group.meshes[m].captured;
+  }
 }
 
 // Leaves differences of sums that are exact except for their last place. A group of a large network lacks pairs that
@@ -211,7 +215,8 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .visible_parts = measured.visible_parts,
                                 .surroundings = measured.surroundings,
                                 .surroundings_voxels = measured.surroundings_voxels,
-                                .minutes_on_site = measured.minutes_on_site});
+                                .minutes_on_site = measured.minutes_on_site,
+                                .scene = measured.scene});
       };
       const Estimate own = objective.needs.pairs && !objective.needs.registration
                                ? of_pairs(estimate.value, counts, unsampled, scale, of)
@@ -231,7 +236,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       without.voxels = measured.voxels;
       without.overlap = measured.overlap, without.visible_parts = measured.visible_parts;
       without.surroundings = &rest, without.surroundings_voxels = measured.surroundings_voxels;
-      without.minutes_on_site = measured.minutes_on_site;
+      without.minutes_on_site = measured.minutes_on_site, without.scene = measured.scene;
       return objective.value(without);
     };
     if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, around, of), unsampled, scale));

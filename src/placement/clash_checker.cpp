@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <sstream>
+#include <string>
+#include <utility>
 
+#include "core/parallel.hpp"
 #include "core/site_reach.hpp"
 #include "core/text.hpp"
 #include "placement/mesh_tree.hpp"
@@ -92,6 +95,25 @@ std::optional<Vec3> ClashChecker::ground_below(const Vec3& point, double limit_m
 
 bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
   return !impl_->tree.between(impl_->local(a), impl_->local(b));
+}
+
+std::vector<std::uint8_t> ClashChecker::sees(std::span<const Vec3> a, std::span<const Vec3> b) const {
+  if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
+    throw Error(Errc::invalid_argument, "sees: there are " + std::to_string(a.size()) + " points and " +
+                                            std::to_string(b.size()) +
+                                            " to be seen from them; give as many of each, or one for all");
+  for (const auto& [points, name] : {std::pair{a, "a"}, {b, "b"}})
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (!in_reach(points[k], impl_->origin))
+        refuse_position(points[k], std::string("sees: the point in row ") + std::to_string(k) +
+                                       ", counted from 0, of " + name + " is");
+  std::vector<std::uint8_t> free(a.size() == 1 ? b.size() : a.size());
+  constexpr std::size_t kGrain = 256;
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, free.size(), kGrain), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k)
+      free[k] = sees(a[a.size() == 1 ? 0 : k], b[b.size() == 1 ? 0 : k]) ? 1 : 0;
+  });
+  return free;
 }
 
 bool ClashChecker::ray_passes(const Vec3& a, const Vec3& b) const {

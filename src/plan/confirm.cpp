@@ -38,7 +38,7 @@ void take_by_positions(PlanEntry& entry, const SurveyProblem& problem, const Mea
   for (const Objective& measure : measures.all) {
     const RequiredInputs& needs = measure.needs;
     if (needs.counts || needs.pairs || needs.visibility || needs.surroundings || needs.time || needs.registration ||
-        needs.surroundings_registration || needs.attainable)
+        needs.surroundings_registration || needs.attainable || needs.meshes)
       continue;
     entry.searched.at(measure.name).value =
         measure.value({.counts = none, .stations = entry.stations, .existing = problem.existing.size()});

@@ -55,6 +55,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                           .overlap = needs.pairs,
                           .count_to = CountTo::goal,
                           .registration = needs.registration,
+                          .meshes = needs.meshes,
                           .groups = errors};
     if (in_one) {
       counted.captured.resize(networks.size());
@@ -89,7 +90,8 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
                                                                          std::span<const Network> networks,
                                                                          const SampleOptions& sample,
                                                                          const Progress& progress) {
-  const EvaluateOptions every_ray{.overlap = sample.overlap, .registration = sample.registration};
+  const EvaluateOptions every_ray{
+      .overlap = sample.overlap, .registration = sample.registration, .meshes = sample.meshes};
   std::vector<NetworkCounts> counts = sample.voxels > 0 ? simulator.evaluate_sampled(networks, sample, progress)
                                                         : simulator.evaluate_each(networks, every_ray, progress);
   for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
@@ -112,7 +114,8 @@ MeasuredNetwork SimulatorEvaluator::measured(const Counted& counted, std::size_t
       .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
       .surroundings = surroundings,
       .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
-      .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0};
+      .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0,
+      .scene = &simulator_.scene()};
   if (needs.attainable) made.captured = counted.captured[k];
   return made;
 }
@@ -165,6 +168,7 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
   VoxelField field;
   EvaluateOptions surveyed = count_surveyed(needs, options_.registration, simulator_);
   if (networks.size() == 1 && simulator_.voxel_count() <= kKeptVoxels) surveyed.field = &field;
+  surveyed.meshes = needs.meshes;
   counted.surveyed = count(simulator_, surveyed, part_of(progress, 0, parts));
   if (needs.surroundings)
     counted.surroundings =

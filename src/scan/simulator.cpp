@@ -255,6 +255,58 @@ struct Simulator::Impl {
                        });
   }
 
+  // The mesh of each voxel of a sample, or of all voxels, which is the one from 0.
+  struct VoxelMeshes {
+    std::uint64_t from;
+    std::vector<std::uint32_t> mesh;
+  };
+  const std::vector<std::uint32_t>& meshes_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from) {
+    return voxel_meshes
+        .get([&](const VoxelMeshes& one) { return one.from == from && one.mesh.size() == voxel_indices.size(); },
+             [&] {
+               VoxelMeshes made{from, {}};
+               made.mesh.reserve(voxel_indices.size());
+               for (std::size_t first = 0; first < voxel_indices.size(); first += kPlanesAtOnce)
+                 for (const VoxelSurface& surface : surfaces->find(voxel_indices.subspan(
+                          first, std::min<std::size_t>(kPlanesAtOnce, voxel_indices.size() - first))))
+                   made.mesh.push_back(surface.mesh);
+               return made;
+             })
+        .mesh;
+  }
+  // Counts by mesh of each of some interleaved groups of voxels, with so many points in each voxel.
+  std::vector<std::vector<MeshVoxels>> count_meshes(std::span<const std::uint32_t> points,
+                                                    std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
+                                                    std::size_t groups) {
+    const std::vector<std::uint32_t>& mesh = meshes_of(voxel_indices, from);
+    const VoxelDemands& demands = grid->demands();
+    const double full = std::ceil(goal * demands.least_point_weight());
+    std::vector counts(groups, std::vector<MeshVoxels>(data().meshes.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      MeshVoxels& own = counts[k % groups][mesh[k]];
+      const std::uint64_t weighted_points = std::uint64_t{points[k]} * demands.point_weight(voxel_indices[k]);
+      own.voxels += 1;
+      if (static_cast<double>(weighted_points) >= full) own.captured += 1;
+    }
+    return counts;
+  }
+  // The same of every voxel.
+  std::vector<MeshVoxels> count_meshes(std::span<const std::uint32_t> points) {
+    std::vector<std::uint32_t> voxel_indices(grid->size());
+    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+    return std::move(count_meshes(points, voxel_indices, 0, 1).front());
+  }
+  // Fills the counts by mesh of a sample, and of its groups.
+  void take_meshes(NetworkCounts& counts, const std::vector<std::vector<MeshVoxels>>& groups) {
+    counts.meshes.resize(data().meshes.size());
+    for (const std::vector<MeshVoxels>& group : groups)
+      for (std::size_t m = 0; m < group.size(); ++m) {
+        counts.meshes[m].voxels += group[m].voxels;
+        counts.meshes[m].captured += group[m].captured;
+      }
+    for (std::size_t g = 0; g < counts.groups.size(); ++g) counts.groups[g].meshes = groups[g];
+  }
+
   // Empty if stopped: planes of millions of voxels take seconds.
   Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
                      const std::stop_token& stop) {
@@ -379,6 +431,7 @@ struct Simulator::Impl {
   std::optional<SurfaceFinder> surfaces;
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
+  LruCache<VoxelMeshes> voxel_meshes;
   std::vector<PatchScanner> patch_scanners;
   std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
   std::optional<WideBeam> wide_beam;   // made for the first beam with one
@@ -621,10 +674,12 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
     if (limited()) counts.dropped.assign(network.size(), {});
     if (!options.skip || options.beam) counts.points.assign(network.size(), 0);
     if (options.beam) counts.mixed.assign(network.size(), {});
+    if (options.meshes) counts.meshes = count_meshes(std::vector<std::uint32_t>(grid->size()));
     return counts;
   }
   VoxelField own;
-  VoxelField* field = (options.registration || options.beam) && !options.field ? &own : options.field;
+  const bool kept = options.registration || options.beam || options.meshes;
+  VoxelField* field = kept && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
   NetworkCounts counts = options.beam
                              ? count_beams(active, size, *options.beam, options.overlap, *field, progress)
@@ -632,6 +687,7 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
                                                field, *grid, goal, progress);
   if (options.registration && !counts.cancelled)
     counts.cancelled = !register_enough(active, counts, field->stations, options, place, progress.stop);
+  if (options.meshes && !counts.cancelled) counts.meshes = count_meshes(field->count);
   return counts;
 }
 
@@ -648,7 +704,8 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Networ
   const auto many = static_cast<double>(networks.size());
   for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
-    if (active.empty() || options.registration || options.beam || options.field || networks[k].size() > mask_bits) {
+    if (active.empty() || options.registration || options.beam || options.field || options.meshes ||
+        networks[k].size() > mask_bits) {
       all[k] = evaluate(
           networks[k], options, k,
           {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});
@@ -687,6 +744,8 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_one_by_one(std::span<const 
 std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Network> networks,
                                                              const SampleOptions& options, const Progress& progress) {
   check_registration(options.registration, options.overlap);
+  if (options.meshes && options.count_to == CountTo::one)
+    throw Error(Errc::invalid_argument, "counts by mesh need the points of each voxel up to the goal");
   const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
   if (large && networks.size() > 1) return evaluate_one_by_one(networks, options, progress);
   const Sample& taken = sample_of(options.voxels, options.from);
@@ -694,6 +753,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   if (!options.leave_out.empty() && options.leave_out.size() != sample.size())
     throw Error(Errc::invalid_argument, "evaluate_sampled: leave_out has " + std::to_string(options.leave_out.size()) +
                                             " voxels, and the sample " + std::to_string(sample.size()));
+  const std::size_t groups = options.groups ? sample_groups : 1;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> tracing;
@@ -711,7 +771,9 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
                                              options.overlap, options.registration.has_value()));
         if (options.registration) all[k].registration.groups.push_back(std::move(all[k].groups.back().registration));
       }
-      if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
+      const std::vector<std::uint32_t> none(sample.size());
+      if (options.meshes) take_meshes(all[k], count_meshes(none, sample, taken.from, groups));
+      if (options.points) options.points(k, none);
       continue;
     }
     tracing.push_back(std::move(active));
@@ -719,8 +781,10 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
     places.push_back(k);
   }
   if (tracing.empty()) return all;
+  std::vector<std::vector<std::vector<MeshVoxels>>> by_mesh(options.meshes ? tracing.size() : 0);
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
-    options.points(places[k], counted);
+    if (options.meshes) by_mesh[k] = count_meshes(counted, sample, taken.from, groups);
+    if (options.points) options.points(places[k], counted);
   };
   std::optional<RegistrationJob> registration;
   if (options.registration) {
@@ -734,7 +798,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
                               .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,
                               .stop_at = stop_at(options.count_to, goal),
-                              .points = options.points ? decltype(options.points)(points) : nullptr,
+                              .points = options.points || options.meshes ? decltype(options.points)(points) : nullptr,
                               .registration = registration ? &*registration : nullptr,
                               .leave_out = options.leave_out};
   std::vector<NetworkCounts> counts;
@@ -742,6 +806,8 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
     counts.push_back(count_sampled_in_passes(*tracer, tracing.front(), sizes.front(), job, *grid, goal, progress));
   else
     counts = tracer->count_sampled(tracing, sizes, job, progress);
+  for (std::size_t k = 0; k < by_mesh.size(); ++k)
+    if (!counts[k].cancelled) take_meshes(counts[k], by_mesh[k]);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
 }

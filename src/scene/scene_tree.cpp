@@ -11,20 +11,9 @@
 #include "scene/local_from_mesh.hpp"
 
 namespace vantage {
-namespace {
-
-embree::Scene new_scene(RTCDevice device) {
-  embree::Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
-  return scene;
-}
-
-}  // namespace
-
 SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t first, std::uint32_t end,
                      const Filters& filters, const std::string& what)
-    : scene_(scene), first_(first), tree_(new_scene(device)) {
+    : scene_(scene), first_(first), tree_(embree::new_scene(device)) {
   if (!scene.shares()) {
     if (end > first) add_triangles(device, tree_.get(), first, end - first, 0, filters);
   } else {
@@ -95,7 +84,7 @@ void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters
       continue;
     RTCScene& mesh = known[instance.first_stored];
     if (!mesh) {
-      shared_.push_back(new_scene(device));
+      shared_.push_back(embree::new_scene(device));
       mesh = shared_.back().get();
       add_triangles(device, mesh, instance.first_stored, instance.triangle_count, 0, filters);
       rtcCommitScene(mesh);
@@ -112,7 +101,7 @@ void SceneTree::add_instances(RTCDevice device, std::uint32_t end, const Filters
 
 // Instances that are not in the tree have an empty box.
 void SceneTree::add_boxes(RTCDevice device) {
-  boxes_ = new_scene(device);
+  boxes_ = embree::new_scene(device);
   const auto count = static_cast<unsigned>(scene_.instances.size());
   if (!own_.empty()) rtcAttachGeometryByID(boxes_.get(), rtcGetGeometry(tree_.get(), count), count);
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));

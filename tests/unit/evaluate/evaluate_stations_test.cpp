@@ -2,6 +2,9 @@
 // One evaluation against the functions of its counts, called one by one.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "vantage/error.hpp"
@@ -67,6 +70,133 @@ TEST(EvaluateStations, HasTheFiguresOfEveryRay) {
   ASSERT_TRUE(found.links());
   EXPECT_EQ(found.links()->measure, LinkMeasure::scan_overlap);
   EXPECT_EQ(station_names(found.stations, found.names), (std::vector<std::string>{"K1", "P7", "S2", "S3"}));
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::invalid_argument);
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+TEST(EvaluateStations, AMeasureThatItLacksIsRefusedWithTheNearestName) {
+  Bench bench;
+  const Evaluation found = evaluate_stations({.simulator = bench.simulator}, bench.stations);
+  EXPECT_EQ(message_of([&] { (void)found.value("covrage"); }),
+            "the evaluation has no \"covrage\"; did you mean coverage?");
+  EXPECT_EQ(message_of([&] { (void)found.value("registration"); }),
+            "the evaluation has no \"registration\"; it has coverage, overlap; name others in what is to be measured");
+}
+
+// Two walls of surveyed meshes, one to the east and one to the west, and ground that only blocks.
+struct TwoWalls {
+  Scene scene = [] {
+    test::QuadScene quads = test::wall_and_floor({1e5, 2e5, 30});
+    quads.quad({-6, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
+    quads.data().meshes[0].name = "facade-east", quads.data().meshes[2].name = "facade-west";
+    quads.data().meshes[1].name = "ground";
+    return quads.scene();
+  }();
+  Simulator simulator{
+      scene, test::coarse_scanner(2), {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}};
+  std::vector<PlacedStation> stations{{.position = {1e5 + 2, 2e5, 31}}, {.position = {1e5 - 5, 2e5 + 1, 31}}};
+  EvaluationSite site{.simulator = simulator};
+};
+
+Objective captured_part(const std::string& pattern) {
+  return {
+      .name = "part", .scale = maximise(1, 0), .needs = {.meshes = true}, .value = [pattern](const MeasuredNetwork& m) {
+        return captured(m, pattern);
+      }};
+}
+
+TEST(EvaluateStations, VoxelsAreCountedByMesh) {
+  TwoWalls walls;
+  const auto evaluate = [&](const std::string& pattern, std::optional<std::uint64_t> sample) {
+    return evaluate_stations(walls.site, walls.stations,
+                             {.sample_voxels = sample, .field = !sample, .measures = {captured_part(pattern)}});
+  };
+  const Evaluation whole = evaluate("facade-e*", {});
+  ASSERT_EQ(whole.counts.meshes.size(), 3u);
+  EXPECT_EQ(whole.counts.meshes[1], MeshVoxels{});
+  // The same by the points of every voxel and the surfaces in them.
+  std::vector<std::uint32_t> every(walls.simulator.voxel_count());
+  for (std::uint32_t v = 0; v < every.size(); ++v) every[v] = v;
+  const auto patches = walls.simulator.voxel_patches(every);
+  std::vector<MeshVoxels> expected(3);
+  for (const std::uint32_t v : every) {
+    MeshVoxels& own = expected[patches[v].mesh];
+    ++own.voxels, own.captured += whole.field.count[v] >= walls.simulator.goal_density(v);
+  }
+  EXPECT_EQ(whole.counts.meshes, expected);
+  const auto share = [&](std::size_t m) {
+    return static_cast<double>(expected[m].captured) / static_cast<double>(expected[m].voxels);
+  };
+  EXPECT_EQ(whole.value("part"), share(0));
+  EXPECT_GT(share(0), 0);
+  EXPECT_LT(share(0), share(2));
+  EXPECT_EQ(evaluate("facade-west", {}).value("part"), share(2));
+  EXPECT_EQ(evaluate("facade*", {}).value("part"),
+            static_cast<double>(expected[0].captured + expected[2].captured) / static_cast<double>(every.size()));
+  EXPECT_EQ(whole.values.at("part").standard_error, 0);
+
+  // A sample has a standard error, within three of which the share lies.
+  const Evaluation sampled = evaluate("facade-west", every.size() / 3);
+  const Estimate part = sampled.values.at("part");
+  EXPECT_GT(part.standard_error, 0);
+  EXPECT_NEAR(part.value, share(2), 3 * part.standard_error);
+  std::uint64_t counted = 0;
+  for (const MeshVoxels& mesh : sampled.counts.meshes) counted += mesh.voxels;
+  EXPECT_EQ(counted, every.size() / 3);
+
+  // Several networks at once, and one that sees nothing.
+  std::vector<std::vector<PlacedStation>> networks{walls.stations, {walls.stations[0]}, {}};
+  networks[2] = {{.position = walls.stations[0].position, .status = StationStatus::clash}};
+  for (const auto sample : {std::optional<std::uint64_t>(), std::optional<std::uint64_t>(every.size())}) {
+    const auto all =
+        evaluate_networks(walls.site, networks, {.sample_voxels = sample, .measures = {captured_part("facade-w*")}});
+    EXPECT_EQ(all[0].value("part"), share(2));
+    EXPECT_LT(all[1].value("part"), share(2));
+    EXPECT_EQ(all[2].value("part"), 0);
+  }
+}
+
+TEST(EvaluateStations, APartThatIsNoSurveyedMeshIsRefused) {
+  TwoWalls walls;
+  const auto refused = [&](const Objective& part) {
+    return message_of([&] { evaluate_stations(walls.site, walls.stations, {.measures = {part}}); });
+  };
+  EXPECT_EQ(refused(captured_part("facde-east")),
+            "captured: no surveyed mesh is named like \"facde-east\"; did you mean facade-east?");
+  EXPECT_EQ(refused(captured_part("ground")),
+            "captured: no surveyed mesh is named like \"ground\"; there are facade-east, facade-west");
+  Objective without = captured_part("facade*");
+  without.needs = {};
+  EXPECT_NE(refused(without).find("the objective has to need counts and meshes"), std::string::npos);
+}
+
+TEST(EvaluateStations, UncoveredVoxelsAreThoseBelowTheirGoal) {
+  TwoWalls walls;
+  const Evaluation found =
+      evaluate_stations(walls.site, walls.stations, {.field = true, .measures = {captured_part("*")}});
+  const UncoveredVoxels open = uncovered(walls.simulator, found);
+  std::vector<MeshVoxels> rest = found.counts.meshes;
+  for (std::size_t k = 0; k < open.voxels.size(); ++k) {
+    const std::uint32_t v = open.voxels[k];
+    ASSERT_TRUE(k == 0 || open.voxels[k - 1] < v);
+    ASSERT_EQ(open.points[k], found.field.count[v]);
+    ASSERT_LT(open.points[k], walls.simulator.goal_density(v));
+    ASSERT_EQ(open.centres[k], walls.simulator.voxel_centre(v));
+    --rest[open.meshes[k]].voxels;
+  }
+  EXPECT_GT(open.voxels.size(), 10u);
+  for (const MeshVoxels& mesh : rest) EXPECT_EQ(mesh.voxels, mesh.captured);
+  const Evaluation without = evaluate_stations(walls.site, walls.stations);
+  EXPECT_NE(message_of([&] { uncovered(walls.simulator, without); }).find("keep the field"), std::string::npos);
 }
 
 TEST(EvaluateStations, OfASampleHasStandardErrors) {

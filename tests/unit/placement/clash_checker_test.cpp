@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "placement_scenes.hpp"
 #include "vantage/error.hpp"
@@ -38,6 +42,40 @@ TEST(ClashChecker, GlassIsKeptClearOfToo) {
   EXPECT_FALSE(checker.sees(before, behind));
   EXPECT_TRUE(checker.ray_passes(before, behind));
   EXPECT_FALSE(checker.ray_passes(before, below));
+}
+
+TEST(ClashChecker, SightsOfArraysAreThoseOfTheirRows) {
+  const ClashChecker checker(wall_and_ground());
+  std::vector<Vec3> from, to;
+  for (int k = 0; k < 2000; ++k) {
+    from.push_back(origin + Vec3{-2 + 0.003 * k, 0.1, 1});
+    to.push_back(origin + Vec3{4, 0.2, 1.5 + 0.005 * k});
+  }
+  const auto sees = checker.sees(from, to), of_one = checker.sees({from.data(), 1}, to),
+             to_one = checker.sees(from, {to.data(), 1});
+  ASSERT_EQ(sees.size(), from.size());
+  ASSERT_EQ(of_one.size(), from.size());
+  ASSERT_EQ(to_one.size(), from.size());
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    ASSERT_EQ(sees[k] != 0, checker.sees(from[k], to[k])) << k;
+    ASSERT_EQ(of_one[k] != 0, checker.sees(from[0], to[k])) << k;
+    ASSERT_EQ(to_one[k] != 0, checker.sees(from[k], to[0])) << k;
+  }
+  EXPECT_GT(std::ranges::count(sees, 1), 100);
+  EXPECT_GT(std::ranges::count(sees, 0), 100);
+  EXPECT_TRUE(checker.sees(std::span<const Vec3>(), std::span<const Vec3>()).empty());
+  const auto refusal = [&] {
+    try {
+      checker.sees(from, to);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  to[7].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal().find("row 7, counted from 0, of b"), std::string::npos) << refusal();
+  to.resize(5);
+  EXPECT_NE(refusal().find("2000 points and 5"), std::string::npos) << refusal();
 }
 
 TEST(ClashChecker, EitherSphereCounts) {

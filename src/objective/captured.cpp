@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/closest_name.hpp"
+#include "objective/whole_counts.hpp"
+#include "scene/glob.hpp"
+#include "vantage/error.hpp"
+#include "vantage/objective.hpp"
+
+namespace vantage {
+namespace {
+
+[[noreturn]] void refuse_meshes(const Scene& scene, std::string_view pattern) {
+  constexpr std::size_t kMostNames = 8;
+  std::vector<std::string> names;
+  for (const MeshInfo& mesh : scene.meshes())
+    if (mesh.role == Role::surveyed && std::ranges::find(names, mesh.name) == names.end()) names.push_back(mesh.name);
+  std::string letters(pattern);
+  std::erase_if(letters, [](char c) { return c == '*' || c == '?'; });
+  std::string what = "captured: no surveyed mesh is named like \"" + std::string(pattern) + "\"";
+  if (const std::string near = did_you_mean(letters, names); !near.empty())
+    throw Error(Errc::invalid_argument, what + near);
+  what += "; there are ";
+  for (std::size_t k = 0; k < std::min(names.size(), kMostNames); ++k) what += (k == 0 ? "" : ", ") + names[k];
+  if (names.size() > kMostNames) what += " and " + std::to_string(names.size() - kMostNames) + " more";
+  throw Error(Errc::invalid_argument, what);
+}
+
+}  // namespace
+
+double captured(const NetworkCounts& counts, const Scene& scene, std::string_view meshes) {
+  MeshVoxels all;
+  bool any = false;
+  for (std::size_t m = 0; m < counts.meshes.size(); ++m) {
+    const MeshVoxels& own = counts.meshes[m];
+    const MeshInfo& mesh = scene.meshes()[m];
+    // Most meshes of a large scene have no voxel of a sample.
+    if ((any && own.voxels == 0) || mesh.role != Role::surveyed || !glob_matches(meshes, mesh.name)) continue;
+    any = true;
+    all.voxels += own.voxels, all.captured += own.captured;
+  }
+  if (!any) refuse_meshes(scene, meshes);
+  return all.voxels == 0 ? 0 : static_cast<double>(all.captured) / static_cast<double>(all.voxels);
+}
+
+double captured(const MeasuredNetwork& network, std::string_view meshes) {
+  require_whole(network.counts, "captured");
+  if (network.counts.meshes.empty() || !network.scene)
+    throw Error(Errc::invalid_argument,
+                "captured: voxels were not counted by mesh; the objective has to need counts and meshes");
+  return captured(network.counts, *network.scene, meshes);
+}
+
+}  // namespace vantage

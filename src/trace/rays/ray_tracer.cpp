@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "core/site_reach.hpp"
+#include "core/text.hpp"
+#include "scene/scene_data.hpp"
+#include "trace/rays/sheared_ray.hpp"
+#include "trace/rays/widened_tree.hpp"
+#include "vantage/error.hpp"
+#include "vantage/rays.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
+// Rays between two reports of progress, and of one task.
+constexpr std::size_t kAtOnce = std::size_t{1} << 18, kGrain = 256;
+
+// Element k of an array that has one for all rays, or one each.
+template <class T>
+const T& one_of(std::span<const T> values, std::size_t k) {
+  return values[values.size() == 1 ? 0 : k];
+}
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(Errc::invalid_argument, "rays: " + why); }
+
+std::string row(std::size_t k) { return "row " + std::to_string(k) + ", counted from 0, "; }
+
+// The number of rays.
+std::size_t number_of(const Rays& rays) {
+  const std::size_t sizes[] = {rays.origins.size(), rays.directions.size(),
+                               rays.ranges_m.empty() ? 1 : rays.ranges_m.size()};
+  std::size_t n = 1;
+  for (const std::size_t size : sizes)
+    if (size != 1) n = size;
+  for (const std::size_t size : sizes)
+    if (size != n && size != 1)
+      refuse("there are " + std::to_string(sizes[0]) + " origins and " + std::to_string(sizes[1]) + " directions" +
+             (rays.ranges_m.empty() ? "" : " and " + std::to_string(sizes[2]) + " ranges") +
+             "; give as many of each, or one for all");
+  return n;
+}
+
+void check(const Rays& rays, const RayOptions& options, const Vec3& origin) {
+  for (std::size_t k = 0; k < rays.origins.size(); ++k)
+    if (!in_reach(rays.origins[k], origin)) refuse_position(rays.origins[k], "rays: the origin in " + row(k) + "is");
+  for (std::size_t k = 0; k < rays.directions.size(); ++k) {
+    const Vec3& d = rays.directions[k];
+    if (!(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z)) || d == Vec3{})
+      refuse("the direction in " + row(k) + "is (" + number(d.x) + ", " + number(d.y) + ", " + number(d.z) +
+             "); a direction must be finite and longer than 0");
+  }
+  for (std::size_t k = 0; k < rays.ranges_m.size(); ++k)
+    if (!(rays.ranges_m[k] > 0))
+      refuse("the range in " + row(k) + "is " + number(rays.ranges_m[k]) + " m; a range must be above 0");
+  if (!(options.from_m >= 0 && std::isfinite(options.from_m)))
+    refuse("hits count from " + number(options.from_m) + " m on; that must be finite and 0 or more");
+}
+
+// Of a direction whose components may be as small or as large as doubles are.
+Vec3 unit_of(const Vec3& direction) {
+  const double most = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  const Vec3 scaled{std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent),
+                    std::ldexp(direction.z, -exponent)};
+  const double length = std::sqrt(dot(scaled, scaled));
+  return {scaled.x / length, scaled.y / length, scaled.z / length};
+}
+
+// A ray with what it may meet.
+struct LocalRay {
+  Vec3 origin, unit;  // local frame
+  double from, range;
+};
+
+// Triangles that count for a ray.
+class Meeting : public WidenedTree::Query {
+ public:
+  Meeting(const SceneData& scene, const LocalRay& ray, std::uint32_t end)
+      : scene_(scene), ray_(ray), sheared_(ray.origin, ray.unit), end_(end) {}
+
+ protected:
+  std::optional<ShearedRay::Hit> meet(std::uint32_t triangle) const {
+    if (triangle >= end_) return std::nullopt;
+    const auto hit = sheared_.meet(scene_.corners(triangle));
+    return hit && hit->t > ray_.from && hit->t <= ray_.range ? hit : std::nullopt;
+  }
+
+  const SceneData& scene_;
+  const LocalRay& ray_;
+  const ShearedRay sheared_;
+  const std::uint32_t end_;  // glass from here on is passed
+};
+
+struct NearestQuery final : Meeting {
+  using Meeting::Meeting;
+  double take(std::uint32_t number) override {
+    const auto met = meet(number);
+    if (met && (met->t < hit.t || (met->t == hit.t && number < triangle))) hit = *met, triangle = number;
+    return triangle == kNoTriangle ? ray_.range : hit.t;
+  }
+  ShearedRay::Hit hit{kInfinity, {}};
+  std::uint32_t triangle = kNoTriangle;
+};
+
+struct BlockedQuery final : Meeting {
+  using Meeting::Meeting;
+  double take(std::uint32_t number) override {
+    found = found || meet(number);
+    return found ? -kInfinity : ray_.range;
+  }
+  bool found = false;
+};
+
+struct CountQuery final : Meeting {
+  using Meeting::Meeting;
+  double take(std::uint32_t number) override {
+    if (meet(number)) ++count;
+    return ray_.range;
+  }
+  std::uint32_t count = 0;
+};
+
+// Unit normal at a hit, turned against the ray: interpolated from the corners, or that of the plane.
+Vec3 normal_of(const SceneData& scene, const NearestQuery& found, const Vec3& unit) {
+  const auto corners = scene.corners(found.triangle);
+  const Vec3 a = widen(corners[0]);
+  Vec3 normal = cross(widen(corners[1]) - a, widen(corners[2]) - a);
+  if (!scene.normals.empty()) {
+    const auto normals = scene.corner_normals(found.triangle);
+    const auto [second, third] = found.hit.weights;
+    const Vec3 smooth =
+        widen(normals[0]) * (1 - second - third) + widen(normals[1]) * second + widen(normals[2]) * third;
+    if (dot(smooth, smooth) > 0) normal = smooth;
+  }
+  const double length = std::sqrt(dot(normal, normal));
+  return normal * ((dot(normal, unit) > 0 ? -1 : 1) / length);
+}
+
+}  // namespace
+
+struct RayTracer::Impl {
+  explicit Impl(const Scene& of) : scene(of), tree(share(of)) {}
+
+  static std::shared_ptr<const SceneData> share(const Scene& scene) {
+    const auto kept = std::make_shared<const Scene>(scene);
+    return {kept, &kept->data()};
+  }
+
+  // Calls trace(k, ray, end) for each ray in parallel; `end`: of the triangles that count. False if stopped.
+  template <class Trace>
+  bool for_each(const Rays& rays, std::size_t n, const RayOptions& options, const Progress& progress,
+                const Trace& trace) const {
+    const SceneData& data = scene.data();
+    const std::uint32_t end = options.glass ? data.triangle_count() : data.opaque_count();
+    for (std::size_t first = 0; first < n; first += kAtOnce) {
+      if (progress.stopped()) return false;
+      const std::size_t last = std::min(n, first + kAtOnce);
+      parallel::for_all(tbb::blocked_range<std::size_t>(first, last, kGrain), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k)
+          trace(k,
+                LocalRay{one_of(rays.origins, k) - data.origin, unit_of(one_of(rays.directions, k)), options.from_m,
+                         rays.ranges_m.empty() ? kInfinity : one_of(rays.ranges_m, k)},
+                end);
+      });
+      progress(static_cast<double>(last) / static_cast<double>(n));
+    }
+    return !progress.stopped();
+  }
+
+  template <class Query>
+  Query run(const LocalRay& ray, std::uint32_t end) const {
+    Query query(scene.data(), ray, end);
+    if (ray.from < ray.range) tree.run(ray.origin, ray.unit, ray.from, ray.range, query);
+    return query;
+  }
+
+  std::size_t checked(const Rays& rays, const RayOptions& options) const {
+    const std::size_t n = number_of(rays);
+    check(rays, options, scene.data().origin);
+    return n;
+  }
+
+  Scene scene;
+  WidenedTree tree;
+};
+
+RayTracer::RayTracer(const Scene& scene) : impl_(std::make_shared<const Impl>(scene)) {}
+
+const Scene& RayTracer::scene() const noexcept { return impl_->scene; }
+
+RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Progress& progress) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const SceneData& data = impl_->scene.data();
+  const std::size_t n = impl_->checked(rays, options);
+  RayHits hits;
+  hits.range_m.assign(n, kInfinity);
+  hits.position.assign(n, {nan, nan, nan});
+  hits.normal.resize(n);
+  hits.reflectivity.resize(n);
+  hits.diffuse.resize(n);
+  hits.mesh.assign(n, -1);
+  hits.primitive.assign(n, kNoTriangle);
+  const bool whole =
+      impl_->for_each(rays, n, options, progress, [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
+        const NearestQuery found = impl_->run<NearestQuery>(ray, end);
+        if (found.triangle == kNoTriangle) return;
+        const std::uint32_t mesh = data.mesh_of(found.triangle);
+        const Vec3 normal = normal_of(data, found, ray.unit);
+        const double diffuse = data.meshes[mesh].diffuse;
+        hits.range_m[k] = found.hit.t;
+        hits.position[k] = one_of(rays.origins, k) + ray.unit * found.hit.t;
+        const Float3 narrowed = narrow(normal);
+        hits.normal[k] = {narrowed.x, narrowed.y, narrowed.z};
+        hits.reflectivity[k] = static_cast<float>(std::clamp(-diffuse * dot(normal, ray.unit), 0.0, 1.0));
+        hits.diffuse[k] = static_cast<float>(diffuse);
+        hits.mesh[k] = static_cast<std::int32_t>(mesh);
+        hits.primitive[k] = found.triangle;
+      });
+  if (!whole) return {};
+  return hits;
+}
+
+std::vector<std::uint8_t> RayTracer::blocked(const Rays& rays, const RayOptions& options,
+                                             const Progress& progress) const {
+  std::vector<std::uint8_t> blocked(impl_->checked(rays, options));
+  const bool whole = impl_->for_each(rays, blocked.size(), options, progress,
+                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
+                                       blocked[k] = impl_->run<BlockedQuery>(ray, end).found;
+                                     });
+  if (!whole) return {};
+  return blocked;
+}
+
+std::vector<std::uint32_t> RayTracer::count(const Rays& rays, const RayOptions& options,
+                                            const Progress& progress) const {
+  std::vector<std::uint32_t> counts(impl_->checked(rays, options));
+  const bool whole = impl_->for_each(rays, counts.size(), options, progress,
+                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
+                                       counts[k] = impl_->run<CountQuery>(ray, end).count;
+                                     });
+  if (!whole) return {};
+  return counts;
+}
+
+}  // namespace vantage
