@@ -4,10 +4,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "core/add_saturating.hpp"
 #include "core/parallel.hpp"
@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::size_t block = SampledVoxelCounter::block;
 constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
-constexpr std::size_t most_kept = 4 * pairs_at_once;         // (station, voxel) pairs of stations that networks share
 
 // Upper bound on coordinates in sight, relative or absolute. A power of two, so that most calls keep the last call's
 // sample.
@@ -40,25 +39,32 @@ double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation
   return std::exp2(std::ceil(std::log2(sum)));
 }
 
-// Stations of networks that share half of theirs or more, each as a network of its own. Empty if they share fewer, for
-// which counting would not end at a network's goal, or if the counts of all would take too much memory.
-std::vector<std::vector<TraceStation>> shared_stations(const StationIds& ids,
-                                                       std::span<const std::vector<TraceStation>> networks,
-                                                       std::size_t voxels) {
+// A station with the networks that have it.
+struct SharedStation {
+  struct Use {
+    std::size_t network;
+    std::uint32_t bit;
+  };
+  std::vector<TraceStation> station;  // alone
+  std::vector<Use> uses;
+};
+
+// Stations of networks that share half of theirs or more. Empty if they share fewer, for which counting would not end
+// at a network's goal.
+std::vector<SharedStation> shared_stations(std::span<const StationRays> scanners,
+                                           std::span<const std::vector<TraceStation>> networks) {
+  const StationIds ids = station_ids(scanners, networks);
   std::size_t all = 0;
   for (const std::vector<TraceStation>& network : networks) all += network.size();
-  if (2 * ids.different > all || ids.different * voxels > most_kept) return {};
-  std::vector<std::vector<TraceStation>> alone(ids.different);
+  if (2 * ids.different > all) return {};
+  std::vector<SharedStation> shared(ids.different);
   for (std::size_t k = 0; k < networks.size(); ++k)
-    for (std::size_t s = 0; s < networks[k].size(); ++s) alone[ids.of[k][s]] = {networks[k][s]};
-  return alone;
-}
-
-// Adds a station's points in each voxel to those of its network, and marks where it has one. `masks` may be empty.
-void add_station(const TraceStation& station, std::span<const std::uint32_t> points, std::span<std::uint32_t> counts,
-                 std::span<std::uint64_t> masks) {
-  for (std::size_t v = 0; v < points.size(); ++v) add_saturating(counts[v], points[v]);
-  for (std::size_t v = 0; v < masks.size(); ++v) masks[v] |= std::uint64_t{points[v] > 0} << station.bit();
+    for (std::size_t s = 0; s < networks[k].size(); ++s) {
+      SharedStation& one = shared[ids.of[k][s]];
+      one.station = {networks[k][s]};
+      one.uses.push_back({k, networks[k][s].bit()});
+    }
+  return shared;
 }
 
 }  // namespace
@@ -84,64 +90,73 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
   const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
   const std::size_t at_once = std::clamp<std::size_t>(pairs_at_once / std::max<std::size_t>(n, 1), 1,
                                                       std::max<std::size_t>(networks.size(), 1));
-  const std::size_t chunk = 32 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t chunk = 32 * threads;
   std::vector<std::uint32_t> counts(at_once * n);
   std::vector<std::uint64_t> masks(job.masks ? at_once * n : 0);
 
   const VoxelDemands demands = grid.demands().of(job.sample);
 
-  bool cancelled = false;
-  // Counts in all voxels of some networks, which are the part from `begun` to `done` of the whole job.
-  const auto count = [&](std::span<const std::vector<TraceStation>> some, std::span<std::uint32_t> points,
-                         std::span<std::uint64_t> seen, std::span<std::uint64_t> traced, double begun, double done) {
-    for (std::size_t begin = 0; begin < some.size() * blocks && !cancelled; begin += chunk) {
-      const std::size_t end = std::min(some.size() * blocks, begin + chunk);
-      parallel::for_all(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
-        SampledVoxelCounter counter(scanners, voxels, pad);
-        for (std::size_t task = range.begin(); task < range.end(); ++task) {
-          const std::size_t network = task / blocks, start = task % blocks * block;
-          const std::size_t many = std::min(block, n - start);
-          const std::uint64_t before = counter.traced();
-          counter.count(some[network], start, job.stop_at, points.subspan(network * n + start, many),
-                        seen.empty() ? seen : seen.subspan(network * n + start, many),
-                        job.leave_out.empty() ? job.leave_out : job.leave_out.subspan(start, many));
-          std::atomic_ref(traced[network]).fetch_add(counter.traced() - before, std::memory_order_relaxed);
-        }
-      });
-      cancelled = progress.stopped();
-      progress(begun + (done - begun) * static_cast<double>(end) / static_cast<double>(some.size() * blocks));
-    }
-  };
-
-  const auto many = static_cast<double>(networks.size());
-  const auto started = std::chrono::steady_clock::now();
-  const StationIds ids = station_ids(scanners, networks);
-  const std::vector<std::vector<TraceStation>> alone = shared_stations(ids, networks, n);
-  std::vector<std::uint32_t> station_points(alone.size() * n);
-  std::vector<std::uint64_t> station_rays(alone.size());
-  if (!alone.empty()) count(alone, station_points, {}, station_rays, 0, 1);
-  const double shared_seconds = seconds_since(started);
-
   std::vector<NetworkCounts> results(networks.size());
+  bool cancelled = false;
   for (std::size_t first = 0; first < networks.size(); first += at_once) {
     const auto begun = std::chrono::steady_clock::now();
     const std::size_t here = std::min(at_once, networks.size() - first);
     std::fill(counts.begin(), counts.end(), 0u);
     std::fill(masks.begin(), masks.end(), std::uint64_t{0});
     std::vector<std::uint64_t> traced(here);
-    if (alone.empty()) {
-      count(networks.subspan(first, here), counts, masks, traced, static_cast<double>(first) / many,
-            static_cast<double>(first + here) / many);
-    } else {
-      parallel::for_all(std::size_t{0}, here, [&](std::size_t k) {
-        for (std::size_t s = 0; s < networks[first + k].size(); ++s)
-          add_station(networks[first + k][s], std::span(station_points).subspan(ids.of[first + k][s] * n, n),
-                      std::span(counts).subspan(k * n, n),
-                      job.masks ? std::span(masks).subspan(k * n, n) : std::span<std::uint64_t>());
+    // Part of the voxels from `start` on, of the network in place k.
+    const auto counts_of = [&](std::size_t k, std::size_t start, std::size_t many) {
+      return std::span(counts).subspan(k * n + start, many);
+    };
+    const auto masks_of = [&](std::size_t k, std::size_t start, std::size_t many) {
+      return job.masks ? std::span(masks).subspan(k * n + start, many) : std::span<std::uint64_t>();
+    };
+    const auto left_out = [&](std::size_t start, std::size_t many) {
+      return job.leave_out.empty() ? job.leave_out : job.leave_out.subspan(start, many);
+    };
+    const std::vector<SharedStation> shared = shared_stations(scanners, networks.subspan(first, here));
+    const auto count_network = [&](SampledVoxelCounter& counter, std::size_t k, std::size_t start, std::size_t many) {
+      const std::uint64_t before = counter.traced();
+      counter.count(networks[first + k], start, job.stop_at, counts_of(k, start, many), masks_of(k, start, many),
+                    left_out(start, many));
+      std::atomic_ref(traced[k]).fetch_add(counter.traced() - before, std::memory_order_relaxed);
+    };
+    // The rays are those of the first network that has the station.
+    const auto count_shared = [&](SampledVoxelCounter& counter, std::size_t start, std::size_t many) {
+      std::array<std::uint32_t, block> points{};
+      for (const SharedStation& one : shared) {
+        const std::uint64_t before = counter.traced();
+        std::fill_n(points.begin(), many, 0u);
+        counter.count(one.station, start, job.stop_at, std::span(points).first(many), {}, left_out(start, many));
+        for (const SharedStation::Use& use : one.uses) {
+          const std::span<std::uint32_t> sums = counts_of(use.network, start, many);
+          for (std::size_t v = 0; v < sums.size(); ++v) add_saturating(sums[v], points[v]);
+          const std::span<std::uint64_t> seen = masks_of(use.network, start, many);
+          for (std::size_t v = 0; v < seen.size(); ++v) seen[v] |= std::uint64_t{points[v] > 0} << use.bit;
+        }
+        std::atomic_ref(traced[one.uses.front().network])
+            .fetch_add(counter.traced() - before, std::memory_order_relaxed);
+      }
+    };
+    // Blocks of all networks, or of all shared stations together.
+    const std::size_t tasks = shared.empty() ? here * blocks : blocks;
+    const std::size_t together = shared.empty() ? chunk : std::max(chunk / shared.size(), 4 * threads);
+    for (std::size_t begin = 0; begin < tasks && !cancelled; begin += together) {
+      const std::size_t end = std::min(tasks, begin + together);
+      parallel::for_all(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
+        SampledVoxelCounter counter(scanners, voxels, pad);
+        for (std::size_t task = range.begin(); task < range.end(); ++task) {
+          const std::size_t start = task % blocks * block, many = std::min(block, n - start);
+          if (shared.empty())
+            count_network(counter, task / blocks, start, many);
+          else
+            count_shared(counter, start, many);
+        }
       });
-      // The rays of a shared station are those of the first network that has it.
-      for (std::size_t k = 0; k < here; ++k)
-        for (const std::size_t id : ids.of[first + k]) traced[k] += std::exchange(station_rays[id], 0);
+      cancelled = progress.stopped();
+      const double done = static_cast<double>(end) / static_cast<double>(tasks) * static_cast<double>(here);
+      progress((static_cast<double>(first) + done) / static_cast<double>(networks.size()));
     }
     for (std::size_t k = 0; k < here; ++k) {
       const std::span<const std::uint32_t> own_counts(counts.data() + k * n, n);
@@ -158,7 +173,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
                                       std::span(masks).subspan(k * n, n), job.groups));
       });
     if (job.station_masks && !cancelled) job.station_masks(first, std::span(masks).first(here * n));
-    const double seconds = seconds_since(begun) / static_cast<double>(here) + shared_seconds / many;
+    const double seconds = seconds_since(begun) / static_cast<double>(here);
     for (std::size_t k = 0; k < here; ++k) results[first + k].trace_seconds = seconds;
   }
   for (NetworkCounts& result : results) result.cancelled = cancelled;
