@@ -44,7 +44,7 @@ int main(int argc, char** argv) try {
     std::printf("nearest surface at %.2f m, at (%.2f, %.2f, %.2f)\n", hits.range_m[k], hits.position[k].x,
                 hits.position[k].y, hits.position[k].z);
 
-  // Whether anything is met takes less time than what.
+  // It takes less time to tell that anything is met than what.
   const double within = 10;
   const auto blocked = tracer.blocked({.origins = {&eye, 1}, .directions = directions, .ranges_m = {&within, 1}});
   const auto stopped = std::ranges::count(blocked, 1);

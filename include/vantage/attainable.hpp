@@ -39,7 +39,7 @@ class AttainableCounts {
   const std::vector<double>& counts() const noexcept { return counts_; }
   /// Point weights that fill a voxel: the densest goal density times `NetworkCounts::point_weight`.
   double goal() const noexcept { return goal_; }
-  /// Whether some station fills the voxel of an element, beyond which its count does not rise.
+  /// True if some station fills the voxel of an element, beyond which its count does not rise.
   bool has_goal(std::size_t element) const noexcept { return counts_[element] >= goal_; }
 
   /// Takes in a station that leaves so many points in each element. REQUIRES: one number for each.

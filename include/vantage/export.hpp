@@ -41,7 +41,7 @@ struct StationScan {
 /// Returns `outputs` and what such a file always has: the reflectivity, as intensity, in .las and .e57.
 std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32_t outputs);
 
-/// What the coordinates of a PLY are. Floats, which all viewers read, are about an origin of whole kilometres near the
+/// The kind of coordinates of a PLY. Floats, which all viewers read, are about an origin of whole kilometres near the
 /// site that the header's comment `origin X Y Z` tells: 0 0 0 where coordinates are small. Doubles are in the survey
 /// frame.
 enum class PlyCoordinates : std::uint8_t { floats, doubles };

@@ -29,7 +29,7 @@ struct RayOptions {
   bool glass = false;  ///< Glass stops rays, as any other surface. False: they pass it, as those of a scan do.
 };
 
-/// What each ray meets first; element k belongs to ray k. Arrays have the names of `ScanPoints`.
+/// The first hit of each ray; element k belongs to ray k. Arrays have the names of `ScanPoints`.
 struct RayHits {
   std::vector<double> range_m;               ///< Distance from the origin, metres; +infinity without a hit.
   std::vector<Vec3> position;                ///< Survey frame; NaN without a hit.

@@ -74,7 +74,7 @@ inline Device new_device() {
   return device;
 }
 
-// Of which rays may start and end anywhere.
+// Makes a scene whose rays may start and end anywhere.
 inline Scene new_scene(RTCDevice device) {
   Scene scene(rtcNewScene(device));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);

@@ -20,7 +20,7 @@ SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, doub
 // candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
-// Whether the search tries some networks for each coordinate. With fewer it cannot tell directions apart, and the
+// True if the search tries some networks for each coordinate. With fewer it cannot tell directions apart, and the
 // network it begins at stays the best.
 bool worth_searching(const SurveyProblem& problem, const PlanConfig& config);
 

@@ -42,7 +42,7 @@ class PointSource {
   virtual std::uint64_t announced() const { return 0; }
   // Whether lengths are metres: by the format's definition, or as the file says. Else they are in the file's own unit.
   virtual bool metric() const { return true; }
-  // Whether the file holds coordinates as floats, without an origin: coarse ones where they are national.
+  // True if the file holds coordinates as floats, without an origin: coarse ones where they are national.
   virtual bool floats() const { return false; }
   // Wants `PointBlock::cells` of those scans that have them.
   void want_cells() { cells_ = true; }

@@ -64,7 +64,7 @@ void check(const Rays& rays, const RayOptions& options, const Vec3& origin) {
     refuse("hits count from " + number(options.from_m) + " m on; that must be finite and 0 or more");
 }
 
-// Of a direction whose components may be as small or as large as doubles are.
+// Returns the unit vector along a direction, whose components may be as small or as large as doubles are.
 Vec3 unit_of(const Vec3& direction) {
   const double most = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   int exponent = 0;
