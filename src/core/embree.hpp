@@ -74,6 +74,20 @@ inline Device new_device() {
   return device;
 }
 
+// Traces one ray; callbacks get the address of `context`, which this call initialises.
+inline void intersect(RTCScene scene, Context& context, RTCRayHit& hit) {
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcInitRayQueryContext(&context);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  rtcIntersect1(scene, &hit, &arguments);
+#else
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &hit);
+#endif
+}
+
 // Makes a scene whose rays may start and end anywhere.
 inline Scene new_scene(RTCDevice device) {
   Scene scene(rtcNewScene(device));

@@ -260,16 +260,7 @@ Nearest MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way
   hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Nearest nearest{.rtc = {}, .triangles = triangles, .point = point, .way = way};
-#if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&nearest.rtc);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &nearest.rtc;
-  rtcIntersect1(tree.get(), &hit, &arguments);
-#else
-  rtcInitIntersectContext(&nearest.rtc);
-  rtcIntersect1(tree.get(), &nearest.rtc, &hit);
-#endif
+  embree::intersect(tree.get(), nearest.rtc, hit);
   return nearest;
 }
 

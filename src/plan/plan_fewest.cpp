@@ -252,9 +252,8 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
     found = context.search(asked, refining, start, watch);
   // Registration draws stations together; those that do the same do not need each other.
   const DecisionSpace space(context.oracle(), asked);
-  for (std::size_t k = found.front.size(); k-- > 0;) {
+  for (std::size_t k = found.front.size(); k-- > 0;)
     if (!choice.table.spaced(space.decode(found.front[k].x))) drop_point(found, k);
-  }
   if (report.stopped() && (found.stop_reason == StopReason::running || found.front.empty()))
     found.stop_reason = StopReason::cancelled;
   return found;

@@ -164,16 +164,7 @@ void WidenedTree::run(const Vec3& origin, const Vec3& unit, double from, double 
   hit.ray.mask = ~0u;
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&walk.rtc);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &walk.rtc;
-  rtcIntersect1(tree_.get(), &hit, &arguments);
-#else
-  rtcInitIntersectContext(&walk.rtc);
-  rtcIntersect1(tree_.get(), &walk.rtc, &hit);
-#endif
+  embree::intersect(tree_.get(), walk.rtc, hit);
 }
 
 }  // namespace vantage
