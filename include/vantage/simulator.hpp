@@ -218,6 +218,8 @@ struct VoxelPatch {
   std::uint32_t mesh = 0;  ///< Index into `Scene::meshes()` of the mesh with most surface in it.
 };
 
+class VoxelPlanes;
+
 /// Owns device, acceleration structure and voxel grid; shares ownership of the scene. The same inputs, seed and engine
 /// give the same result, bit for bit.
 /// Several simulators work side by side, on threads or in tasks of a caller's TBB arena; CPU work then keeps to that
@@ -292,7 +294,11 @@ class Simulator {
 
  private:
   friend Simulator surroundings_of(const Simulator& simulator);
-  // Makes registration use the scans of these scanners, for which fewer rays are traced. One for each of `scanners()`.
+  friend const VoxelPlanes* sides_of(const Simulator& simulator);
+  friend void share_one_sided(const Simulator& simulator, NetworkCounts& counts, const Network& network,
+                              std::span<const std::uint32_t> voxel_indices, std::span<const std::uint64_t> masks);
+  // Makes registration use the scans of these scanners, for which fewer rays are traced, and pairs of stations share a
+  // voxel only from one side of its surfaces. One for each of `scanners()`.
   void stand_for(std::span<const Scanner> scanners);
   struct Impl;
   explicit Simulator(std::unique_ptr<Impl> impl);
@@ -302,6 +308,8 @@ class Simulator {
 /// Returns a coarser simulator of the same site with every mesh surveyed. It measures how whole scans overlap:
 /// registration uses everything they share, surveyed or not. Same engine, device and seed, no noise. Costs the memory
 /// and time of another simulator.
+/// A surface seen from behind is not the same surface: two stations share a voxel only if neither wall, board nor slab
+/// in it, a flat surface at least 0.75 m wide, lies between their heads (docs/method.md).
 /// Voxels are at most a hundredth of the site's largest extent and at most 0.5 m, never finer than those of
 /// `simulator`. Two rays cross a voxel at the site's far end or at the range's limit; the steps are never finer than
 /// the scanner's. Registration's sums are those of the scanner's own scans.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "scan/sides_of.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage {
@@ -39,7 +40,7 @@ void TracedStations::follow(const Network& network, std::span<const std::uint32_
     return !now.active || now.position != traced.head || !(now.setup == traced.setup);
   });
   trace(network, ids);
-  add_up(network.size());
+  add_up(network);
 }
 
 std::vector<std::span<const std::uint32_t>> TracedStations::single_points() const {
@@ -72,7 +73,8 @@ void TracedStations::trace(const Network& network, std::span<const std::uint32_t
   std::ranges::move(fresh, std::back_inserter(traced_));
 }
 
-void TracedStations::add_up(std::size_t stations) {
+void TracedStations::add_up(const Network& network) {
+  const std::size_t stations = network.size();
   points_.assign(sample_.size(), 0);
   seen_by_.assign(sample_.size(), 0);
   std::vector<std::uint64_t> masks(sample_.size() * mask_words(stations), 0);
@@ -85,6 +87,7 @@ void TracedStations::add_up(std::size_t stations) {
     }
   counts_ =
       reduce_sample(points_, masks, kGroups, static_cast<std::uint32_t>(stations), simulator_.goal_density(), demands_);
+  share_one_sided(simulator_, counts_, network, sample_, masks);
 }
 
 }  // namespace vantage

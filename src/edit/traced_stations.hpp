@@ -44,7 +44,7 @@ class TracedStations {
     std::vector<std::uint32_t> points;
   };
   void trace(const Network& network, std::span<const std::uint32_t> ids);
-  void add_up(std::size_t stations);
+  void add_up(const Network& network);
 
   Simulator& simulator_;
   std::vector<std::uint32_t> sample_;

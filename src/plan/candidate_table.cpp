@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "plan/sample_seen.hpp"
+
 namespace vantage {
 
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals) {
@@ -19,7 +21,7 @@ TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::
 
 TraceColumns seen_columns_of(Simulator& surroundings, std::uint64_t sample_voxels) {
   return [&surroundings, sample_voxels](std::span<const PlacedStation> stations, const Progress& progress) {
-    return sample_coverage(surroundings, stations, sample_voxels, progress, CountTo::one).matrix();
+    return sample_seen(surroundings, stations, sample_voxels, progress);
   };
 }
 

@@ -28,9 +28,11 @@
 #include "scan/pattern.hpp"
 #include "scan/ray_follower.hpp"
 #include "scan/scan_chunk.hpp"
+#include "scan/sides_of.hpp"
 #include "scan/voxel_sample.hpp"
 #include "scan/wide_beam.hpp"
 #include "trace/field_counts.hpp"
+#include "trace/one_sided.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
@@ -429,6 +431,7 @@ struct Simulator::Impl {
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
   std::optional<SurfaceFinder> surfaces;
+  std::optional<VoxelPlanes> planes;  // set if stations share a voxel only from one side of these
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
   LruCache<VoxelMeshes> voxel_meshes;
@@ -524,6 +527,15 @@ std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels, std::
 
 void Simulator::stand_for(std::span<const Scanner> scanners) {
   impl_->registered.assign(scanners.begin(), scanners.end());
+  impl_->planes.emplace(impl_->data(), *impl_->grid);
+}
+const VoxelPlanes* sides_of(const Simulator& simulator) {
+  return simulator.impl_->planes ? &*simulator.impl_->planes : nullptr;
+}
+void share_one_sided(const Simulator& simulator, NetworkCounts& counts, const Network& network,
+                     std::span<const std::uint32_t> voxel_indices, std::span<const std::uint64_t> masks) {
+  if (const VoxelPlanes* const planes = sides_of(simulator); planes && !network.empty())
+    share_one_sided(counts, simulator.impl_->active_stations(network), *planes, voxel_indices, masks);
 }
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
@@ -678,7 +690,8 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
     return counts;
   }
   VoxelField own;
-  const bool kept = options.registration || options.beam || options.meshes;
+  const bool one_sided = planes && options.overlap;
+  const bool kept = options.registration || options.beam || options.meshes || one_sided;
   VoxelField* field = kept && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
   NetworkCounts counts = options.beam
@@ -687,6 +700,7 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
                                                field, *grid, goal, progress);
   if (options.registration && !counts.cancelled)
     counts.cancelled = !register_enough(active, counts, field->stations, options, place, progress.stop);
+  if (one_sided && !counts.cancelled) share_one_sided(counts, active, *planes, field->stations);
   if (options.meshes && !counts.cancelled) counts.meshes = count_meshes(field->count);
   return counts;
 }
@@ -705,7 +719,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Networ
   for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
     if (active.empty() || options.registration || options.beam || options.field || options.meshes ||
-        networks[k].size() > mask_bits) {
+        (planes && options.overlap) || networks[k].size() > mask_bits) {
       all[k] = evaluate(
           networks[k], options, k,
           {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});
@@ -794,11 +808,23 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
       return all;
     }
   }
+  // Sharing from one side, to be put into the counts.
+  std::vector<NetworkCounts> sharing(planes && options.overlap ? tracing.size() : 0);
+  const auto share = [&](std::size_t first, std::span<const std::uint64_t> masks) {
+    const std::size_t words = sample.size() * (large ? mask_words(sizes.front()) : 1);
+    for (std::size_t k = 0; k * words < masks.size(); ++k) {
+      NetworkCounts& own = sharing[first + k];
+      own.stations = sizes[first + k];
+      own.groups.resize(options.groups ? sample_groups : 0);
+      share_one_sided(own, tracing[first + k], *planes, sample, masks.subspan(k * words, words));
+    }
+  };
   const Tracer::SampleJob job{.sample = sample,
                               .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,
                               .stop_at = stop_at(options.count_to, goal),
                               .points = options.points || options.meshes ? decltype(options.points)(points) : nullptr,
+                              .station_masks = sharing.empty() ? decltype(Tracer::SampleJob::station_masks)() : share,
                               .registration = registration ? &*registration : nullptr,
                               .leave_out = options.leave_out};
   std::vector<NetworkCounts> counts;
@@ -806,6 +832,12 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
     counts.push_back(count_sampled_in_passes(*tracer, tracing.front(), sizes.front(), job, *grid, goal, progress));
   else
     counts = tracer->count_sampled(tracing, sizes, job, progress);
+  for (std::size_t k = 0; k < sharing.size(); ++k) {
+    if (counts[k].cancelled) continue;
+    counts[k].shared = std::move(sharing[k].shared);
+    for (std::size_t g = 0; g < counts[k].groups.size(); ++g)
+      counts[k].groups[g].shared = std::move(sharing[k].groups[g].shared);
+  }
   for (std::size_t k = 0; k < by_mesh.size(); ++k)
     if (!counts[k].cancelled) take_meshes(counts[k], by_mesh[k]);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);

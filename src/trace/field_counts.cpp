@@ -44,8 +44,8 @@ void transpose(std::array<std::uint64_t, block>& rows) {
 
 // For up to 64 stations.
 VANTAGE_TARGET_CLONES
-void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
-               std::uint64_t* shared) {
+void add_few_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
+                   std::uint64_t* shared) {
   for (std::size_t first = 0; first < n; first += block) {
     std::array<std::uint64_t, block> planes{};
     const std::size_t end = std::min(n, first + block);
@@ -146,15 +146,9 @@ NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, 
       }
     }
     if (masks.empty()) return;
-    if (stations <= mask_bits) {
-      if (const auto words = masks.words(0, first, end); !words.empty())
-        add_pairs(words.data(), end - first, stations, sums.seen.data(), sums.shared.data());
-      return;
-    }
     std::array<std::span<const std::uint64_t>, mask_words(max_stations)> words;
     for (std::size_t w = 0; w < mask_words(stations); ++w) words[w] = masks.words(w, first, end);
-    add_many_pairs(std::span(words).first(mask_words(stations)), end - first, stations, sums.seen.data(),
-                   sums.shared.data());
+    add_pairs(std::span(words).first(mask_words(stations)), end - first, stations, sums.seen, sums.shared);
   };
   const Sums sums = parallel::reduce(
       tbb::blocked_range<std::size_t>(0, parts, grain), zero,
@@ -181,6 +175,14 @@ NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, 
 }
 
 }  // namespace
+
+void add_pairs(std::span<const std::span<const std::uint64_t>> words, std::size_t n, std::size_t stations,
+               std::span<std::uint64_t> seen, std::span<std::uint64_t> shared) {
+  if (stations > mask_bits)
+    add_many_pairs(words, n, stations, seen.data(), shared.data());
+  else if (!words.front().empty())
+    add_few_pairs(words.front().data(), n, stations, seen.data(), shared.data());
+}
 
 NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
                            std::uint32_t stations, double goal_density, const VoxelDemands& demands) {

@@ -2,6 +2,7 @@
 // Reduces counts and station masks per voxel to the integers that the objectives need.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -18,5 +19,10 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
                            std::uint32_t stations, double goal_density, const VoxelDemands& demands = {});
 NetworkCounts reduce_field(const VoxelField& field, std::uint32_t stations, double goal_density,
                            const VoxelDemands& demands = {});
+
+// Adds to `seen` and `shared` the pairs of stations within n masks of all stations. `words`: a span of n for each 64
+// stations, empty if it is 0 for all of them.
+void add_pairs(std::span<const std::span<const std::uint64_t>> words, std::size_t n, std::size_t stations,
+               std::span<std::uint64_t> seen, std::span<std::uint64_t> shared);
 
 }  // namespace vantage

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flat surfaces that cross each voxel: a place is on one side of each.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "voxel/voxel_grid.hpp"
+
+namespace vantage {
+
+// Flat surfaces of triangles that follow each other in a mesh, wide enough to part what stands on either side: walls,
+// boards, slabs, closed doors, with one face or two. Winding does not matter. Steps, furniture and pipes have no sides
+// here, since places on either side of one of their planes may well see the same surface beside it.
+class VoxelPlanes {
+ public:
+  static constexpr std::size_t most = 4;  // of a voxel, the largest surfaces; a wall has two
+
+  // Parallel; the result does not depend on the number of threads.
+  VoxelPlanes(const SceneData& scene, const VoxelGrid& grid);
+
+  // The side of a voxel's planes on which a place lies (local frame): bit k is set behind its k-th plane.
+  std::uint32_t side(std::uint64_t voxel_index, const Float3& place) const {
+    std::uint32_t side = 0, bit = 1;
+    for (const std::uint32_t p : of(voxel_index)) {
+      const Plane& plane = planes_[p];
+      const double height = plane.normal.x * static_cast<double>(place.x) +
+                            plane.normal.y * static_cast<double>(place.y) +
+                            plane.normal.z * static_cast<double>(place.z) - plane.offset;
+      side |= height < 0 ? bit : 0;
+      bit <<= 1;
+    }
+    return side;
+  }
+  // All sides are below this number; 1 for a voxel without planes.
+  std::uint32_t sides(std::uint64_t voxel_index) const { return std::uint32_t{1} << of(voxel_index).size(); }
+
+ private:
+  struct Plane {
+    Vec3 normal;        // unit
+    double offset = 0;  // points p of the plane: dot(normal, p) = offset
+  };
+  std::span<const std::uint32_t> of(std::uint64_t voxel_index) const {
+    return std::span(plane_of_).subspan(first_[voxel_index], first_[voxel_index + 1] - first_[voxel_index]);
+  }
+
+  std::vector<Plane> planes_;
+  std::vector<std::uint32_t> first_, plane_of_;  // of each voxel: places in plane_of_, which hold places in planes_
+};
+
+}  // namespace vantage
