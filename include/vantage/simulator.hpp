@@ -309,7 +309,8 @@ class Simulator {
 /// registration uses everything they share, surveyed or not. Same engine, device and seed, no noise. Costs the memory
 /// and time of another simulator.
 /// A surface seen from behind is not the same surface: two stations share a voxel only if neither wall, board nor slab
-/// in it, a flat surface at least 0.75 m wide, lies between their heads (docs/method.md).
+/// in it, a flat surface at least 0.75 m wide, lies between their heads. Nor is anything seen through glass
+/// (docs/method.md).
 /// Voxels are at most a hundredth of the site's largest extent and at most 0.5 m, never finer than those of
 /// `simulator`. Two rays cross a voxel at the site's far end or at the range's limit; the steps are never finer than
 /// the scanner's. Registration's sums are those of the scanner's own scans.

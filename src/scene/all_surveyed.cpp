@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/all_surveyed.hpp"
 
+#include <utility>
+
 #include "scene/scene_data.hpp"
 
 namespace vantage {
@@ -17,7 +19,7 @@ Scene all_surveyed(const Scene& scene) {
   data->meshes = given.meshes;
   for (MeshRange& range : data->ranges) range.material = 0;
   for (MeshInfo& mesh : data->meshes) {
-    if (mesh.glass || mesh.mirror) continue;
+    if (std::exchange(mesh.glass, false) || mesh.mirror) continue;
     mesh.role = Role::surveyed, mesh.weight = 1;
     mesh.detail_m = mesh.accuracy_m = 0;
   }

@@ -388,7 +388,7 @@ class Loader {
 
   void note_glass() {
     if (const auto glass = extent_of(&MeshInfo::glass))
-      raw_.notes.push_back("rays pass " + glass->metres + " m² of glass, each face counted, which stops people: " +
+      raw_.notes.push_back("rays pass " + glass->metres + " m² of glass, each face counted, which stops people and links: " +
                            glass->names + "; the word opaque for the setting glass stops rays too");
   }
 

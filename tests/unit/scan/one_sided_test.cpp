@@ -88,6 +88,24 @@ TEST(OneSided, ClosedRoomsShareNothing) {
     }
 }
 
+// Each captures the other's room through the pane, and is not linked with it.
+TEST(OneSided, WhatIsSeenThroughGlassIsNotShared) {
+  QuadScene scene;
+  add_room(scene, {-4, 0, 0}, {4, 5, 2.5f});
+  scene.quad({0, 0, 0}, {0, 5, 0}, {0, 0, 2.5f}, Role::blocking);
+  scene.data().meshes.back().glass = true;
+  SimulatorConfig config;
+  config.engine = Engine::embree;
+  config.user_size_m = 0.3;
+  config.point_spacing_m = 0.1;
+  Simulator simulator(scene.scene(), coarse_scanner(1), config);
+  const Network network{{{-1.3, 2.2, 1.7}}, {{1.9, 3.1, 1.5}}};
+  const NetworkCounts counts = simulator.evaluate(network);
+  EXPECT_GT(counts.shared_by(0, 1), counts.voxels / 2);
+  Simulator around = surroundings_of(simulator);
+  EXPECT_EQ(scan_overlap_matrix(around.evaluate(network))(0, 1), 0);
+}
+
 TEST(OneSided, ASheetHasTwoSurfaces) {
   QuadScene scene;
   scene.quad({0, -3, 0}, {0, 6, 0}, {0, 0, 3});
