@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/parallel.hpp"
 #include "voxel/triangle_cells.hpp"
 #include "voxel/triangle_lists.hpp"
 #include "voxel/voxel_bricks.hpp"
+#include "voxel/voxel_surfaces.hpp"
 
 namespace vantage {
 namespace {
@@ -22,6 +24,8 @@ constexpr double kFlat = 1e-3;
 constexpr double kWide_m = 0.75, kWideInVoxels = 0.5;
 // Two planes of a voxel that differ by less, in their normals and by this share of a voxel in place, are one.
 constexpr double kSame = 1e-3;
+// Least share of a voxel's surface that lies in one direction (`one_plane`) if the voxel is flat.
+constexpr double kFlatShare = 0.95;
 // A triangle of so many voxels or more is walked in parts, side by side.
 constexpr double kLargeTriangle = 1 << 16;
 
@@ -53,19 +57,15 @@ struct Surface {
   }
 };
 
-// Finds every pair of a voxel and a triangle of a wide surface.
-class WideFinder {
+// Finds every pair of a voxel and a triangle that touches it.
+class TouchFinder {
  public:
-  WideFinder(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> plane_of)
-      : scene_(scene),
-        grid_(grid),
-        plane_of_(plane_of),
-        cells_({{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()}) {}
+  TouchFinder(const SceneData& scene, const VoxelGrid& grid)
+      : scene_(scene), grid_(grid), cells_({{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()}) {}
 
   template <class Found>
   void for_each(const Found& found) const {
     for_each_surveyed(scene_, [&](std::uint32_t t) {
-      if (plane_of_[t] == kNone) return;
       const auto corners = cells_.corners(scene_.corners(t));
       const TriangleCells cells(corners, std::int64_t{1} << grid_.depth());
       const auto visit = [&](const TriangleCells::Cell& c) {
@@ -89,9 +89,44 @@ class WideFinder {
  private:
   const SceneData& scene_;
   const VoxelGrid& grid_;
-  std::span<const std::uint32_t> plane_of_;
   GridTransform cells_;
 };
+
+// The plane of a voxel's surface if nearly all of it lies in one direction.
+std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<const std::uint32_t> triangles,
+                                             const Vec3& middle, double face_m2) {
+  struct Part {
+    Vec3 normal;
+    double height, area;  // of the middle over it
+  };
+  std::vector<Part> parts;
+  std::size_t largest = 0;
+  double all = 0;
+  for (const std::uint32_t t : triangles) {
+    const auto p = scene.corners(t);
+    const Vec3 a = wide(p[0]), normal = cross(wide(p[1]) - a, wide(p[2]) - a);
+    const double twice = std::sqrt(dot(normal, normal));
+    if (!(twice > 0)) continue;
+    const Vec3 unit = normal * (1 / twice);
+    parts.push_back({unit, dot(unit, middle - a), std::min(twice / 2, face_m2)});
+    all += parts.back().area;
+    if (parts.back().area > parts[largest].area) largest = parts.size() - 1;
+  }
+  if (parts.empty()) return std::nullopt;
+  Vec3 sum;
+  double height = 0, along = 0;
+  for (const Part& part : parts) {
+    const double turned = dot(part.normal, parts[largest].normal);
+    if (std::abs(turned) < one_plane) continue;
+    const double signed_area = turned < 0 ? -part.area : part.area;
+    sum = sum + part.normal * signed_area;
+    height += part.height * signed_area;
+    along += part.area;
+  }
+  if (along < kFlatShare * all) return std::nullopt;
+  const Vec3 normal = sum * (1 / std::sqrt(dot(sum, sum)));
+  return VoxelPlanes::Plane{normal, dot(normal, middle) - height / along};
+}
 
 }  // namespace
 
@@ -124,20 +159,20 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
     }
     end_surface(end);
   }
-  if (planes_.empty()) return;
-
-  const VoxelTriangles touching = triangle_lists(WideFinder(scene, grid, plane_of), grid.size());
+  const VoxelTriangles touching = triangle_lists(TouchFinder(scene, grid), grid.size());
+  const auto triangles_of = [&](std::size_t v) {
+    return std::span(touching.triangle).subspan(touching.offset[v], touching.offset[v + 1] - touching.offset[v]);
+  };
   const auto same = [&](std::uint32_t a, std::uint32_t b) {
     if (a == b) return true;
     const double turned = dot(planes_[a].normal, planes_[b].normal);
     return std::abs(turned) > 1 - kSame * kSame &&
            std::abs(planes_[a].offset - (turned < 0 ? -1 : 1) * planes_[b].offset) < kSame * voxel;
   };
-  // Twice over the voxels: numbers of planes, then the planes.
-  const auto planes_of = [&](std::size_t v, std::array<std::uint32_t, most>& kept) {
+  const auto wide_planes = [&](std::size_t v, std::array<std::uint32_t, most>& kept) {
     std::vector<std::uint32_t> all;
-    for (std::uint32_t k = touching.offset[v]; k < touching.offset[v + 1]; ++k)
-      all.push_back(plane_of[touching.triangle[k]]);
+    for (const std::uint32_t t : triangles_of(v))
+      if (plane_of[t] != kNone) all.push_back(plane_of[t]);
     std::ranges::sort(all,
                       [&](std::uint32_t a, std::uint32_t b) { return area[a] != area[b] ? area[a] > area[b] : a < b; });
     std::size_t many = 0;
@@ -149,15 +184,34 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
     }
     return many;
   };
-  parallel::for_all(std::size_t{0}, static_cast<std::size_t>(grid.size()), [&](std::size_t v) {
+  const auto flat = [&](std::size_t v) {
+    const auto [x, y, z] = morton_decode(grid.key(v));
+    const Vec3 middle{static_cast<double>(grid.min()[0]) + (x + 0.5) * voxel,
+                      static_cast<double>(grid.min()[1]) + (y + 0.5) * voxel,
+                      static_cast<double>(grid.min()[2]) + (z + 0.5) * voxel};
+    return flat_plane(scene, triangles_of(v), middle, voxel * voxel);
+  };
+  // Twice over the voxels: numbers of planes, then the planes.
+  const auto voxels = static_cast<std::size_t>(grid.size());
+  std::vector<std::uint32_t> flat_before(voxels + 1, 0);
+  parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
     std::array<std::uint32_t, most> kept;
-    first_[v + 1] = static_cast<std::uint32_t>(planes_of(v, kept));
+    first_[v + 1] = static_cast<std::uint32_t>(wide_planes(v, kept));
+    if (first_[v + 1] == 0 && flat(v)) first_[v + 1] = flat_before[v + 1] = 1;
   });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::partial_sum(flat_before.begin(), flat_before.end(), flat_before.begin());
   plane_of_.resize(first_.back());
-  parallel::for_all(std::size_t{0}, static_cast<std::size_t>(grid.size()), [&](std::size_t v) {
+  const std::size_t wide_ones = planes_.size();
+  planes_.resize(wide_ones + flat_before.back());
+  parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
+    if (flat_before[v + 1] > flat_before[v]) {
+      plane_of_[first_[v]] = static_cast<std::uint32_t>(wide_ones + flat_before[v]);
+      planes_[wide_ones + flat_before[v]] = *flat(v);
+      return;
+    }
     std::array<std::uint32_t, most> kept;
-    const std::size_t many = planes_of(v, kept);
+    const std::size_t many = wide_planes(v, kept);
     std::copy_n(kept.begin(), many, plane_of_.begin() + first_[v]);
   });
 }

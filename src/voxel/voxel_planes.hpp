@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flat surfaces that cross each voxel: a place is on one side of each.
+// The planes of surfaces in each voxel: a place is on one side of each.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,11 @@
 
 namespace vantage {
 
-// Flat surfaces of triangles that follow each other in a mesh, wide enough to part what stands on either side: walls,
-// boards, slabs, closed doors, with one face or two. Winding does not matter. Steps, furniture and pipes have no sides
-// here, since places on either side of one of their planes may well see the same surface beside it.
+// Two kinds of planes. Walls, boards, slabs and closed doors, with one face or two, have one in each voxel that they
+// touch: flat surfaces of triangles that follow each other in a mesh, wide enough to part what stands on either side.
+// Any other voxel whose surface lies in one direction has the plane of that, as on a vault of small triangles. Steps,
+// furniture and pipes have no sides where their surfaces meet, since places on either side of one of their planes may
+// well see the same surface beside it. Winding does not matter.
 class VoxelPlanes {
  public:
   static constexpr std::size_t most = 4;  // of a voxel, the largest surfaces; a wall has two
@@ -38,11 +40,12 @@ class VoxelPlanes {
   // All sides are below this number; 1 for a voxel without planes.
   std::uint32_t sides(std::uint64_t voxel_index) const { return std::uint32_t{1} << of(voxel_index).size(); }
 
- private:
   struct Plane {
     Vec3 normal;        // unit
     double offset = 0;  // points p of the plane: dot(normal, p) = offset
   };
+
+ private:
   std::span<const std::uint32_t> of(std::uint64_t voxel_index) const {
     return std::span(plane_of_).subspan(first_[voxel_index], first_[voxel_index + 1] - first_[voxel_index]);
   }
