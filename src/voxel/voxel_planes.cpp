@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "voxel/triangle_cells.hpp"
@@ -57,39 +58,60 @@ struct Surface {
   }
 };
 
-// Finds every pair of a voxel and a triangle that touches it.
+// Every pair of a voxel and a triangle that touches it. Triangles are walked once, for the lists are made in two turns.
 class TouchFinder {
  public:
-  TouchFinder(const SceneData& scene, const VoxelGrid& grid)
-      : scene_(scene), grid_(grid), cells_({{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()}) {}
+  TouchFinder(const SceneData& scene, const VoxelGrid& grid) : grid_(grid) {
+    const GridTransform cells{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+    const std::uint32_t triangles = scene.triangle_count();
+    pairs_.resize((triangles + kAtOnce - 1) / kAtOnce);
+    parallel::for_all(std::size_t{0}, pairs_.size(), [&](std::size_t block) {
+      const auto first = static_cast<std::uint32_t>(block * kAtOnce);
+      std::size_t mesh = 0;
+      for (std::uint32_t t = first; t < std::min(triangles, first + kAtOnce); ++t) {
+        while (mesh + 1 < scene.ranges.size() && scene.ranges[mesh + 1].first_triangle <= t) ++mesh;
+        if (scene.meshes[mesh].role == Role::surveyed) walk(cells.corners(scene.corners(t)), t, pairs_[block]);
+      }
+    });
+  }
 
   template <class Found>
   void for_each(const Found& found) const {
-    for_each_surveyed(scene_, [&](std::uint32_t t) {
-      const auto corners = cells_.corners(scene_.corners(t));
-      const TriangleCells cells(corners, std::int64_t{1} << grid_.depth());
-      const auto visit = [&](const TriangleCells::Cell& c) {
-        const std::uint32_t voxel = grid_.find(morton_encode(
-            static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
-        if (voxel != no_voxel) found(voxel, t);
-      };
-      double extent = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        extent = std::max(
-            {extent, std::abs(corners[1][axis] - corners[0][axis]), std::abs(corners[2][axis] - corners[0][axis])});
-      if (extent * extent < kLargeTriangle) {
-        cells.for_each(visit);
-        return;
-      }
-      constexpr std::int64_t parts = 64;
-      parallel::for_all(std::int64_t{0}, parts, [&](std::int64_t part) { cells.for_each(visit, part, parts); });
+    parallel::for_all(std::size_t{0}, pairs_.size(), [&](std::size_t block) {
+      for (const auto& [voxel, t] : pairs_[block]) found(voxel, t);
     });
   }
 
  private:
-  const SceneData& scene_;
+  static constexpr std::uint32_t kAtOnce = 4096;
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+  void walk(const std::array<TriangleCells::Point, 3>& corners, std::uint32_t t, Pairs& pairs) const {
+    const TriangleCells cells(corners, std::int64_t{1} << grid_.depth());
+    const auto add_to = [&](Pairs& some) {
+      return [&](const TriangleCells::Cell& c) {
+        const std::uint32_t voxel = grid_.find(morton_encode(
+            static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
+        if (voxel != no_voxel) some.emplace_back(voxel, t);
+      };
+    };
+    double extent = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      extent = std::max(
+          {extent, std::abs(corners[1][axis] - corners[0][axis]), std::abs(corners[2][axis] - corners[0][axis])});
+    if (extent * extent < kLargeTriangle) {
+      cells.for_each(add_to(pairs));
+      return;
+    }
+    std::array<Pairs, 64> parts;
+    parallel::for_all(std::size_t{0}, parts.size(), [&](std::size_t part) {
+      cells.for_each(add_to(parts[part]), static_cast<std::int64_t>(part), static_cast<std::int64_t>(parts.size()));
+    });
+    for (const Pairs& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+  }
+
   const VoxelGrid& grid_;
-  GridTransform cells_;
+  std::vector<Pairs> pairs_;
 };
 
 // The plane of a voxel's surface if nearly all of it lies in one direction.
@@ -133,17 +155,22 @@ std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<c
 VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_(grid.size() + 1, 0) {
   const double voxel = grid.voxel_size(), least = std::max(kWide_m, kWideInVoxels * voxel);
   std::vector<std::uint32_t> plane_of(scene.triangle_count(), kNone);
-  std::vector<double> area;  // of each plane's surface
-  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
-    if (scene.meshes[m].role != Role::surveyed) continue;
+  struct MeshPlanes {
+    std::vector<Plane> planes;
+    std::vector<double> area;  // of each plane's surface
+  };
+  std::vector<MeshPlanes> of_mesh(scene.ranges.size());
+  parallel::for_all(std::size_t{0}, scene.ranges.size(), [&](std::size_t m) {
+    if (scene.meshes[m].role != Role::surveyed) return;
     const std::uint32_t begin = scene.ranges[m].first_triangle, end = begin + scene.ranges[m].triangle_count;
     Surface surface;
     std::uint32_t first = begin;
     const auto end_surface = [&](std::uint32_t last) {
       if (surface.width() < least) return;
-      std::fill(plane_of.begin() + first, plane_of.begin() + last, static_cast<std::uint32_t>(planes_.size()));
-      planes_.push_back({surface.normal, surface.offset});
-      area.push_back(surface.area);
+      std::fill(plane_of.begin() + first, plane_of.begin() + last,
+                static_cast<std::uint32_t>(of_mesh[m].planes.size()));
+      of_mesh[m].planes.push_back({surface.normal, surface.offset});
+      of_mesh[m].area.push_back(surface.area);
     };
     for (std::uint32_t t = begin; t < end; ++t) {
       const auto p = scene.corners(t);
@@ -158,7 +185,17 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
       surface.add(corners, normal * (1 / twice), twice / 2);
     }
     end_surface(end);
+  });
+  std::vector<double> area;
+  for (std::size_t m = 0; m < of_mesh.size(); ++m) {
+    const auto before = static_cast<std::uint32_t>(planes_.size());
+    planes_.insert(planes_.end(), of_mesh[m].planes.begin(), of_mesh[m].planes.end());
+    area.insert(area.end(), of_mesh[m].area.begin(), of_mesh[m].area.end());
+    if (of_mesh[m].planes.empty()) continue;
+    for (std::uint32_t t = 0; t < scene.ranges[m].triangle_count; ++t)
+      if (std::uint32_t& plane = plane_of[scene.ranges[m].first_triangle + t]; plane != kNone) plane += before;
   }
+
   const VoxelTriangles touching = triangle_lists(TouchFinder(scene, grid), grid.size());
   const auto triangles_of = [&](std::size_t v) {
     return std::span(touching.triangle).subspan(touching.offset[v], touching.offset[v + 1] - touching.offset[v]);
@@ -191,25 +228,24 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
                       static_cast<double>(grid.min()[2]) + (z + 0.5) * voxel};
     return flat_plane(scene, triangles_of(v), middle, voxel * voxel);
   };
-  // Twice over the voxels: numbers of planes, then the planes.
   const auto voxels = static_cast<std::size_t>(grid.size());
-  std::vector<std::uint32_t> flat_before(voxels + 1, 0);
+  std::vector<std::optional<Plane>> flat_planes(voxels);
   parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
     std::array<std::uint32_t, most> kept;
     first_[v + 1] = static_cast<std::uint32_t>(wide_planes(v, kept));
-    if (first_[v + 1] == 0 && flat(v)) first_[v + 1] = flat_before[v + 1] = 1;
+    if (first_[v + 1] > 0) return;
+    flat_planes[v] = flat(v);
+    first_[v + 1] = flat_planes[v] ? 1 : 0;
   });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  std::partial_sum(flat_before.begin(), flat_before.end(), flat_before.begin());
   plane_of_.resize(first_.back());
-  const std::size_t wide_ones = planes_.size();
-  planes_.resize(wide_ones + flat_before.back());
-  parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
-    if (flat_before[v + 1] > flat_before[v]) {
-      plane_of_[first_[v]] = static_cast<std::uint32_t>(wide_ones + flat_before[v]);
-      planes_[wide_ones + flat_before[v]] = *flat(v);
-      return;
+  for (std::size_t v = 0; v < voxels; ++v)
+    if (flat_planes[v]) {
+      plane_of_[first_[v]] = static_cast<std::uint32_t>(planes_.size());
+      planes_.push_back(*flat_planes[v]);
     }
+  parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
+    if (flat_planes[v]) return;
     std::array<std::uint32_t, most> kept;
     const std::size_t many = wide_planes(v, kept);
     std::copy_n(kept.begin(), many, plane_of_.begin() + first_[v]);
