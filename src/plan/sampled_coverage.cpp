@@ -9,7 +9,6 @@
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
-#include "voxel/voxel_planes.hpp"
 
 namespace vantage {
 namespace {
@@ -106,19 +105,15 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
 CoverageMatrix sample_seen(Simulator& surroundings, std::span<const PlacedStation> stations,
                            std::uint64_t sample_voxels, const Progress& progress) {
   const SampledCoverage sampled = sample_coverage(surroundings, stations, sample_voxels, progress, CountTo::one);
-  const VoxelPlanes* const planes = sides_of(surroundings);
-  if (!planes) return sampled.matrix();
   const std::vector<std::uint32_t>& voxels = sampled.voxels();
   std::vector<std::uint32_t> first{0};  // element of a voxel's first side
-  for (const std::uint32_t voxel : voxels) first.push_back(first.back() + planes->sides(voxel));
+  for (const std::uint32_t voxel : voxels) first.push_back(first.back() + count_sides(surroundings, voxel));
   CoverageMatrix seen(std::vector<std::uint32_t>(first.back(), 1), 1);
   std::vector<CoverageMatrix::Entry> column;
   for (std::size_t k = 0; k < sampled.size(); ++k) {
-    const Vec3 head = stations[k].position - surroundings.origin();
-    const Float3 local{static_cast<float>(head.x), static_cast<float>(head.y), static_cast<float>(head.z)};
     column.clear();
     for (const CoverageMatrix::Entry& one : sampled.matrix().column(k))
-      column.push_back({first[one.element] + planes->side(voxels[one.element], local), 1});
+      column.push_back({first[one.element] + side_of(surroundings, voxels[one.element], stations[k].position), 1});
     seen.add(column);
   }
   return seen;

@@ -532,6 +532,17 @@ void Simulator::stand_for(std::span<const Scanner> scanners) {
 const VoxelPlanes* sides_of(const Simulator& simulator) {
   return simulator.impl_->planes ? &*simulator.impl_->planes : nullptr;
 }
+std::uint32_t count_sides(const Simulator& simulator, std::uint64_t voxel_index) {
+  const VoxelPlanes* const planes = sides_of(simulator);
+  return planes ? planes->sides(voxel_index) : 1;
+}
+std::uint32_t side_of(const Simulator& simulator, std::uint64_t voxel_index, const Vec3& place) {
+  const VoxelPlanes* const planes = sides_of(simulator);
+  const Vec3 local = place - simulator.origin();
+  return planes ? planes->side(voxel_index,
+                               {static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)})
+                : 0;
+}
 void share_one_sided(const Simulator& simulator, NetworkCounts& counts, const Network& network,
                      std::span<const std::uint32_t> voxel_indices, std::span<const std::uint64_t> masks) {
   if (const VoxelPlanes* const planes = sides_of(simulator); planes && !network.empty())

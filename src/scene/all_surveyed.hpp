@@ -5,9 +5,9 @@
 
 namespace vantage {
 
-// The same triangles with every mesh surveyed and all voxels weighing alike. Data that only affects colours or
-// directions of points is left out: normals, textures, the search area. Glass stops rays: what is seen through a pane, bent
-// and weakened, holds no scan. Positions and triangles are copied.
+// The same triangles with every mesh surveyed and all voxels weighing alike. Glass stops rays: what is seen through a
+// pane, bent and weakened, holds no scan. Data that only affects colours or directions of points is left out: normals,
+// textures, the search area. Positions and triangles are copied.
 Scene all_surveyed(const Scene& scene);
 
 }  // namespace vantage

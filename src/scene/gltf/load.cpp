@@ -388,8 +388,9 @@ class Loader {
 
   void note_glass() {
     if (const auto glass = extent_of(&MeshInfo::glass))
-      raw_.notes.push_back("rays pass " + glass->metres + " m² of glass, each face counted, which stops people and links: " +
-                           glass->names + "; the word opaque for the setting glass stops rays too");
+      raw_.notes.push_back("rays pass " + glass->metres +
+                           " m² of glass, each face counted, which stops people and links: " + glass->names +
+                           "; the word opaque for the setting glass stops rays too");
   }
 
   void note_mirrors() {

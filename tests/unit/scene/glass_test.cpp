@@ -102,9 +102,10 @@ TEST(Glass, ComesLastAndIsTold) {
   EXPECT_EQ(scene.triangle_count(), 2u);
   EXPECT_EQ(scene.data().opaque_triangles().size(), 1u);
   ASSERT_EQ(scene.notes().size(), 1u);
-  EXPECT_EQ(scene.notes()[0],
-            "rays pass 0.5 m² of glass, each face counted, which stops people and links: \"pane\"; the word opaque for the "
-            "setting glass stops rays too");
+  EXPECT_EQ(
+      scene.notes()[0],
+      "rays pass 0.5 m² of glass, each face counted, which stops people and links: \"pane\"; the word opaque for the "
+      "setting glass stops rays too");
   const Scene opaque = load(pane_and_wall(kTransmits), {.glass = {"opaque"}, .unit = Unit::metre, .up = UpAxis::y});
   EXPECT_EQ(opaque.data().opaque_triangles().size(), 2u);
   EXPECT_TRUE(opaque.notes().empty());
