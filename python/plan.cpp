@@ -294,22 +294,22 @@ void add_plans(py::module_& m) {
   add_entries(m);
   add_results(m);
   const py::object site = m.attr("Site");
-  site.attr("plan") =
-      py::cpp_function(&plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(),
-                       py::kw_only(), py::arg("start") = std::vector<Vec3>{}, py::arg("checkpoint") = py::none(),
-                       py::arg("existing_targets") = std::vector<Target>{}, py::arg("progress") = py::none(),
-                       ("Plans a survey like the program: by default, the fewest connected stations that capture "
-                        "enough. The same site,\nproblem and settings give the same result except for "
-                        "seconds.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
-                        "start: heads (x, y, z) of an initial\nnetwork; empty: chosen. checkpoint: a file to write "
-                        "regularly and when the search ends; `resume=True` goes on\nfrom it. existing_targets: Targets "
-                        "and control points that are there (`read_targets_csv`). progress: called with a "
-                        "PlanProgress between evaluations. If it returns False, the search ends, and its\nresults are "
-                        "confirmed and returned. Ctrl-C, or an exception of progress or of an objective, ends the call "
-                        "with\nthat exception; a checkpoint is written before.\nRaises Error: invalid_argument, "
-                        "malformed_file (a damaged checkpoint)." +
-                        settings_doc("Site.plan", question_settings(), plan_settings()))
-                           .c_str());
+  site.attr("plan") = py::cpp_function(
+      &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
+      py::arg("start") = std::vector<Vec3>{}, py::arg("checkpoint") = py::none(),
+      py::arg("existing_targets") = std::vector<Target>{}, py::arg("progress") = py::none(),
+      ("Plans a survey like the program: by default, the connected stations that pay, or with `capture` "
+       "the fewest that capture so much. The same site,\nproblem and settings give the same result except for "
+       "seconds.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
+       "start: heads (x, y, z) of an initial\nnetwork; empty: chosen. checkpoint: a file to write "
+       "regularly and when the search ends; `resume=True` goes on\nfrom it. existing_targets: Targets "
+       "and control points that are there (`read_targets_csv`). progress: called with a "
+       "PlanProgress between evaluations. If it returns False, the search ends, and its\nresults are "
+       "confirmed and returned. Ctrl-C, or an exception of progress or of an objective, ends the call "
+       "with\nthat exception; a checkpoint is written before.\nRaises Error: invalid_argument, "
+       "malformed_file (a damaged checkpoint)." +
+       settings_doc("Site.plan", question_settings(), plan_settings()))
+          .c_str());
 }
 
 }  // namespace vantage::python

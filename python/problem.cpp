@@ -221,9 +221,9 @@ Options<SurveyProblem> problem_options() {
       .add<py::iterable>("existing_targets", tuple_of(&SurveyProblem::existing_targets),
                          from_list(&SurveyProblem::existing_targets), "Targets and control points that are there.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
-      .add(
-          "pays_m2", &SurveyProblem::pays_m2,
-          "With `fewest`: what each station has to capture besides the others, m², in place of the required `capture`.")
+      .add("pays_m2", &SurveyProblem::pays_m2,
+           "With `fewest`: what each station has to capture besides the others, m². The required `capture` is the "
+           "least.")
       .add("attainable", &SurveyProblem::attainable,
            "Attainable coverage, the denominator of `capture`; a plan finds it.")
       .add<py::iterable>(

@@ -95,7 +95,8 @@ struct Evaluation {
   double violation = 0;
 
   /// Throws Error invalid_argument for a measure that was not requested, and suggests one of those that were.
-  double value(const std::string& measure) const;
+  double value(const std::string& measure) const { return estimate(measure).value; }
+  const Estimate& estimate(const std::string& measure) const;  ///< The same with its standard error.
   /// Links by scan overlap if known, otherwise by overlap; empty if neither is.
   std::optional<StationLinks> links() const;
 };

@@ -139,10 +139,14 @@ struct Requirement {
   /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN. A share of what is
   /// attainable holds from half of the last digit that is printed (0.05 %), since it is not known any better.
   double missed_by(double measured) const;
+  /// The same of an estimate: a share of what is attainable holds within its standard error, too.
+  double missed_by(const Estimate& measured) const;
 };
 std::string to_string(const Requirement&);               ///< "coverage >= 0.9"
 std::string value_text(const Objective&, double value);  ///< "85.3 %", "12.000 mm"; NaN: "not known".
-std::string in_words(const Requirement&);                ///< "share of the site captured at least 90 %"
+/// The same with as many digits as it takes to differ from the limit of a requirement.
+std::string value_text(const Requirement&, double value);
+std::string in_words(const Requirement&);  ///< "share of the site captured at least 90 %"
 /// A sentence for a violated requirement: "not met: share of the site captured at least 90 %, it has 85.3 %; allow more
 /// stations, or ask for less". `measured`: the network's value; NaN: not known. `ended_early`: the time was over first.
 std::string advice(const Requirement& requirement, double measured, bool ended_early = false);

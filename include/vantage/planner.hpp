@@ -54,8 +54,10 @@ struct SurveyProblem {
   /// requirements on `coverage`, `capture`, `link` and `apart`. The second finds the best network of that number by the
   /// objectives under all requirements.
   bool fewest = false;
-  /// Instead of a share of what is attainable: each station has to capture so much surface that the others do not, in
-  /// m². A plan finds the number after which a further one would not, and requires what so many can `capture`.
+  /// Each station has to capture so much surface that the others do not, in m². A plan finds the number after which a
+  /// further one would not, adds one for each room and part of the floor that has none and where one adds a fifth of
+  /// that at least, and requires what so many can `capture`, or what a requirement asks for if that is more. Where
+  /// `stations_max` or a limit on the time on site ends it before, it requires no more than its answer has.
   std::optional<double> pays_m2 = {};
   /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
   /// `capture` is asked for. A plan finds it anew, whatever is given.
@@ -169,9 +171,17 @@ struct PlanIteration {
 /// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
 struct StationsThatPay {
   double least_m2 = 0;       ///< What each has to capture besides the others.
-  std::size_t stations = 0;  ///< Further stations that do.
+  std::size_t stations = 0;  ///< Further stations that do, and those in `parts`.
+  std::size_t parts = 0;     ///< Rooms and other parts of the floor that have one of their own besides.
   double capture = 0;        ///< Share of what is attainable that so many can have: what the plan then requires.
   double next_m2 = 0;        ///< What a further one would capture.
+};
+
+/// What a further station would add to a plan's answer: the mean of a fifth more of them, chosen one after the other
+/// among the candidates.
+struct FurtherStation {
+  double m2 = 0;       ///< Surface that the answer does not capture.
+  double minutes = 0;  ///< On site, walking included.
 };
 
 struct PlanResult {
@@ -192,7 +202,8 @@ struct PlanResult {
   /// Attainable coverage of the candidates and the stations of the front, the denominator of `capture`. Measured on
   /// voxels by which nothing was chosen, unless the site has few. Empty if `capture` is not used.
   std::optional<Estimate> attainable = std::nullopt;
-  std::optional<StationsThatPay> pays = {};  ///< Where `SurveyProblem::pays_m2` decides the number.
+  std::optional<StationsThatPay> pays = {};    ///< Where `SurveyProblem::pays_m2` decides the number.
+  std::optional<FurtherStation> further = {};  ///< Where `capture` is used and the fewest stations are asked for.
   /// Stations against what they capture, from one to a few beyond the answer, if `capture` decides their number.
   /// Estimated on the voxels of `attainable`, except for the answer.
   std::vector<TradeOffPoint> trade_off;

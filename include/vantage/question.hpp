@@ -14,13 +14,14 @@
 
 namespace vantage {
 
-/// Defaults: least share of attainable coverage, and least distance between two stations.
-inline constexpr double default_capture = 0.9, default_apart_m = 1;
+/// Defaults: new surface that a further station has to capture, in m², and least distance between two stations. Both
+/// are of sites of usual size (`Site::length_scale()`).
+inline constexpr double default_pays_m2 = 25, default_apart_m = 1;
 
-/// A question. By default it asks for the fewest stations that capture enough and are connected.
+/// A question. By default it asks for the connected stations that pay: as many as capture `default_pays_m2` each.
 struct SurveyQuestion {
   std::optional<std::string> problem = {};     ///< "survey", or one of `problem_names()`.
-  std::optional<double> capture = {};          ///< Least share of attainable coverage.
+  std::optional<double> capture = {};          ///< Least share of attainable coverage, whatever it takes.
   std::optional<double> pays_m2 = {};          ///< Instead: as `SurveyProblem::pays_m2`.
   std::optional<double> link = {};             ///< Least scan overlap of the links that connect all stations.
   std::optional<double> apart_m = {};          ///< Least distance between two stations.

@@ -352,7 +352,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
 void add_plan(CLI::App& app, Program& program) {
   add_command<PlanOptions>(
       app, program, "plan",
-      "Find where to stand: the fewest linked stations that capture enough of a site, or a front of networks",
+      "Find where to stand: the linked stations that pay, the fewest for a share of a site, or a front of networks",
       plan_survey,
       {"vantage plan site.ifc --scanner rtc360@6mm --spacing 0.02",
        "vantage plan site.glb --capture 0.95 --max-time 10min -o hall",

@@ -11,6 +11,7 @@
 #include "core/options_json.hpp"
 #include "core/read_json.hpp"
 #include "export/station_json.hpp"
+#include "plan/limits.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -37,11 +38,12 @@ std::string typed(const Vec3& head, const StationSetup& setup, std::span<const S
 void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
   nlohmann::json further = nlohmann::json::array();
   for (const char* own : {"capture", "link", "apart"}) options[own] = 0;
+  if (problem.pays_m2) options.erase("capture");
   for (const Requirement& requirement : problem.requirements) {
     const std::string& name = requirement.objective.name;
     if (options.contains(name) && requirement.bound == Requirement::Bound::at_least)
       options[name] = requirement.limit;
-    else
+    else if (!requires_capture(requirement) || requirement.limit > 0)
       further.push_back(to_string(requirement));
   }
   options["require"] = std::move(further);

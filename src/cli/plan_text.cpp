@@ -25,9 +25,9 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
     if (parts > 1) text += fmt::format("  in {} parts", parts);
   }
   for (const Requirement& requirement : result.problem.requirements) {
-    const double value = entry.value(requirement.objective.name);
+    const Estimate& value = entry.estimate(requirement.objective.name);
     if (requirement.missed_by(value) > 0)
-      text += fmt::format("  not met: {} ({})", in_words(requirement), value_text(requirement.objective, value));
+      text += fmt::format("  not met: {} ({})", in_words(requirement), value_text(requirement, value.value));
   }
   return text;
 }

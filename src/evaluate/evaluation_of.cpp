@@ -42,13 +42,13 @@ double most_minutes(std::span<const Requirement> requirements) {
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements) {
   double violation = 0;
   for (const Requirement& requirement : requirements)
-    violation += requirement.missed_by(evaluation.value(requirement.objective.name));
+    violation += requirement.missed_by(evaluation.estimate(requirement.objective.name));
   return violation;
 }
 
-double Evaluation::value(const std::string& measure) const {
+const Estimate& Evaluation::estimate(const std::string& measure) const {
   const auto found = values.find(measure);
-  if (found != values.end()) return found->second.value;
+  if (found != values.end()) return found->second;
   if (counts.cancelled) throw Error(Errc::invalid_argument, measure + ": the evaluation was stopped and has no values");
   std::vector<std::string> names;
   for (const auto& [name, value] : values) names.push_back(name);

@@ -323,8 +323,10 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   if (result.pays)
     json["pays"] = {{"least_m2", result.pays->least_m2},
                     {"stations", result.pays->stations},
+                    {"parts", result.pays->parts},
                     {"capture", result.pays->capture},
                     {"next_m2", result.pays->next_m2}};
+  if (result.further) json["further"] = {{"m2", result.further->m2}, {"minutes", result.further->minutes}};
   if (!result.trade_off.empty()) json["trade_off"] = trade_off_json(result.trade_off);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};

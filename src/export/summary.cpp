@@ -29,6 +29,9 @@ std::string duration(double seconds) {
   return minutes < 60 ? rest : std::to_string(minutes / 60) + " h " + rest;
 }
 
+// "22 m²", "3.4 m²"
+std::string surface_text(double m2) { return (m2 < 10 ? number(std::round(10 * m2) / 10) : fixed(m2, 0)) + " m²"; }
+
 // ", which is known to 0.7 %"
 std::string known_to(const std::optional<double>& growth) {
   if (!growth || *growth <= 0) return {};
@@ -168,8 +171,8 @@ std::vector<std::string> stations_advice(const Evaluation& evaluation, const std
 std::vector<std::string> requirements_advice(const Evaluation& evaluation, std::span<const Requirement> requirements) {
   std::vector<std::string> sentences;
   for (const Requirement& requirement : requirements) {
-    const double value = evaluation.value(requirement.objective.name);
-    if (requirement.missed_by(value) > 0) sentences.push_back(advice(requirement, value));
+    const Estimate& value = evaluation.estimate(requirement.objective.name);
+    if (requirement.missed_by(value) > 0) sentences.push_back(advice(requirement, value.value));
   }
   return sentences;
 }
@@ -329,6 +332,46 @@ void add_closed(std::vector<SummaryLine>& lines, const Scene& scene, const Searc
   }
 }
 
+// A network with more stations than one for so much floor may be right for what is asked, and is no usual survey.
+void add_crowded(std::vector<SummaryLine>& lines, const SearchArea& area, std::span<const PlacedStation> stations) {
+  constexpr double kFloorOfStation_m2 = 5;
+  const auto count = static_cast<double>(std::ranges::count_if(stations, active));
+  double floor_m2 = 0;
+  const SearchMesh& mesh = area.mesh();
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    floor_m2 += std::abs(cross(b - a, c - a).z) / 2;
+  }
+  if (count < 2 || floor_m2 >= kFloorOfStation_m2 * count) return;
+  lines.push_back({"crowded", number(count) + " stations on " + surface_text(floor_m2) +
+                                  " of floor, more than one for each " + surface_text(kFloorOfStation_m2) +
+                                  ": look whether so many are needed"});
+}
+
+// What ended a choice of stations, where it is not that a further one adds too little.
+std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Estimate& captured) {
+  const SurveyProblem& problem = result.problem;
+  if (result.pays) {
+    const bool fewer = captured.value < result.pays->capture;
+    if (!met(result)) return {};
+    if (entry.stations.size() - problem.existing.size() >= problem.stations_max &&
+        (fewer || (result.further && result.further->m2 >= result.pays->least_m2)))
+      return ", with as many stations as are allowed";
+    const bool in_time =
+        std::ranges::any_of(problem.requirements, [](const Requirement& r) { return r.objective.needs.time; });
+    return fewer && in_time ? ", in the time on site that is allowed" : "";
+  }
+  for (const Requirement& requirement : problem.requirements) {
+    if (requirement.bound != Requirement::Bound::at_least || !requirement.objective.needs.attainable) continue;
+    const std::string asked = number(std::round(1e8 * requirement.limit) / 1e6) + " %";
+    if (captured.value >= requirement.limit) return ", and " + asked + " were asked for";
+    if (requirement.missed_by(captured) > 0) return ", but " + asked + " were asked for";
+    return ", which meets " + asked + " within the error" +
+           (captured.standard_error > 0 ? " of " + percent(captured.standard_error) : std::string());
+  }
+  return problem.stations_min == problem.stations_max ? ", and so many were asked for" : "";
+}
+
 }  // namespace
 
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
@@ -339,6 +382,7 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
     lines.push_back({"ground",
                      "laid at the bottom of rooms that have no floor in the model, whose slabs may be in another file; "
                      "it blocks rays and is not surveyed"});
+  add_crowded(lines, area, stations);
   if (std::ranges::any_of(stations, active)) add_empty_floor(lines, floor_parts(scene, area, stations));
   constexpr std::size_t kMost = 5;
   const std::span<const ClosedPart> entered = area.entered();
@@ -367,12 +411,29 @@ std::string entered_text(const SearchArea& area) {
          barred(entered.front());
 }
 
+std::string planned_text(const PlanResult& result) {
+  if (result.front.empty() || !result.problem.fewest) return {};
+  const PlanEntry& entry = result.front[answer(result)];
+  const auto captured = entry.values.find("capture");
+  if (captured == entry.values.end() || std::isnan(captured->second.value)) return {};
+  const std::size_t kept = result.problem.existing.size(), placed = entry.stations.size() - kept;
+  std::string text = std::to_string(placed) + (kept > 0 ? " further" : "") + (placed == 1 ? " station" : " stations") +
+                     (kept > 0 ? " and " + std::to_string(kept) + " that " + (kept == 1 ? "exists" : "exist") : "") +
+                     (entry.stations.size() == 1 ? " captures " : " capture ") + percent(captured->second.value) +
+                     " of what is attainable" + ended_by(result, entry, captured->second);
+  if (!result.further) return text;
+  constexpr double kLeastTold_m2 = 0.05;
+  const auto [m2, minutes] = *result.further;
+  if (m2 < kLeastTold_m2) return text + "; a further one would add nothing";
+  text += "; a further one would add some " + surface_text(m2) + " in " + duration(60 * std::max(minutes, 1.0));
+  if (result.pays && m2 < result.pays->least_m2) text += ", and has to add " + surface_text(result.pays->least_m2);
+  return text;
+}
+
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
-  if (result.pays)
-    lines.push_back({"pays", "a further station would capture some " + fixed(result.pays->next_m2, 0) +
-                                 " m² of new surface, and has to capture " + number(result.pays->least_m2) +
-                                 " m²; so " + percent(result.pays->capture) + " of what is attainable was asked for"});
+  if (std::string planned = planned_text(result); !planned.empty())
+    lines.insert(lines.begin(), {"planned", std::move(planned)});
   for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))
@@ -464,12 +525,12 @@ std::string unmet_text(const PlanResult& result) {
     const std::string& name = requirement.objective.name;
     double best = std::nan(""), least = std::numeric_limits<double>::infinity();
     for (const PlanEntry& entry : result.front) {
-      const double value = entry.value(name), missed = requirement.missed_by(value);
+      const double value = entry.value(name), missed = requirement.missed_by(entry.estimate(name));
       if (missed < least) least = missed, best = value;
     }
     if (result.front.empty() || !(least > 0)) continue;
     text += "no network has its " + in_words(requirement) +
-            (std::isnan(best) ? "" : ": the best has " + value_text(requirement.objective, best)) + "\n";
+            (std::isnan(best) ? "" : ": the best has " + value_text(requirement, best)) + "\n";
   }
   return text;
 }

@@ -72,11 +72,13 @@ double Objective::unscaled(double f) const {
   return best - f * (best - worst);
 }
 
-double Requirement::missed_by(double measured) const {
-  if (std::isnan(measured)) return std::numeric_limits<double>::infinity();
-  // A share of what is attainable is known to its standard error, which is some tenths of a per cent.
-  const double known_to = objective.needs.attainable ? kShareKnownTo : 0;
-  const double short_of = (bound == Bound::at_least ? limit - measured : measured - limit) - known_to;
+double Requirement::missed_by(double measured) const { return missed_by(Estimate{measured, 0}); }
+
+double Requirement::missed_by(const Estimate& measured) const {
+  const auto [value, error] = measured;
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  const double known_to = objective.needs.attainable ? std::max(kShareKnownTo, error) : 0;
+  const double short_of = (bound == Bound::at_least ? limit - value : value - limit) - known_to;
   const double width = objective.scale.width();
   return short_of > 0 ? short_of / (width > 0 ? width : 1) : 0;
 }
@@ -92,6 +94,15 @@ std::string value_text(const Objective& objective, double value) {
   return fixed(value, 3) + (objective.unit.empty() ? "" : " " + objective.unit);
 }
 
+std::string value_text(const Requirement& requirement, double value) {
+  const std::string text = value_text(requirement.objective, value);
+  if (requirement.objective.percent && text == value_text(requirement.objective, requirement.limit))
+    for (int digits = 2; digits < 7; ++digits)
+      if (std::string finer = fixed(100 * value, digits); finer != fixed(100 * requirement.limit, digits))
+        return finer + " %";
+  return text;
+}
+
 std::string in_words(const Requirement& requirement) {
   const Objective& objective = requirement.objective;
   return (objective.noun.empty() ? objective.name : objective.noun) +
@@ -104,15 +115,7 @@ std::string in_words(const Requirement& requirement) {
 std::string advice(const Requirement& requirement, double measured, bool ended_early) {
   const std::string what = "not met: " + in_words(requirement) + ", ";
   if (std::isnan(measured)) return what + "not measured before the time was over; allow more time";
-  // As many digits as it takes to differ from the limit.
-  std::string has = value_text(requirement.objective, measured);
-  if (requirement.objective.percent && has == value_text(requirement.objective, requirement.limit))
-    for (int digits = 2; digits < 7; ++digits)
-      if (std::string finer = fixed(100 * measured, digits); finer != fixed(100 * requirement.limit, digits)) {
-        has = finer + " %";
-        break;
-      }
-  return what + "it has " + has + "; " +
+  return what + "it has " + value_text(requirement, measured) + "; " +
          (ended_early ? "the time was over first: allow more time" : requirement.objective.advice) +
          ", or ask for less";
 }

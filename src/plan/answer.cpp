@@ -86,7 +86,7 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   for (const Requirement& requirement : problem.requirements) {
     const Objective& objective = requirement.objective;
     const double value = entry.value(objective.name);
-    if (requirement.missed_by(value) == 0) continue;
+    if (requirement.missed_by(entry.estimate(objective.name)) == 0) continue;
     const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
     help.push_back(advice(all_placed ? requirement : without_more_stations(requirement), value, ended_early));
     if (objective.kind != Objective::Kind::coverage || ended_early) continue;

@@ -9,6 +9,7 @@
 #include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
 #include "plan/limits.hpp"
+#include "plan/what_pays.hpp"
 
 namespace vantage {
 namespace {
@@ -19,6 +20,9 @@ constexpr std::size_t kLateCandidates = 96;
 constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
+
+// Rounds of adding stations to units of floor.
+constexpr std::size_t kVisits = 4;
 
 // Finds the most coverage of as many stations as there is time for.
 void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_token& stop) {
@@ -71,15 +75,18 @@ std::vector<PlacedStation> FewestChoice::placed_of(const CoverSolution& solution
   return stations;
 }
 
-CoverProblem cover_problem(const FewestAsked& asked, const CandidateTable& table, const Margins& margins) {
+CoverProblem cover_problem(const FewestChoice& choice) {
+  const FewestAsked& asked = choice.asked;
+  const std::size_t visiting = choice.visiting.size();
   std::vector<std::size_t> existing(asked.existing);
   std::iota(existing.begin(), existing.end(), std::size_t{0});
-  return {.matrix = table.matrix(),
-          .graph = &table.graph(),
+  existing.insert(existing.end(), choice.visiting.begin(), choice.visiting.end());
+  return {.matrix = choice.table.matrix(),
+          .graph = &choice.table.graph(),
           .existing = std::move(existing),
-          .fewest = asked.fewest,
-          .most = asked.most,
-          .coverage = asked.coverage + (asked.coverage > 0 ? margins.coverage : 0),
+          .fewest = asked.fewest - std::min(asked.fewest, visiting),
+          .most = asked.most - visiting,
+          .coverage = asked.coverage + (asked.coverage > 0 ? choice.margins.coverage : 0),
           .link = asked.link};
 }
 
@@ -127,6 +134,41 @@ void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop) 
   strengthen(choice, stop);
 }
 
+bool visit_units(FewestChoice& choice, const std::stop_token& stop) {
+  if (!choice.to_visit || choice.asked.minutes) return false;
+  const auto& [units, least_m2, element_m2] = *choice.to_visit;
+  const std::vector<std::vector<std::size_t>> candidates = units.stations_in(choice.table.stations());
+  bool any = false;
+  // A station that goes elsewhere for it may leave another unit.
+  for (std::size_t k = 0; k < kVisits && !stop.stop_requested(); ++k) {
+    std::vector<std::size_t> own = for_empty_units(choice.table.matrix(), &choice.table.graph(), choice.network.chosen,
+                                                   candidates, element_m2, least_m2);
+    own.resize(std::min(own.size(), choice.asked.most - choice.visiting.size()));
+    if (own.empty()) break;
+    any = true;
+    const CoverProblem before = cover_problem(choice);
+    std::vector<std::size_t> network = choice.network.chosen;
+    network.insert(network.begin() + static_cast<std::ptrdiff_t>(before.existing.size()), own.begin(), own.end());
+    choice.visiting.insert(choice.visiting.end(), own.begin(), own.end());
+    choice.one_fewer.reset();
+    const std::size_t most = choice.asked.existing + choice.asked.most;
+    if (network.size() > most) network.resize(most);
+    choose_from(choice, evaluate_cover(cover_problem(choice), std::move(network)), stop);
+    strengthen(choice, stop);
+  }
+  return any;
+}
+
+bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
+                  std::span<const PlacedStation> after) {
+  if (!choice.to_visit) return false;
+  const std::vector<std::vector<std::size_t>> had = choice.to_visit->units.stations_in(before),
+                                              has = choice.to_visit->units.stations_in(after);
+  for (std::size_t unit = 0; unit < had.size(); ++unit)
+    if (!had[unit].empty() && has[unit].empty()) return true;
+  return false;
+}
+
 void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double radius_m, const Progress& progress) {
   std::vector<std::size_t> all = choice.network.chosen;
   if (choice.one_fewer)
@@ -138,7 +180,7 @@ void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double r
   if (choice.asked.most_coverage) choose_from(choice, std::move(choice.network), progress.stop);
   if (choice.one_fewer) {
     CoverProblem fewer = cover_problem(choice);
-    fewer.most = std::min(fewer.most, choice.one_fewer->chosen.size() - choice.asked.existing);
+    fewer.most = std::min(fewer.most, choice.one_fewer->chosen.size() - fewer.existing.size());
     choice.one_fewer = improve_weakest_link(fewer, std::move(*choice.one_fewer), choice.asked.link, progress.stop);
     if (choice.one_fewer->violation <= choice.network.violation)
       choose_from(choice, std::move(choice.one_fewer), progress.stop);

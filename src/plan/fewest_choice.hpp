@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plan/candidate_table.hpp"
+#include "plan/floor_units.hpp"
 #include "plan/placement_oracle.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/planner.hpp"
@@ -52,6 +53,8 @@ struct FewestChoice {
   double link_errors = 0;  // standard errors by which the choice takes sampled overlaps for less than they seem
   CoverSolution network = {};
   std::optional<CoverSolution> one_fewer = {};  // the best network of one station fewer, which is not feasible
+  const UnitsToVisit* to_visit = nullptr;       // borrowed
+  std::vector<std::size_t> visiting = {};       // stations of units that had none; they stay, as existing ones do
 
   // All stations of a network, or those besides the existing ones.
   std::vector<PlacedStation> stations_of(const CoverSolution& solution) const;
@@ -60,10 +63,7 @@ struct FewestChoice {
 };
 
 // Borrows the table.
-CoverProblem cover_problem(const FewestAsked& asked, const CandidateTable& table, const Margins& margins);
-inline CoverProblem cover_problem(const FewestChoice& choice) {
-  return cover_problem(choice.asked, choice.table, choice.margins);
-}
+CoverProblem cover_problem(const FewestChoice& choice);
 
 // Traces existing stations into the table, then candidates with known columns. `stop` ends it early, after some
 // candidates; `abort` at once.
@@ -83,6 +83,13 @@ void strengthen(FewestChoice& choice, const std::stop_token& stop);
 void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop);
 // Starts from a network of the table, or from none.
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop);
+
+// Adds a station to each unit of floor that has none and takes one, and chooses again with these. True if there was
+// one. Not where the time on site ends the choice.
+bool visit_units(FewestChoice& choice, const std::stop_token& stop);
+// Whether a network has no station in some unit where the one before has one.
+bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
+                  std::span<const PlacedStation> after);
 
 // Adds allowed positions within `radius_m` of the chosen stations, and of the best network of one fewer, to the table,
 // and chooses again from the present network.

@@ -38,6 +38,14 @@ Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<co
   return margins;
 }
 
+// By the values alone: what holds within its standard error only is still repaired.
+double strict_violation(const PlanEntry& entry, std::span<const Requirement> requirements) {
+  double violation = 0;
+  for (const Requirement& requirement : requirements)
+    violation += requirement.missed_by(entry.value(requirement.objective.name));
+  return violation;
+}
+
 // The same network with its stations in the order in which they are visited.
 std::vector<double> in_order(const DecisionSpace& space, const std::vector<double>& x,
                              const VerifiedNetworks::VisitOrder& visit_order) {
@@ -171,7 +179,7 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   if (ordered.front.empty()) return;
   for (PlanEntry& entry :
        confirm_front(ordered, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
-    entry.violation = violation_of(entry, problem_.requirements);
+    entry.violation = strict_violation(entry, problem_.requirements);
     entries_.push_back(std::move(entry));
   }
   // Every voxel's points take some 12 bytes a voxel; only what may be the answer keeps them.
@@ -221,7 +229,7 @@ void VerifiedNetworks::fill_in(const std::string& measure, double value) {
   if (entries_.empty() || entries_.back().exact || !std::isnan(entries_.back().value(measure))) return;
   PlanEntry& entry = entries_.back();
   entry.values[measure] = entry.searched[measure] = {value, 0};
-  entry.violation = violation_of(entry, problem_.requirements);
+  entry.violation = strict_violation(entry, problem_.requirements);
 }
 
 double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
@@ -305,7 +313,8 @@ bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, dou
   if (error >= choice.margins.coverage) return false;
   const double margin = std::exchange(choice.margins.coverage, error);
   ConnectedCover found = min_connected_cover(cover_problem(choice), stop, *choice.one_fewer);
-  if (found.best.violation == 0 && found.best.chosen.size() <= choice.network.chosen.size()) {
+  if (found.best.violation == 0 && found.best.chosen.size() <= choice.network.chosen.size() &&
+      !leaves_units(choice, choice.stations_of(choice.network), choice.stations_of(found.best))) {
     CoverSolution before = std::exchange(choice.network, std::move(found.best));
     strengthen(choice, stop);
     const double now_overstated = verify(choice, verified);

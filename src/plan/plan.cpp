@@ -100,6 +100,9 @@ std::size_t most_candidates(Site& site) {
   return std::max(kMostCandidates, static_cast<std::size_t>(by_ground));
 }
 
+// Floor of a room, or another part, that takes a station of its own.
+constexpr double kLeastFloorOfUnit_m2 = 2;
+
 // Finds candidates, and if a measure needs it what is attainable: the problem learns it.
 std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyProblem& problem,
                                        const PlanConfig& config, double max_seconds, const PlanWatch& watch) {
@@ -133,33 +136,88 @@ std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyP
   return candidates;
 }
 
-// Requires what the stations that pay can capture, in place of the share that the problem gives.
+// Columns of stations, then of the candidates, with attainable counts as goals; fewer if stopped.
+CoverageMatrix columns_with(std::span<const PlacedStation> stations, const PlanContext& context, Simulator& simulator,
+                            const Candidates& candidates, const Progress& progress) {
+  const SampledCoverage& known = candidates.coverage();
+  SampledCoverage columns = sample_coverage(simulator, stations, known.sample_voxels(), progress);
+  columns.append(known);
+  CoverageMatrix matrix = columns.matrix();
+  matrix.set_goals(context.chosen.counts());
+  return matrix;
+}
+
+std::vector<std::size_t> first_numbers(std::size_t count) {
+  std::vector<std::size_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  return numbers;
+}
+
+// Down, and with digits that a surveyor reads.
+double rounded_down(double share) {
+  constexpr double kDigits = 1000;
+  return std::floor(share * kDigits) / kDigits;
+}
+
+// Requires what the stations that pay can capture, or what the problem does if that is more.
 std::optional<StationsThatPay> require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
                                                  const Candidates& candidates, const Progress& progress) {
   if (!problem.pays_m2 || candidates.coverage().size() == 0) return std::nullopt;
-  Simulator& simulator = site.simulator();
-  const SampledCoverage& known = candidates.coverage();
-  SampledCoverage kept =
-      sample_coverage(simulator, existing_stations(context.oracle(), problem.existing, problem.existing_setups),
-                      known.sample_voxels(), progress);
-  std::vector<std::size_t> existing(kept.size());
-  std::iota(existing.begin(), existing.end(), std::size_t{0});
-  kept.append(known);
-  CoverageMatrix weighted = kept.matrix();
-  weighted.set_goals(context.chosen.counts());
-  // Square metres are those of all surfaces alike, whatever their voxels weigh.
-  CoverageMatrix even(std::vector<std::uint32_t>(weighted.elements(), 1), weighted.goal());
-  even.set_goals(context.chosen.counts());
-  for (std::size_t k = 0; k < weighted.candidates(); ++k) even.add(weighted.column(k));
-  const double element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(weighted.elements());
-  const CoverProblem asked{.matrix = even, .existing = std::move(existing), .most = problem.stations_max};
-  StationsThatPay pays = stations_that_pay(asked, weighted, element_m2, *problem.pays_m2);
-  // Down, and with digits that a surveyor reads.
-  constexpr double kDigits = 1000;
-  pays.capture = std::floor(pays.capture * kDigits) / kDigits;
+  std::vector<PlacedStation> stations = existing_stations(context.oracle(), problem.existing, problem.existing_setups);
+  const std::size_t kept = stations.size();
+  const CoverageMatrix matrix = columns_with(stations, context, site.simulator(), candidates, progress);
+  if (matrix.candidates() < kept + candidates.coverage().size()) return std::nullopt;
+  stations.insert(stations.end(), candidates.stations().begin(), candidates.stations().end());
+  const double metre = site.length_scale(), least_m2 = *problem.pays_m2;
+  context.to_visit.emplace(
+      UnitsToVisit{.units = FloorUnits(site.scene(), site.area(), kLeastFloorOfUnit_m2 * metre * metre),
+                   .least_m2 = kLeastOfUnit * least_m2,
+                   .element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(matrix.elements())});
+  const CoverProblem asked{
+      .matrix = matrix, .existing = first_numbers(kept), .fewest = problem.stations_min, .most = problem.stations_max};
+  StationsThatPay pays =
+      stations_that_pay(asked, context.to_visit->element_m2, least_m2, context.to_visit->units.stations_in(stations));
+  pays.capture = rounded_down(pays.capture);
   for (Requirement& requirement : problem.requirements)
-    if (requires_capture(requirement)) requirement.limit = pays.capture;
+    if (requires_capture(requirement)) requirement.limit = std::max(requirement.limit, pays.capture);
   return pays;
+}
+
+// What a further station would add to the answer; empty if stopped.
+std::optional<FurtherStation> further_station(const PlanResult& result, PlanContext& context, Site& site,
+                                              const Progress& progress) {
+  if (result.front.empty() || !result.candidates || !result.problem.fewest || !needs_attainable(result.problem))
+    return std::nullopt;
+  const PlanEntry& entry = result.front[answer(result)];
+  const std::size_t count = entry.stations.size(), kept = std::min(result.problem.existing.size(), count);
+  const CoverageMatrix matrix = columns_with(entry.stations, context, site.simulator(), *result.candidates, progress);
+  if (matrix.candidates() < count + result.candidates->coverage().size()) return std::nullopt;
+  const double element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(matrix.elements());
+  const FurtherStations more =
+      further_stations({.matrix = matrix, .existing = first_numbers(count)}, count - kept, element_m2);
+  std::vector<PlacedStation> placed(entry.stations.begin() + static_cast<std::ptrdiff_t>(kept), entry.stations.end());
+  FurtherStation further{.m2 = more.each_m2};
+  if (more.candidates.empty()) return further;
+  const double minutes = context.on_site().visit(placed).minutes;
+  for (const std::size_t k : more.candidates) placed.push_back(result.candidates->stations()[k - count]);
+  further.minutes = (context.on_site().visit(placed).minutes - minutes) / static_cast<double>(more.candidates.size());
+  return further;
+}
+
+// A limit on the stations or on the time on site ended the plan before all stations that pay were placed: nothing more
+// than what the answer captures is then required, unless the problem asked for it.
+void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked) {
+  if (!result.pays || result.front.empty()) return;
+  const PlanEntry& entry = result.front[answer(result)];
+  const bool all_placed = entry.stations.size() - asked.existing.size() >= asked.stations_max;
+  if (!all_placed && !limit_of(asked, Objective::Kind::time, Requirement::Bound::at_most)) return;
+  const double captured = entry.value("capture");
+  if (std::isnan(captured)) return;
+  for (std::size_t k = 0; k < asked.requirements.size(); ++k)
+    if (Requirement& requirement = result.problem.requirements[k];
+        requires_capture(requirement) && requirement.limit > captured)
+      requirement.limit = std::max(asked.requirements[k].limit, rounded_down(captured));
+  for (PlanEntry& one : result.front) one.violation = violation_of(one, result.problem.requirements);
 }
 
 // Counts one station with every ray, by which the watch learns how long that takes.
@@ -196,7 +254,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   std::shared_ptr<const Candidates> candidates;
   if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);
   std::optional<StationsThatPay> pays;
-  if (candidates) pays = require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.stop});
+  if (candidates) pays = require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.abort});
   problem = settled(std::move(problem));
   context.ask(problem);
   PlanResult result;
@@ -222,6 +280,8 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   result.candidates = std::move(candidates);
   result.pays = pays;
   complete_front(result, context, site, {.report = {}, .stop = watch.abort});
+  require_no_more_than_answer(result, asked);
+  result.further = further_station(result, context, site, {.report = {}, .stop = watch.abort});
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;
 }

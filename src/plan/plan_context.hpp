@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plan/confirm.hpp"
+#include "plan/floor_units.hpp"
 #include "plan/placement_oracle.hpp"
 #include "plan/search.hpp"
 #include "plan/simulator_evaluator.hpp"
@@ -20,6 +21,8 @@ class PlanContext {
   // What captured shares are told by, where a measure needs it: of choices among candidates, of searches, on part of
   // their voxels, and of confirmed networks, on others. To be filled in before ask().
   AttainableCounts chosen, searched, confirmed;
+  // Empty unless the number of stations is that of those that pay.
+  std::optional<UnitsToVisit> to_visit;
 
   // Networks are judged by this problem's measures from now on.
   void ask(const SurveyProblem& problem);

@@ -184,6 +184,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   const SurveyProblem& problem = context.problem();
   const TableMaker make_table(context, simulator, candidates.coverage());
   FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
+  if (context.to_visit) choice.to_visit = &*context.to_visit;
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
@@ -202,6 +203,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
 
   report("choose");
   choose(choice, visit_time(context, choice.asked), watch.stop);
+  visit_units(choice, watch.stop);
   for (std::size_t round = 0; round < kRounds && !report.stopped(); ++round) {
     const std::size_t before = choice.table.stations().size();
     const double radius_m = kAroundRadius * std::ldexp(std::max(candidates.spacing_m(), 0.1), -static_cast<int>(round));
@@ -211,6 +213,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   }
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
+  if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
   return choice;
 }
 
@@ -228,6 +231,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
        ++k) {
     if (!repair(choice, verified, context.oracle(), watch.stop)) break;
+    visit_units(choice, watch.stop);
     check_links(choice, context, simulator, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
@@ -250,10 +254,12 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
     found.stop_reason = StopReason::max_iterations;
   else if (!report.stopped())
     found = context.search(asked, refining, start, watch);
-  // Registration draws stations together; those that do the same do not need each other.
+  // Registration draws stations together; those that do the same do not need each other, and a room needs its own.
   const DecisionSpace space(context.oracle(), asked);
   for (std::size_t k = found.front.size(); k-- > 0;)
-    if (!choice.table.spaced(space.decode(found.front[k].x))) drop_point(found, k);
+    if (const std::vector<PlacedStation> stations = space.decode(found.front[k].x);
+        !choice.table.spaced(stations) || leaves_units(choice, choice.stations_of(choice.network), stations))
+      drop_point(found, k);
   if (report.stopped() && (found.stop_reason == StopReason::running || found.front.empty()))
     found.stop_reason = StopReason::cancelled;
   return found;

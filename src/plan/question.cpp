@@ -9,6 +9,7 @@
 
 #include "core/setting_table.hpp"
 #include "plan/check_problem.hpp"
+#include "plan/limits.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -59,21 +60,38 @@ SurveyProblem of_objectives(const SurveyQuestion& question, std::array<std::size
   return named("objectives", [&] { return survey_problem(question.objectives, stations[0], stations[1], least); });
 }
 
+// Whether it asks for as much as one number of stations can capture.
+bool asks_for_most(const SurveyQuestion& question) {
+  return question.stations && (*question.stations)[0] == (*question.stations)[1] && !question.capture &&
+         !question.pays_m2 && question.objectives.empty();
+}
+
+// Whether a requirement in words is a least share of what is attainable.
+bool requires_share(const std::string& text) {
+  return requires_capture(named("require", [&] { return make_requirement(text, {}); }));
+}
+
+// Whether the number of stations is that of those that pay: always, unless another number or a share is asked for.
+bool asks_what_pays(const SurveyQuestion& question) {
+  if (question.pays_m2) return true;
+  return question.asks_for_fewest() && !question.capture && !asks_for_most(question) &&
+         std::ranges::none_of(question.requirements, requires_share);
+}
+
 SurveyProblem fewest(const SurveyQuestion& question, std::array<std::size_t, 2> stations, double least, double apart) {
-  // So many stations and no share of what is attainable: as much of it as they can.
-  const bool most = question.stations && stations[0] == stations[1] && !question.capture && !question.pays_m2 &&
-                    question.objectives.empty();
-  SurveyProblem asked = fewest_stations(most ? 0 : question.capture.value_or(default_capture),
-                                        question.link.value_or(default_link), stations[0], stations[1], apart);
-  if (most) asked.objectives = {make_objective("capture", asked.settings())};
-  asked.pays_m2 = question.pays_m2;
+  SurveyProblem asked = fewest_stations(question.capture.value_or(0), question.link.value_or(default_link), stations[0],
+                                        stations[1], apart);
+  if (asks_for_most(question)) asked.objectives = {make_objective("capture", asked.settings())};
+  // What pays sets its limit, or a requirement takes its place.
+  if (!question.capture && !asks_for_most(question))
+    asked.requirements.insert(asked.requirements.begin(),
+                              {make_objective("capture", asked.settings()), Requirement::Bound::at_least, 0});
   if (question.objectives.empty()) return asked;
   std::vector<Requirement> required = std::move(asked.requirements);
   asked = of_objectives(question, stations, least);
   asked.requirements = std::move(required);
   asked.name = kSurvey;
   asked.fewest = true;
-  asked.pays_m2 = question.pays_m2;
   return asked;
 }
 
@@ -167,6 +185,8 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
+  if (asks_what_pays(question))
+    asked.pays_m2 = question.pays_m2.value_or(default_pays_m2 * site.length_scale() * site.length_scale());
   asked.existing = question.existing, asked.existing_setups = question.existing_setups;
   asked.existing_names = question.existing_names;
   asked.heights_m = question.heights_m;

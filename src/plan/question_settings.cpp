@@ -27,16 +27,17 @@ const SettingTable<SurveyQuestion>& question_settings() {
   static const SettingTable<Question> table =
       SettingRows<Question>()
           .group("Problem")
-          .text(
-              "problem", "PROBLEM",
-              "survey (the default: the fewest connected stations that capture enough), or " + list_of(problem_names()),
-              &Question::problem)
+          .text("problem", "PROBLEM",
+                "survey (the default: the connected stations that pay, or the fewest that capture --capture), or " +
+                    list_of(problem_names()),
+                &Question::problem)
           .number("capture", "SHARE",
-                  otherwise("Least share of what is attainable that the survey captures", default_capture),
+                  "Least share of what is attainable that the survey captures, whatever it takes: instead of --pays",
                   &Question::capture, any_share)
           .number("pays", "M2",
-                  "Instead of --capture: the fewest stations after which a further one would capture less new surface "
-                  "than so many square metres (25 is usual; docs/method.md)",
+                  otherwise("Surface that the others do not capture, in square metres, which a station has to add: the "
+                            "survey has as many stations as do, and one in every room and part of the floor",
+                            default_pays_m2),
                   &Question::pays_m2, positive)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "

@@ -65,7 +65,7 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
   problem.coverage = 1;  // as much as there is
   problem.link = choice.asked.link;
   const ColumnIndex columns(problem.matrix);
-  const std::size_t existing = choice.asked.existing;
+  const std::size_t existing = choice.asked.existing, visiting = problem.existing.size() - existing;
   const std::vector<std::size_t> numbers = trade_off_numbers(choice.placed(), std::numeric_limits<std::size_t>::max());
   const auto here = std::ranges::find(numbers, choice.placed());
   std::vector<CoverSolution> networks{evaluate_cover(problem, choice.network.chosen)};
@@ -79,7 +79,7 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
     networks.insert(networks.begin(), evaluate_cover(problem, now));
   }
   for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
-    problem.most = problem.fewest = *number;
+    problem.most = problem.fewest = *number - visiting;
     CoverSolution more = grow_and_swap(problem, columns, networks.back().chosen, unimproved);
     if (more.chosen.size() == networks.back().chosen.size()) break;
     networks.push_back(std::move(more));

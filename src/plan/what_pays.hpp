@@ -3,19 +3,47 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "cover/partial_cover.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage {
 
-// Follows a greedy choice of `problem.most` further stations at most. After n of them the next n/5 are looked at
-// together, at least one: a single step of a greedy choice may be small by chance. `weighted`: the matrix of the
-// capture that is asked for; `problem.matrix` has the same candidates and a weight of 1 for each element.
-// `element_m2`: surface of an element.
-StationsThatPay stations_that_pay(const CoverProblem& problem, const CoverageMatrix& weighted, double element_m2,
-                                  double least_m2);
+// A part of the floor (floor_units.hpp) takes a station if that captures so much of what one has to.
+inline constexpr double kLeastOfUnit = 0.2;
+
+// Of what a voxel of a sample stands for: the surface that a candidate captures and a network does not, in square
+// metres of all surfaces alike, whatever their voxels weigh. `element_m2`: surface of an element.
+double new_surface_m2(const CoverageMatrix& matrix, const PartialCover& network, std::size_t candidate,
+                      double element_m2);
+
+// For each unit of floor without one of the chosen candidates, the allowed one in it that captures most new surface, if
+// that is as much as `least_m2`; each counts for the next ones. `units`: candidates in each.
+std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const StationGraph* graph,
+                                         std::span<const std::size_t> chosen,
+                                         std::span<const std::vector<std::size_t>> units, double element_m2,
+                                         double least_m2);
+
+// Follows a greedy choice of `problem.most` further stations at most, and takes `problem.fewest` at least where that is
+// more than one. After n of them the next n/5 are looked at together, at least one: a single step of a greedy choice
+// may be small by chance. `units`: candidates in each part of the floor that is to have a station. `element_m2`:
+// surface of an element.
+StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, double least_m2,
+                                  std::span<const std::vector<std::size_t>> units = {});
+
+// What further stations add to those that exist, a fifth of `stations` together and at least one: new surface of each
+// on average, and the candidates.
+struct FurtherStations {
+  std::vector<std::size_t> candidates = {};
+  double each_m2 = 0;
+};
+FurtherStations further_stations(const CoverProblem& problem, std::size_t stations, double element_m2);
 
 // Area of all surveyed meshes, in square metres.
 double surveyed_area_m2(const Scene& scene);

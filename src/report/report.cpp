@@ -47,6 +47,8 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
   }
   for (const PlanEntry& entry : result.front) report.networks.push_back({entry, entry.dominated});
   report.facts = report_facts(report, site.simulator());
+  if (std::string planned = planned_text(result); !planned.empty())
+    report.facts.insert(report.facts.begin(), {"planned", std::move(planned)});
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
   return report;

@@ -83,10 +83,11 @@ void tell_stages(const std::string& file, const PlanStagesOptions& options) {
   site.simulator();
   end_stage("voxels", site.work());
   std::string phase = "look";
-  const PlanResult result = plan(site, SurveyQuestion{}, PlanConfig{}, {.report = [&](const PlanProgress& now) {
-                                   end_stage(phase, site.work());
-                                   phase = now.phase;
-                                 }});
+  const PlanResult result =
+      plan(site, SurveyQuestion{.capture = 0.9}, PlanConfig{}, {.report = [&](const PlanProgress& now) {
+             end_stage(phase, site.work());
+             phase = now.phase;
+           }});
   end_stage(phase, site.work());
   Stage whole;
   for (const std::string& name : order) {

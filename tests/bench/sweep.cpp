@@ -42,6 +42,7 @@ constexpr double kTrueLink = 0.5;
 constexpr std::size_t kSpots = 20'000;
 // Side of the square of floor that a person gives each station at most (see `rule_of_thumb`).
 constexpr double kFloorEach_m = 10;
+constexpr double kCapture = 0.9;  // asked of each plan
 constexpr double kBoundSeconds = 20;
 
 // A site of the sweep, with the truth about it unless it is a file.
@@ -217,8 +218,7 @@ void judge_sight(Site& site, const PlanEntry& entry, const StationLinks& links, 
 
 void judge_number(const PlanResult& result, Score& score) {
   const CoverageMatrix matrix = result.candidates->captured_matrix();
-  const StationsBound bound =
-      min_cover({.matrix = matrix, .coverage = default_capture}, {.max_seconds = kBoundSeconds});
+  const StationsBound bound = min_cover({.matrix = matrix, .coverage = kCapture}, {.max_seconds = kBoundSeconds});
   score.at_least = bound.at_least, score.greedy = bound.chosen.size();
 }
 
@@ -389,7 +389,7 @@ bool Sweep::add(const SweptSite& swept, const SweepOptions& options) {
   as.user_size_m = options.user_size_m, as.spacing_m = options.spacing_m;
   const Stopwatch watch;
   Site site = Site::open(swept.file, as);
-  const PlanResult result = planned(site, options, default_capture, default_link);
+  const PlanResult result = planned(site, options, kCapture, default_link);
   Score score;
   score.seconds = watch.seconds();
   const PlanEntry& entry = result.front[answer(result)];

@@ -26,6 +26,7 @@ PLANS = {
     "required": ["--objectives", "coverage,registration", "--require", "parts<=1", "--stations", "2..4", *SEARCH],
     "kept": ["--problem", "coverage-fix", "--stations", "2", "--keep", "x=8,y=3,z=1.5,heading=30,tilt=80,scanner=rtc360,step=2.5", *SEARCH],
     "survey": ["--capture", "0.5", "--max-time", "5s"],
+    "paying": ["--max-time", "5s"],
     "targets": ["--problem", "coverage-fix", "--stations", "1", "--keep", "7,1,1.5", "--keep", "7.5,-1,1.5", "--targets", "2", "--targets-from",
                 "have.csv", *SEARCH],
 }

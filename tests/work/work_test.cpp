@@ -47,7 +47,7 @@ Work planned(const std::string& name) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / (name + ".glb");
   write_built_in_scene(name, 20'000, file);
-  // Coarse, so that four plans take seconds; the default question.
+  // Coarse, so that four plans take seconds.
   SiteOptions options;
   options.steps = {Angle::degrees(0.4), Angle::degrees(0.4)};
   options.user_size_m = 0.2, options.spacing_m = 0.1;
@@ -55,7 +55,9 @@ Work planned(const std::string& name) {
   Site site = Site::open(file, options);
   PlanConfig config;
   config.sample_voxels = 1000;
-  return plan(site, SurveyQuestion{}, config).work;
+  SurveyQuestion question;
+  question.capture = 0.9;
+  return plan(site, question, config).work;
 }
 
 class Plans : public testing::TestWithParam<const char*> {};

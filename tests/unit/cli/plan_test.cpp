@@ -258,17 +258,31 @@ TEST_F(Plan, AsksTheSurveyorsQuestionWhereNoneIsNamed) {
   EXPECT_EQ(read("plan/notes.txt"), "of the run before") << "that is the surveyor's own";
 }
 
+// Its configuration asks the same again: no share, and so much surface of each station.
+TEST_F(Plan, AsksForTheStationsThatPayByDefault) {
+  const auto front = json_of(plan("plan", {"--link", "0"}));
+  EXPECT_EQ(front["pays"]["least_m2"], 25);
+  EXPECT_TRUE(front["met"]);
+  EXPECT_EQ(front["summary"][0]["heading"], "planned");
+  EXPECT_TRUE(front["further"]["m2"].is_number());
+  const auto same = json_of(
+      {"plan", scene_, "--engine", "embree", "--config", path("plan/config.json"), "-o", path("again"), "--no-report"});
+  EXPECT_EQ(same["front"], front["front"]);
+  EXPECT_EQ(same["pays"], front["pays"]);
+}
+
 // A plan whose time is over leaves all files of one that was finished.
 TEST_F(Plan, IsDoneWithinTheTimeGiven) {
   const auto begun = std::chrono::steady_clock::now();
-  const Outcome outcome = run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--link", "0",
-                                       "--iterations", "10000000", "--max-time", "8", "-o", path("plan")});
+  const Outcome outcome =
+      run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--capture", "0.9", "--link", "0",
+                   "--iterations", "10000000", "--max-time", "8", "-o", path("plan")});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
   EXPECT_LT(seconds, 60) << "ten million iterations take hours";
   EXPECT_EQ(nlohmann::json::parse(read("plan/front.json"))["stop_reason"], "max_time") << outcome.err;
-  const Outcome whole = run_program(
-      {"plan", scene_, "--engine", "embree", "--step", "0.5", "--link", "0", "--iterations", "2", "-o", path("whole")});
+  const Outcome whole = run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--capture", "0.9",
+                                     "--link", "0", "--iterations", "2", "-o", path("whole")});
   EXPECT_TRUE(whole.exit_code == 0 || whole.exit_code == 3) << whole.err;
   const auto names = [&](const char* folder) {
     std::set<std::string> all;

@@ -98,6 +98,20 @@ TEST(FloorParts, AreBuildingsAndRoomsWithTheirStations) {
   })) << "nothing is said where no station is";
 }
 
+TEST(FloorParts, MoreStationsThanOneForFiveSquareMetresAreTold) {
+  const Scene scene = test::Builder().floor(0, 0, 4, 5, 0).scene();
+  const SearchArea area = SearchArea::from_mesh(
+      {.positions = {origin, origin + Vec3{4, 0, 0}, origin + Vec3{4, 5, 0}, origin + Vec3{0, 5, 0}},
+       .uvs = {{0, 0}, {0.8, 0}, {0.8, 1}, {0, 1}},
+       .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  const auto told = [&](std::size_t stations) {
+    const auto lines = ground_lines(scene, area, std::vector<PlacedStation>(stations));
+    return lines.empty() ? std::string() : lines.front().heading + ": " + lines.front().text;
+  };
+  EXPECT_EQ(told(4), "");
+  EXPECT_TRUE(told(5).starts_with("crowded: 5 stations on 20 m² of floor, more than one for each 5 m²")) << told(5);
+}
+
 TEST(FloorParts, AreStoreys) {
   const Scene scene = test::Builder().floor(-10, -10, 10, 10, 0).box({-10, -10, 3}, {10, 10, 3.2}).scene();
   SearchMesh mesh;

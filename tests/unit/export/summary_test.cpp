@@ -187,5 +187,53 @@ TEST(Summary, OfAPlanTellsWhatItMisses) {
   EXPECT_EQ(summary_lines(entry).size(), 3u) << "nothing is required";
 }
 
+// A plan of so many stations that capture a share, by an error.
+PlanResult fewest_result(std::size_t stations, Estimate captured, double asked) {
+  PlanResult result;
+  result.problem = fewest_stations(asked);
+  std::erase_if(result.problem.requirements, [](const Requirement& r) { return r.objective.name != "capture"; });
+  PlanEntry entry;
+  entry.exact = true;
+  entry.stations.resize(stations);
+  entry.values = {{"coverage", {0.7, 0}}, {"capture", captured}, {"registration", {1, 0}}};
+  entry.violation = violation_of(entry, result.problem.requirements);
+  result.front.push_back(entry);
+  return result;
+}
+
+TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
+  PlanResult result = fewest_result(16, {0.862, 0}, 0.86);
+  result.pays = {.least_m2 = 25, .stations = 15, .capture = 0.86, .next_m2 = 21};
+  result.further = {.m2 = 22.3, .minutes = 3.7};
+  EXPECT_EQ(summary_lines(result).front().heading, "planned");
+  EXPECT_EQ(planned_text(result),
+            "16 stations capture 86.2 % of what is attainable; a further one would add some 22 m² in 4 min, and has to "
+            "add 25 m²");
+  result.further = {.m2 = 27, .minutes = 3.7};
+  EXPECT_TRUE(planned_text(result).ends_with("; a further one would add some 27 m² in 4 min"));
+  result.further = {.m2 = 0, .minutes = 3.7};
+  EXPECT_TRUE(planned_text(result).ends_with("; a further one would add nothing"));
+  result.problem.stations_max = 16, result.pays->capture = 0.95;
+  EXPECT_TRUE(planned_text(result).starts_with(
+      "16 stations capture 86.2 % of what is attainable, with as many stations as are allowed;"));
+}
+
+TEST(Summary, OfAPlanForAShareSaysWhetherItIsMet) {
+  const auto text = [](double captured, double error) {
+    return planned_text(fewest_result(9, {captured, error}, 0.9));
+  };
+  EXPECT_EQ(text(0.913, 0.002), "9 stations capture 91.3 % of what is attainable, and 90 % were asked for");
+  EXPECT_EQ(text(0.89998, 0.002),
+            "9 stations capture 90.0 % of what is attainable, which meets 90 % within the error of 0.2 %");
+  EXPECT_EQ(text(0.89998, 0), "9 stations capture 90.0 % of what is attainable, which meets 90 % within the error");
+  EXPECT_EQ(text(0.85, 0.002), "9 stations capture 85.0 % of what is attainable, but 90 % were asked for");
+  for (const double captured : {0.913, 0.8985, 0.85}) {
+    const PlanResult result = fewest_result(9, {captured, 0.002}, 0.9);
+    const std::string all = summary_text(result) + unmet_text(result);
+    EXPECT_EQ(met(result), all.find("not met") == std::string::npos) << all;
+    EXPECT_EQ(met(result), captured > 0.89) << all;
+  }
+}
+
 }  // namespace
 }  // namespace vantage

@@ -235,6 +235,11 @@ TEST(Requirement, ReadsWhatIsAsked) {
   EXPECT_EQ(share.missed_by(0.89998), 0);
   EXPECT_EQ(share.missed_by(0.8996), 0);
   EXPECT_GT(share.missed_by(0.8994), 0);
+  EXPECT_EQ(share.missed_by(Estimate{0.8985, 0.002}), 0) << "within its standard error";
+  EXPECT_GT(share.missed_by(Estimate{0.8975, 0.002}), 0);
+  EXPECT_GT(covered.missed_by(Estimate{0.8985, 0.002}), 0) << "is counted, not estimated, in the end";
+  EXPECT_EQ(value_text(covered, 0.89998), "89.998 %");
+  EXPECT_EQ(value_text(covered, 0.85), "85.0 %");
   for (const char* wrong : {"coverage", "coverage>0.9", "coverage=0.9", "coverage>=", "coverage>=x", "coverage>=nan",
                             "cover>=0.9", ">=0.9", "coverage>=0.9 0.8", "coverage>"})
     EXPECT_THROW(make_requirement(wrong), Error) << wrong;

@@ -33,13 +33,43 @@ std::string refused(const SurveyQuestion& question) {
   return "";
 }
 
-TEST(SurveyQuestion, AsksForTheFewestStationsWhereNothingIsSaid) {
+TEST(SurveyQuestion, AsksForTheStationsThatPayWhereNothingIsSaid) {
   Site site = small_site();
   const SurveyProblem problem = survey_problem(site);
   EXPECT_TRUE(problem.fewest);
   EXPECT_EQ(problem.name, "survey");
-  EXPECT_EQ(required(problem), (std::vector<std::string>{"capture >= 0.9", "link >= 0.3", "apart >= 1"}));
+  EXPECT_EQ(problem.pays_m2, 25);
+  EXPECT_EQ(required(problem), (std::vector<std::string>{"capture >= 0", "link >= 0.3", "apart >= 1"}));
   EXPECT_EQ(problem.stations_max, max_stations);
+  SurveyQuestion same;
+  same.pays_m2 = 25;
+  EXPECT_EQ(required(survey_problem(site, same)), required(problem));
+  EXPECT_EQ(survey_problem(site, same).pays_m2, problem.pays_m2);
+}
+
+TEST(SurveyQuestion, AShareOrANumberOfStationsTakesThePlaceOfWhatPays) {
+  Site site = small_site();
+  const auto asked = [&](auto set) {
+    SurveyQuestion question;
+    set(question);
+    return survey_problem(site, question);
+  };
+  const SurveyProblem share = asked([](SurveyQuestion& q) { q.capture = 0.9; });
+  EXPECT_EQ(share.pays_m2, std::nullopt);
+  EXPECT_EQ(required(share).front(), "capture >= 0.9");
+  const SurveyProblem in_words = asked([](SurveyQuestion& q) { q.requirements = {"capture>=0.8"}; });
+  EXPECT_EQ(in_words.pays_m2, std::nullopt);
+  EXPECT_EQ(required(in_words).front(), "capture >= 0.8");
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.stations = {5, 5}; }).pays_m2, std::nullopt);
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.problem = "coverage-fix", q.stations = {5, 5}; }).pays_m2, std::nullopt);
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.objectives = {"coverage"}, q.stations = {5, 5}; }).pays_m2, std::nullopt);
+  // Other objectives and requirements, and a range, leave the number open.
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.stations = {2, 9}; }).pays_m2, 25);
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.objectives = {"time"}; }).pays_m2, 25);
+  EXPECT_EQ(asked([](SurveyQuestion& q) { q.requirements = {"coverage>=0.5"}; }).pays_m2, 25);
+  const SurveyProblem both = asked([](SurveyQuestion& q) { q.pays_m2 = 40, q.requirements = {"capture>=0.8"}; });
+  EXPECT_EQ(both.pays_m2, 40);
+  EXPECT_EQ(required(both).front(), "capture >= 0.8");
 }
 
 TEST(SurveyQuestion, IsAProblemByNameOrByObjectives) {
