@@ -14,6 +14,9 @@ namespace {
 
 // Largest number of candidates on a path, and number of the most promising paths that are evaluated as a whole.
 constexpr std::size_t kLongestPath = 4, kPathsTried = 24;
+// A path is left for a candidate without a link that gains so many times as much as each of the path: what no path
+// reaches, such as a loft behind a hatch, would otherwise be covered last, after everything that hardly gains.
+constexpr double kWorthLeaving = 5;
 
 using Path = std::vector<std::size_t>;
 
@@ -46,6 +49,10 @@ class Growth {
       }
       Path path;
       if (along_links) path = best_path();
+      if (!path.empty())
+        if (const auto best = best_anywhere();
+            best && gain(*best) * static_cast<double>(path.size()) > kWorthLeaving * gain_along(path))
+          path.assign(1, *best);
       if (path.empty()) {
         // No path adds anything. Only coverage is left to gain; missing links are a violation.
         if (along_links && enough) break;
