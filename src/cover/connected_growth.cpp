@@ -14,16 +14,16 @@ namespace {
 
 // Largest number of candidates on a path, and number of the most promising paths that are evaluated as a whole.
 constexpr std::size_t kLongestPath = 4, kPathsTried = 24;
-// A path is left for a candidate without a link that gains so many times as much as each of the path: what no path
-// reaches, such as a loft behind a hatch, would otherwise be covered last, after everything that hardly gains.
+// A path may be left for a candidate without a link that gains so many times as much as each of the path.
 constexpr double kWorthLeaving = 5;
 
 using Path = std::vector<std::size_t>;
 
 class Growth {
  public:
-  Growth(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network)
+  Growth(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network, Links links)
       : problem_(problem),
+        links_(links),
         none_(problem.matrix.candidates()),
         free_(free_candidates(problem)),
         network_(std::move(network)),
@@ -49,7 +49,7 @@ class Growth {
       }
       Path path;
       if (along_links) path = best_path();
-      if (!path.empty())
+      if (!path.empty() && links_ == Links::left_for_gain)
         if (const auto best = best_anywhere();
             best && gain(*best) * static_cast<double>(path.size()) > kWorthLeaving * gain_along(path))
           path.assign(1, *best);
@@ -94,6 +94,7 @@ class Growth {
   Path path_from(const Components& parts, std::size_t part) const;
 
   const CoverProblem& problem_;
+  Links links_;
   std::size_t none_;
   std::vector<std::size_t> free_, network_;
   CoverGains gains_;
@@ -239,8 +240,8 @@ Path Growth::path_from(const Components& parts, std::size_t part) const {
 }  // namespace
 
 std::vector<std::size_t> grow_connected(const CoverProblem& problem, const ColumnIndex& columns,
-                                        std::vector<std::size_t> network) {
-  return Growth(problem, columns, std::move(network)).run();
+                                        std::vector<std::size_t> network, Links links) {
+  return Growth(problem, columns, std::move(network), links).run();
 }
 
 CoverSolution grow_and_swap(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network,

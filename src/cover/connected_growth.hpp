@@ -10,10 +10,13 @@
 
 namespace vantage {
 
+// Whether a growing network leaves links for a candidate that gains much more than any path.
+enum class Links { kept, left_for_gain };
+
 // Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.
 // `columns`: of the problem's matrix.
 std::vector<std::size_t> grow_connected(const CoverProblem& problem, const ColumnIndex& columns,
-                                        std::vector<std::size_t> network);
+                                        std::vector<std::size_t> network, Links links = Links::kept);
 // Grows `network` likewise, then improves it by swaps.
 CoverSolution grow_and_swap(const CoverProblem& problem, const ColumnIndex& columns, std::vector<std::size_t> network,
                             const std::stop_token& stop);

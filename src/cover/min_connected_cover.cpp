@@ -80,6 +80,15 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
     CoverSolution other = grow_one_by_one(problem, columns, stop);
     if (other.violation < best.violation) best = std::move(other);
   }
+  // What no link reaches, such as a loft behind a hatch, was then covered last, after everything that hardly gains.
+  if (best.violation > 0 && problem.graph && !stop.stop_requested()) {
+    CoverSolution other =
+        evaluate_cover(problem, grow_connected(problem, columns, problem.existing, Links::left_for_gain));
+    if (other.violation > 0 && !stop.stop_requested())
+      other = evaluate_cover(problem, tabu.run(other.chosen, problem.link));
+    if (std::pair(other.violation, other.chosen.size()) < std::pair(best.violation, best.chosen.size()))
+      best = std::move(other);
+  }
   // One fewer while that is no worse, even if the network is not feasible.
   while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {
     const std::vector<std::size_t> places = places_by_loss(problem, best.chosen);

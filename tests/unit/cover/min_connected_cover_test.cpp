@@ -68,6 +68,29 @@ std::size_t fewest_of_all(const RandomSite& site, double coverage, double link) 
   return fewest;
 }
 
+// A hall that two linked candidates cover but for crumbs, and a loft that no link reaches.
+TEST(MinConnectedCover, TakesWhatNoLinkReachesBeforeCrumbs) {
+  constexpr std::size_t kHall = 100, kLoft = 60, kCrumbs = 20;
+  CoverageMatrix matrix(std::vector<std::uint32_t>(kHall + kLoft + kCrumbs, 1), 1);
+  const auto add = [&](std::size_t first, std::size_t many) {
+    std::vector<std::uint32_t> amounts(matrix.elements(), 0);
+    std::fill_n(amounts.begin() + static_cast<std::ptrdiff_t>(first), many, 1u);
+    matrix.add(amounts);
+  };
+  add(0, 60), add(60, 40);
+  for (std::size_t k = 0; k < kCrumbs; ++k) add(kHall + kLoft + k, 1);
+  add(kHall, kLoft);
+  const std::size_t loft = matrix.candidates() - 1;
+  StationGraph graph(matrix.candidates());
+  for (std::size_t i = 0; i < loft; ++i)
+    for (std::size_t j = 0; j < i; ++j) graph.set_overlap(i, j, 0.5f);
+  const CoverSolution best =
+      min_connected_cover({.matrix = matrix, .graph = &graph, .coverage = 0.88, .link = 0.3}).best;
+  Chosen chosen = best.chosen;
+  std::ranges::sort(chosen);
+  EXPECT_EQ(chosen, (Chosen{0, 1, loft}));
+}
+
 TEST(MinConnectedCover, IsTheFewestThereIs) {
   int compared = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
