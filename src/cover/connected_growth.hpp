@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// Whether a growing network leaves links for a candidate that gains much more than any path.
+// A growing network keeps to paths along links, or leaves them for a candidate that gains much more.
 enum class Links { kept, left_for_gain };
 
 // Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.

@@ -38,7 +38,7 @@ Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<co
   return margins;
 }
 
-// By the values alone: what holds within its standard error only is still repaired.
+// The violation by the values alone: what holds within its standard error only is still repaired.
 double strict_violation(const PlanEntry& entry, std::span<const Requirement> requirements) {
   double violation = 0;
   for (const Requirement& requirement : requirements)

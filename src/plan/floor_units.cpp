@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// Of every chart in (u, v), and its floor in plan. Charts that overlap there, as a marked area's may, are one.
+// The extent of a chart in (u, v), and its floor in plan. Charts that overlap there, as a marked area's may, are one.
 struct Chart {
   Uv min, max;
   double area_m2 = 0;

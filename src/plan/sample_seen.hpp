@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// What each station sees of a sample of the surroundings, a column each: elements are the sides of its voxels, so what
+// A column for what each station sees of a sample of the surroundings: elements are the sides of its voxels, so what
 // two columns have in common is what the stations share. A stopped call has columns of the first stations.
 CoverageMatrix sample_seen(Simulator& surroundings, std::span<const PlacedStation> stations,
                            std::uint64_t sample_voxels, const Progress& progress);

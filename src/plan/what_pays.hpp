@@ -18,8 +18,8 @@ namespace vantage {
 // A part of the floor (floor_units.hpp) takes a station if that captures so much of what one has to.
 inline constexpr double kLeastOfUnit = 0.2;
 
-// Of what a voxel of a sample stands for: the surface that a candidate captures and a network does not, in square
-// metres of all surfaces alike, whatever their voxels weigh. `element_m2`: surface of an element.
+// Surface that a candidate captures and a network does not, in square metres of all surfaces alike, whatever their
+// voxels weigh. `element_m2`: the surface that an element of the sample stands for.
 double new_surface_m2(const CoverageMatrix& matrix, const PartialCover& network, std::size_t candidate,
                       double element_m2);
 
