@@ -30,8 +30,6 @@ constexpr double kFlatShare = 0.95;
 // A triangle of so many voxels or more is walked in parts, side by side.
 constexpr double kLargeTriangle = 1 << 16;
 
-Vec3 wide(const Float3& p) { return {p.x, p.y, p.z}; }
-
 // Triangles that follow each other and lie in one plane.
 struct Surface {
   Vec3 normal;
@@ -126,7 +124,7 @@ std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<c
   double all = 0;
   for (const std::uint32_t t : triangles) {
     const auto p = scene.corners(t);
-    const Vec3 a = wide(p[0]), normal = cross(wide(p[1]) - a, wide(p[2]) - a);
+    const Vec3 a = widen(p[0]), normal = cross(widen(p[1]) - a, widen(p[2]) - a);
     const double twice = std::sqrt(dot(normal, normal));
     if (!(twice > 0)) continue;
     const Vec3 unit = normal * (1 / twice);
@@ -174,7 +172,7 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
     };
     for (std::uint32_t t = begin; t < end; ++t) {
       const auto p = scene.corners(t);
-      const std::array<Vec3, 3> corners{wide(p[0]), wide(p[1]), wide(p[2])};
+      const std::array<Vec3, 3> corners{widen(p[0]), widen(p[1]), widen(p[2])};
       const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
       const double twice = std::sqrt(dot(normal, normal));
       if (!(twice > 0)) continue;
