@@ -177,8 +177,8 @@ struct StationsThatPay {
   double next_m2 = 0;        ///< What a further one would capture.
 };
 
-/// What a further station would add to a plan's answer: the mean of a fifth more of them, chosen one after the other
-/// among the candidates.
+/// Surface and time that a further station would add to a plan's answer: the mean of a fifth more of them, chosen one
+/// after the other among the candidates.
 struct FurtherStation {
   double m2 = 0;       ///< Surface that the answer does not capture.
   double minutes = 0;  ///< On site, walking included.

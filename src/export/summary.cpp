@@ -348,7 +348,7 @@ void add_crowded(std::vector<SummaryLine>& lines, const SearchArea& area, std::s
                                   ": look whether so many are needed"});
 }
 
-// What ended a choice of stations, where it is not that a further one adds too little.
+// The reason why a choice of stations ended, where it is not that a further one adds too little.
 std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Estimate& captured) {
   const SurveyProblem& problem = result.problem;
   if (result.pays) {

@@ -87,7 +87,7 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
 // Adds a station to each unit of floor that has none and takes one, and chooses again with these. True if there was
 // one. Not where the time on site ends the choice.
 bool visit_units(FewestChoice& choice, const std::stop_token& stop);
-// Whether a network has no station in some unit where the one before has one.
+// True if a network has no station in some unit where the one before has one.
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
                   std::span<const PlacedStation> after);
 

@@ -183,7 +183,7 @@ std::optional<StationsThatPay> require_what_pays(SurveyProblem& problem, PlanCon
   return pays;
 }
 
-// What a further station would add to the answer; empty if stopped.
+// Finds what a further station would add to the answer; empty if stopped.
 std::optional<FurtherStation> further_station(const PlanResult& result, PlanContext& context, Site& site,
                                               const Progress& progress) {
   if (result.front.empty() || !result.candidates || !result.problem.fewest || !needs_attainable(result.problem))

@@ -60,18 +60,18 @@ SurveyProblem of_objectives(const SurveyQuestion& question, std::array<std::size
   return named("objectives", [&] { return survey_problem(question.objectives, stations[0], stations[1], least); });
 }
 
-// Whether it asks for as much as one number of stations can capture.
+// True if it asks for as much as one number of stations can capture.
 bool asks_for_most(const SurveyQuestion& question) {
   return question.stations && (*question.stations)[0] == (*question.stations)[1] && !question.capture &&
          !question.pays_m2 && question.objectives.empty();
 }
 
-// Whether a requirement in words is a least share of what is attainable.
+// True if a requirement in words is a least share of what is attainable.
 bool requires_share(const std::string& text) {
   return requires_capture(named("require", [&] { return make_requirement(text, {}); }));
 }
 
-// Whether the number of stations is that of those that pay: always, unless another number or a share is asked for.
+// True if the number of stations is that of those that pay: always, unless another number or a share is asked for.
 bool asks_what_pays(const SurveyQuestion& question) {
   if (question.pays_m2) return true;
   return question.asks_for_fewest() && !question.capture && !asks_for_most(question) &&
@@ -82,7 +82,7 @@ SurveyProblem fewest(const SurveyQuestion& question, std::array<std::size_t, 2> 
   SurveyProblem asked = fewest_stations(question.capture.value_or(0), question.link.value_or(default_link), stations[0],
                                         stations[1], apart);
   if (asks_for_most(question)) asked.objectives = {make_objective("capture", asked.settings())};
-  // What pays sets its limit, or a requirement takes its place.
+  // The stations that pay set its limit, or a requirement takes its place.
   if (!question.capture && !asks_for_most(question))
     asked.requirements.insert(asked.requirements.begin(),
                               {make_objective("capture", asked.settings()), Requirement::Bound::at_least, 0});
