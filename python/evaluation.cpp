@@ -86,6 +86,8 @@ void add_registration(py::module_& m) {
 
   py::class_<RegistrationError> error(m, "RegistrationError", "Predicted error of a registered network, metres.");
   error.def_readonly("rms_m", &RegistrationError::rms_m, "Root mean square displacement over the covered surface.")
+      .def_readonly("random_m", &RegistrationError::random_m,
+                    "What rms_m would be without the errors that all scans of an instrument share.")
       .def_readonly("worst_m", &RegistrationError::worst_m, "The same for the worst station.")
       .def_readonly("worst_station", &RegistrationError::worst_station, "Index of the worst station, from 0.")
       .def_property_readonly(

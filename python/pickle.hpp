@@ -30,7 +30,7 @@ inline auto members(RayHits& h) {
 inline auto members(UncoveredVoxels& u) { return std::tie(u.voxels, u.centres, u.meshes, u.points); }
 inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
 inline auto members(RegistrationError& e) {
-  return std::tie(e.rms_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
+  return std::tie(e.rms_m, e.random_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
 }
 inline auto members(Visit& v) {
   return std::tie(v.order, v.legs_m, v.paths, v.walk_m, v.scan_min, v.set_up_min, v.photos_min, v.walk_min, v.minutes,

@@ -55,6 +55,16 @@ Options<Scanner> scanner_options() {
           "exit_diameter_mm", [](const Scanner& s) { return s.exit_diameter_m * 1e3; },
           [](Scanner& s, double mm) { s.exit_diameter_m = mm * 1e-3; },
           "Diameter of the beam at the exit, to 1/e^2; 0: not known.")
+      .add<double>(
+          "angle_accuracy_arcsec", [](const Scanner& s) { return s.angle_accuracy.in_degrees() * 3600; },
+          [](Scanner& s, double arcsec) { s.angle_accuracy = Angle::degrees(arcsec / 3600); },
+          "What a calibration leaves of the vertical index, the collimation and the trunnion axis, in arc seconds, one "
+          "standard deviation each; 0: not stated.")
+      .add<double>(
+          "range_accuracy_mm", [](const Scanner& s) { return s.range_accuracy_m * 1e3; },
+          [](Scanner& s, double mm) { s.range_accuracy_m = mm * 1e-3; },
+          "The same of the offset of ranges.")
+      .add("range_accuracy_ppm", &Scanner::range_accuracy_ppm, "The same of their scale.")
       .add("detection_range_m", &Scanner::detection_range_m,
            "Longest distance from which a surface of detection_reflectivity is detected; 0: every echo is.")
       .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.");

@@ -26,6 +26,7 @@ shared float weights[register_voxels * stations_at_most];  // 1/s²; below 0 if 
 shared float scales[2u * register_voxels];  // units / Σ w of each side
 shared int products[register_voxels * pair_sums];
 shared int surface[register_voxels * 4u];  // weight and place
+shared float means[2u * register_voxels * instrument_errors];  // of what errors move a plane by, over its stations
 shared uint any_seen;
 
 // 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
@@ -70,6 +71,54 @@ float weight_of(RegistrationPatch plane, vec3 head) {
   return facing < 0.0 ? -weight : weight;
 }
 
+// Distance along the normal by which an error of the scanner moves a plane, in units of the largest deviation.
+float deviation_of(RegistrationPatch plane, vec3 head, vec3 start, uint error) {
+  precise float x = head.x - plane.point.x;
+  precise float y = head.y - plane.point.y;
+  precise float z = head.z - plane.point.z;
+  precise float xx = x * x;
+  precise float yy = y * y;
+  precise float zz = z * z;
+  precise float level = xx + yy;
+  precise float sum = level + zz;
+  precise float square = max(sum, 1e-6);
+  precise float nx = plane.normal.x * x;
+  precise float ny = plane.normal.y * y;
+  precise float nz = plane.normal.z * z;
+  precise float nxy = nx + ny;
+  precise float along = nxy + nz;
+  precise float moved;
+  if (error == 4u) {
+    moved = along * push.scale;
+  } else if (error == 3u) {
+    precise float facing = along * exact_inverse_sqrt(square);
+    moved = facing * push.offset;
+  } else {
+    precise float least_level = square * least_sin_zenith_squared;
+    precise float inverse_level = exact_inverse_sqrt(max(level, least_level));
+    precise float begun_y = start.x * y;
+    precise float begun_x = start.y * x;
+    precise float side = begun_y - begun_x;
+    const float angle = side < 0.0 ? -push.angle : push.angle;
+    if (error == 0u) {
+      precise float lifted = z * along;
+      precise float sunk = square * plane.normal.z;
+      precise float difference = lifted - sunk;
+      precise float upwards = difference * inverse_level;
+      moved = upwards * angle;
+    } else {
+      precise float across_x = plane.normal.y * x;
+      precise float across_y = plane.normal.x * y;
+      precise float across = across_x - across_y;
+      precise float sideways = across * inverse_level;
+      precise float range = square * exact_inverse_sqrt(square);
+      precise float by = (error == 1u ? range : z) * sideways;
+      moved = by * angle;
+    }
+  }
+  return min(max(moved, -1.0), 1.0);
+}
+
 // Adds to a 64-bit sum, low word first.
 void add_wide(uint at, int64_t value) {
   if (value == 0l) return;
@@ -99,6 +148,15 @@ void main() {
   }
   const uint j = i + 1u + rest;
   const uint station = thread % n, station_slices = register_pairs / n, station_slice = thread / n;
+  // Stations times errors: a thread each, over all workgroups of pairs.
+  const bool instrument = push.angle > 0.0 || push.offset > 0.0 || push.scale > 0.0;
+  const uint errors_here = instrument && instrument_errors * n > first_pair
+                               ? min(instrument_errors * n - first_pair, register_pairs) : 0u;
+  const uint error_slices = errors_here > 0u ? register_pairs / errors_here : 0u;
+  const uint error_slice = errors_here > 0u ? thread / errors_here : 0u;
+  const uint erring = errors_here > 0u ? (first_pair + thread % errors_here) / instrument_errors : 0u;
+  const uint error = errors_here > 0u ? (first_pair + thread % errors_here) % instrument_errors : 0u;
+  int64_t deviations[6] = {0l, 0l, 0l, 0l, 0l, 0l};
   int64_t sums[pair_sums], moments[station_sums];
   for (uint k = 0u; k < pair_sums; ++k) sums[k] = 0l;
   for (uint k = 0u; k < station_sums; ++k) moments[k] = 0l;
@@ -156,7 +214,50 @@ void main() {
       scales[2u * thread] = front_scale;
       scales[2u * thread + 1u] = behind_scale;
     }
+    if (errors_here > 0u)  // uniform
+      for (uint task = thread; task < register_voxels * instrument_errors; task += register_pairs) {
+        const uint v = task / instrument_errors, e = task % instrument_errors;
+        precise float front = 0.0;
+        precise float behind = 0.0;
+        precise float front_total = 0.0;
+        precise float behind_total = 0.0;
+        uvec2 many = uvec2(0u);
+        vec2 last = vec2(0.0);
+        if ((masks[2u * v] | masks[2u * v + 1u]) != 0u) {
+          const RegistrationPatch plane = push.patches.at[first + v];
+          for (uint s = 0u; s < n; ++s) {
+            const float weight = weights[v * n + s];
+            if (weight == 0.0) continue;
+            const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + s],
+                                             push.starts.at[s], e);
+            precise float weighted = abs(weight) * moved;
+            if (weight > 0.0) front = front + weighted, front_total = front_total + weight, ++many.x, last.x = moved;
+            if (weight < 0.0) behind = behind + weighted, behind_total = behind_total - weight, ++many.y, last.y = moved;
+          }
+        }
+        precise float front_mean = front * exact_reciprocal(front_total);
+        precise float behind_mean = behind * exact_reciprocal(behind_total);
+        // One station alone is tied to none: its difference is 0, exactly.
+        means[2u * task] = many.x > 1u ? front_mean : last.x;
+        means[2u * task + 1u] = many.y > 1u ? behind_mean : last.y;
+      }
     barrier();
+    if (error_slice < error_slices)
+      for (uint v = error_slice; v < register_voxels; v += error_slices) {
+        if (!sees(v, erring)) continue;
+        const float weight = weights[v * n + erring];
+        if (weight == 0.0) continue;
+        const RegistrationPatch plane = push.patches.at[first + v];
+        const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + erring],
+                                         push.starts.at[erring], error);
+        precise float apart = moved - means[2u * (v * instrument_errors + error) + (weight < 0.0 ? 1u : 0u)];
+        precise float scaled = abs(weight) * push.units;
+        precise float share = scaled * apart;
+        precise float quanta = share * deviation_quanta;
+        precise float rounded = quanta + 0.5;
+        const int64_t whole = int64_t(int(floor(rounded)));
+        for (uint c = 0u; c < 6u; ++c) deviations[c] += whole * int64_t(plane.jacobian[c]);
+      }
     if (pair_slice < pair_slices)
       for (uint v = pair_slice; v < register_voxels; v += pair_slices) {
         if (!sees(v, i) || !sees(v, j)) continue;
@@ -192,4 +293,8 @@ void main() {
   if (gl_WorkGroupID.y == 0u && station_slice < station_slices)
     for (uint k = 0u; k < station_sums; ++k)
       add_wide(of_network + 2u * (pairs * pair_sums + station * station_sums + k), moments[k]);
+  if (error_slice < error_slices)
+    for (uint c = 0u; c < 6u; ++c)
+      add_wide(of_network + 2u * (pairs * pair_sums + n * station_sums + erring * instrument_sums +
+                                  c * instrument_errors + error), deviations[c]);
 }

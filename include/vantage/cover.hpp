@@ -139,6 +139,9 @@ struct CoverProblem {
   std::size_t most = std::numeric_limits<std::size_t>::max();  ///< Largest number of further candidates.
   double coverage = 1;                                         ///< Wanted coverage.
   double link = 0;  ///< Least overlap of the links that connect the network; 0: it need not be connected.
+  /// Violation that min_connected_cover() has a further candidate make up for where no network is feasible. 0: any that
+  /// helps is taken, however little.
+  double least_help = 0;
 };
 
 /// A network, and bounds on others.

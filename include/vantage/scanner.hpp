@@ -53,6 +53,12 @@ struct Scanner {
   /// incidence. 0: it detects every echo within range.
   double detection_range_m = 0;
   double detection_reflectivity = 0.9;
+  /// Errors that a calibration leaves and all scans of the instrument share, one standard deviation each: of the
+  /// vertical index, the collimation and the trunnion axis; of the offset of ranges, and of their scale. They are part
+  /// of the registration error, and not of simulated scans. 0: not stated.
+  Angle angle_accuracy = Angle::radians(0);
+  double range_accuracy_m = 0;
+  double range_accuracy_ppm = 0;
   /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;

@@ -25,8 +25,8 @@ std::string mixed_text(const MixedPoints& mixed, std::uint64_t points);
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
                           std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {});
 
-/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "on site" or "to do") and
-/// its text.
+/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "on site" or
+/// "to do") and its text.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };

@@ -197,6 +197,9 @@ class Scanner:
         noise: Optional[Dict[str, npt.ArrayLike]] = None,
         beam_divergence_mrad: float = 0.0,
         exit_diameter_mm: float = 0.0,
+        angle_accuracy_arcsec: float = 0.0,
+        range_accuracy_mm: float = 0.0,
+        range_accuracy_ppm: float = 0.0,
         detection_range_m: float = 0.0,
         detection_reflectivity: float = 0.9,
     ) -> None: ...
@@ -216,6 +219,9 @@ class Scanner:
     noise: Optional[Dict[str, Any]]
     beam_divergence_mrad: float
     exit_diameter_mm: float
+    angle_accuracy_arcsec: float
+    range_accuracy_mm: float
+    range_accuracy_ppm: float
     detection_range_m: float
     detection_reflectivity: float
     @property
@@ -800,6 +806,7 @@ class Site:
         range: Setting = None,
         noise: Setting = None,
         beam: Setting = None,
+        calibration: Setting = None,
         detection: Setting = None,
         rate: Setting = None,
         user_size: Setting = None,
@@ -855,6 +862,7 @@ class Site:
         range: Setting = None,
         noise: Setting = None,
         beam: Setting = None,
+        calibration: Setting = None,
         detection: Setting = None,
         rate: Setting = None,
         user_size: Setting = None,

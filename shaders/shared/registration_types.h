@@ -20,7 +20,10 @@ struct RegistrationPatch {
 };
 VANTAGE_CONST uint pair_sums = 21;         // the upper triangle, row by row, of J Jᵀ
 VANTAGE_CONST uint station_sums = 10;      // moments 1, x, y, z, xx, xy, xz, yy, yz, zz
-VANTAGE_CONST float least_cosine = 0.01f;  // below it, the visible side is uncertain
+VANTAGE_CONST uint instrument_errors = 5;  // vertical index, collimation, trunnion axis, range offset, range scale
+VANTAGE_CONST uint instrument_sums = 30;   // of J times each
+VANTAGE_CONST float deviation_quanta = 8192.0f;  // of the unit in which moved planes are rounded
+VANTAGE_CONST float least_cosine = 0.01f;        // below it, the visible side is uncertain
 // Above and below the head, rays are no denser than at 3°.
 VANTAGE_CONST float least_sin_zenith_squared = 0.0025f;
 
@@ -30,8 +33,9 @@ VANTAGE_CONST uint register_pairs = 128;  // per workgroup
 // Sums of many networks: 64 bits each, [network][sum], pairs first.
 struct RegisterPush {
   VANTAGE_ADDRESS(RegistrationPatches) patches;
-  VANTAGE_ADDRESS(Uints) masks;  // [network][word][voxel]
-  VANTAGE_ADDRESS(Vec3s) heads;  // [network][heads_stride], by place
+  VANTAGE_ADDRESS(Uints) masks;   // [network][word][voxel]
+  VANTAGE_ADDRESS(Vec3s) heads;   // [network][heads_stride], by place
+  VANTAGE_ADDRESS(Vec3s) starts;  // by place: directions in which scans begin
   VANTAGE_ADDRESS(Uints) station_counts;
   VANTAGE_ADDRESS(Uints) sums;
   VANTAGE_ADDRESS(Floats) sigma;  // 0: ranges are exact
@@ -43,6 +47,10 @@ struct RegisterPush {
   float units;         // units in which weights are rounded
   float noise_min_range;
   float noise_inverse_span;
+  // Errors of the scanner, in units of the largest deviation of a plane. All 0: not summed.
+  float angle;
+  float offset;
+  float scale;
 };
 
 VANTAGE_SHARED_END

@@ -17,18 +17,13 @@ constexpr std::size_t kOneByOne = 128;
 // Step by which the required weakest link grows.
 constexpr double kLinkStep = 0.02;
 
-// Violation that a further station has to make up for where no network is feasible. Else a hundred stations that
-// capture next to nothing would come before a loft that no link reaches.
-constexpr double kWorthAStation = 0.005;
-
-// A feasible network is better than any other, the fewer stations the better.
-bool is_better(const CoverSolution& a, const CoverSolution& b) {
-  if (a.violation == 0 || b.violation == 0)
-    return std::pair(a.violation, a.chosen.size()) < std::pair(b.violation, b.chosen.size());
-  const auto cost = [](const CoverSolution& one) {
-    return one.violation + kWorthAStation * static_cast<double>(one.chosen.size());
+// A feasible network is better than any other, the fewer stations the better. Among others a further station has to
+// help by `least_help`.
+bool is_better(const CoverSolution& a, const CoverSolution& b, double least_help) {
+  const auto cost = [least_help](const CoverSolution& one) {
+    return one.violation == 0 ? 0 : one.violation + least_help * static_cast<double>(one.chosen.size());
   };
-  return cost(a) < cost(b);
+  return std::pair(cost(a), a.chosen.size()) < std::pair(cost(b), b.chosen.size());
 }
 
 // Places of the chosen candidates that may leave; the one with the least violation first.
@@ -89,18 +84,18 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
   if (from_start && best.violation > 0 && placed() < problem.most && !stop.stop_requested()) {
     CoverSolution before = std::exchange(best, evaluate_cover(problem, grow_connected(problem, columns, best.chosen)));
     swap();
-    if (is_better(before, best)) best = std::move(before);
+    if (is_better(before, best, problem.least_help)) best = std::move(before);
   }
   if (best.violation > 0 && problem.graph && best.chosen.size() <= kOneByOne && !stop.stop_requested()) {
     CoverSolution other = grow_one_by_one(problem, columns, stop);
-    if (is_better(other, best)) best = std::move(other);
+    if (is_better(other, best, problem.least_help)) best = std::move(other);
   }
   if (best.violation > 0 && problem.graph && !stop.stop_requested()) {
     CoverSolution other =
         evaluate_cover(problem, grow_connected(problem, columns, problem.existing, Links::left_for_gain));
     if (other.violation > 0 && !stop.stop_requested())
       other = evaluate_cover(problem, tabu.run(other.chosen, problem.link));
-    if (is_better(other, best)) best = std::move(other);
+    if (is_better(other, best, problem.least_help)) best = std::move(other);
   }
   // One fewer while that is no worse, even if the network is not feasible.
   while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {

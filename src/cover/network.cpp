@@ -69,6 +69,7 @@ void check(const CoverProblem& problem) {
     throw Error(Errc::invalid_argument, "cover: a graph of " + std::to_string(problem.graph->size()) +
                                             " stations for " + std::to_string(candidates) + " candidates");
   check_number(problem.link, "cover: the least overlap of a link", not_negative);
+  check_number(problem.least_help, "cover: the least help of a further candidate", not_negative);
   if (problem.link > 0 && !problem.graph)
     throw Error(Errc::invalid_argument, "cover: a connected network is asked for, but no graph of overlaps is given");
 }

@@ -52,6 +52,10 @@ std::optional<double> sigma_of(const Scanner& scanner, const PlacedStation& stat
     const double noise = table_sigma(scanner.noise, range, kDiffuse);
     variance += 3 * noise * noise / points;
   }
+  // The mean over the axes of what a calibration leaves: angles move a centre across the line, the offset and the scale
+  // of ranges along it.
+  const double across = scanner.angle_accuracy.in_radians() * range, scale = scanner.range_accuracy_ppm * 1e-6 * range;
+  variance += (2 * across * across + scanner.range_accuracy_m * scanner.range_accuracy_m + scale * scale) / 3;
   return std::sqrt(variance);
 }
 

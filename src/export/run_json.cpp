@@ -97,6 +97,7 @@ ordered_json registration_json(const RegistrationError& error, const Estimate& w
                         {"head_axes_mm", {mm(station.axes[0]), mm(station.axes[1]), mm(station.axes[2])}}});
   return {{"error_mm", whole_mm.value},
           {"standard_error_mm", whole_mm.standard_error},
+          {"random_mm", 1e3 * error.random_m},
           {"worst_mm", 1e3 * error.worst_m},
           {"worst_station", error.worst_station + 1},
           {"stations", std::move(stations)}};

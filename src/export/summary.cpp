@@ -101,6 +101,12 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
   return advice;
 }
 
+// Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
+constexpr double kLeastTenth = 0.05;
+// Share of the random error from which on the errors of the instrument are told to be checked.
+constexpr double kMuchRandom = 1.2;
+std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
+
 // " S4 (61 mm), S7 (40 mm) and 3 more": stations whose part of the surface misses the class.
 std::string beyond_text(const Evaluation& evaluation, const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 3;
@@ -117,25 +123,34 @@ std::string beyond_text(const Evaluation& evaluation, const std::vector<std::str
   return text + (beyond.size() > kNamed ? " and " + std::to_string(beyond.size() - kNamed) + " more" : "");
 }
 
-// "to about 2.1 mm, as predicted, with 6 targets (28.5 mm without); LOA30 (15 mm at 95 %) is met with 10.9 mm to spare"
+// "to about 2.1 mm, as predicted (0.8 mm of it random), with 6 targets (28.5 mm without); LOA30 (15 mm at 95 %) is met
+// with 10.9 mm to spare"
 std::string registered_text(const Evaluation& evaluation, const Estimate& registered,
                             const std::vector<std::string>& names) {
-  constexpr double kLeastPrinted_mm = 0.005;
   const double rms_mm = registered.value, sampling_mm = registered.standard_error;
-  std::string text = "to about " + fixed(rms_mm, 2) +
-                     (sampling_mm >= kLeastPrinted_mm ? " ± " + fixed(sampling_mm, 2) : "") + " mm, as predicted";
+  std::string text = (rms_mm < kLeastTenth ? "to " : "to about ") + tenths(rms_mm) +
+                     (sampling_mm >= kLeastTenth ? " ± " + tenths(sampling_mm) : "") + " mm, as predicted";
+  if (evaluation.registration) {
+    const RegistrationError& error = *evaluation.registration;
+    text += error.random_m < error.rms_m
+                ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves)"
+                : " by random errors alone (the scanner states no calibration)";
+  }
   const auto by = static_cast<std::size_t>(
       std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
   if (!evaluation.targets.empty()) {
     text += ", with " + std::to_string(by) + (by == 1 ? " target that ties" : " targets that tie") + " scans together";
-    if (evaluation.without_targets_m) text += " (" + fixed(1000 * *evaluation.without_targets_m, 2) + " mm without)";
+    if (evaluation.without_targets_m) text += " (" + tenths(1000 * *evaluation.without_targets_m) + " mm without)";
   }
   if (evaluation.registration && evaluation.registration->absolute_rms_m)
-    text += ", and to " + fixed(1000 * *evaluation.registration->absolute_rms_m, 2) + " mm in the site's frame";
+    text += ", and to " + tenths(1000 * *evaluation.registration->absolute_rms_m) + " mm in the site's frame";
   const double error_mm = 1000 * error_at_95_percent(rms_mm / 1000),
                most_mm = 1000 * largest_error_m(evaluation.accuracy_class);
   const std::string name = to_string(evaluation.accuracy_class) + " (" + number(most_mm) + " mm at 95 %)";
   const std::string beyond = beyond_text(evaluation, names);
+  // Half a millimetre is what a calibration of the day leaves, whatever a prediction says.
+  if (error_mm <= most_mm && evaluation.accuracy_class == AccuracyClass::loa50)
+    return text + "; " + name + " is within reach, and no prediction promises it: check it on site";
   if (error_mm <= most_mm)
     return text + "; " + name + " is met with " + fixed(most_mm - error_mm, 1) + " mm to spare" +
            (beyond.empty() ? "" : ", but not at" + beyond);
@@ -204,6 +219,11 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   const bool several = std::ranges::count_if(evaluation.stations, active) > 1;  // one scan is registered to nothing
   if (several && registered != evaluation.values.end() && std::isfinite(registered->second.value))
     lines.push_back({"registered", registered_text(evaluation, registered->second, names)});
+  if (several && evaluation.registration &&
+      evaluation.registration->rms_m > kMuchRandom * evaluation.registration->random_m)
+    lines.push_back({"to check",
+                     "a target more than 30° above or below the heads of two stations: level sights hide an error of "
+                     "the scanner's vertical index"});
   if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
@@ -475,8 +495,8 @@ std::string registration_jump_text(std::span<const TradeOffPoint> points) {
   }
   if (!worse) return {};
   const auto stations = [](const TradeOffPoint& point) { return std::to_string(point.stations.size()); };
-  std::string text = stations(*worse) + " stations register to " + fixed(value(*worse, "registration"), 2) + " mm, " +
-                     stations(*fewer) + " to " + fixed(value(*fewer, "registration"), 2) +
+  std::string text = stations(*worse) + " stations register to " + tenths(value(*worse, "registration")) + " mm, " +
+                     stations(*fewer) + " to " + tenths(value(*fewer, "registration")) +
                      " mm: each number is a network of its own, chosen by what it captures";
   const double weak = value(*worse, "link"), strong = value(*fewer, "link");
   if (weak < strong)
@@ -510,7 +530,7 @@ std::string trade_off_text(const PlanResult& result) {
     const auto registered = point.values.find("registration");
     const bool known = registered != point.values.end() && std::isfinite(registered->second.value);
     text += cell(std::to_string(point.stations.size()), 8) + cell(percent(point.values.at("capture").value), 11) +
-            cell(known ? fixed(registered->second.value, 2) + " mm" : "–", known ? 12 : 14) + "  " +
+            cell(known ? fixed(registered->second.value, 1) + " mm" : "–", known ? 12 : 14) + "  " +
             (point.minutes_on_site ? duration(60 * *point.minutes_on_site) : "–") +
             (point.answer ? "  <- the plan" : "") + (point.knee ? "  <- beyond this each station gains less" : "") +
             "\n";

@@ -101,22 +101,32 @@ RegistrationError RegistrationAdjustment::error() const {
   result.poses.resize(sums_.heads.size());
   result.centre = sums_.centre;
   if (!(mass_ > 0)) {
-    result.rms_m = result.worst_m = std::sqrt(3.0) * options_.position_m;
+    result.rms_m = result.random_m = result.worst_m = std::sqrt(3.0) * options_.position_m;
     return result;
   }
   const Vector3d centre = centre_ * sums_.radius_m;
   result.centre = result.centre + Vec3{centre.x(), centre.y(), centre.z()};
   result.scale_m = scale_ * sums_.radius_m;
-  const PartialInverse absolute = own_covariances();
-  const auto covariances = relative_covariances(absolute);
-  double total = 0, absolute_total = 0;
+  const MatrixXd mean = this->mean(), instrument = this->instrument();
+  MatrixXd right(mean.cols(), mean.rows() + instrument.cols());
+  right << mean.transpose(), instrument;
+  PartialInverse absolute = inverse_times(right);
+  const MatrixXd motions = absolute.times.rightCols(instrument.cols());  // by each error of the instrument
+  absolute.times.conservativeResize(Eigen::NoChange, mean.rows());
+  const MatrixXd mean_motion = mean * motions;
+  auto covariances = relative_covariances(absolute, mean);
+  double total = 0, random_total = 0, absolute_total = 0;
+  const Eigen::Index d = unknowns_, skipped = 6 - d;
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     const std::size_t place = stations_[k];
-    const double squares = std::max((moments_[k].quadratic() * covariances[k]).trace(), 0.0);
+    const Matrix6d quadratic = moments_[k].quadratic();
+    random_total += std::max((quadratic * covariances[k]).trace(), 0.0);
+    const MatrixXd motion = motions.middleRows(static_cast<Eigen::Index>(k) * d, d), relative = motion - mean_motion;
+    covariances[k].block(skipped, skipped, d, d) += relative * relative.transpose();
+    absolute.blocks[k] += motion * motion.transpose();
+    const double squares = std::max((quadratic * covariances[k]).trace(), 0.0);
     total += squares;
-    const Eigen::Index skipped = 6 - unknowns_;
-    absolute_total +=
-        (moments_[k].quadratic().block(skipped, skipped, unknowns_, unknowns_) * absolute.blocks[k]).trace();
+    absolute_total += (quadratic.block(skipped, skipped, d, d) * absolute.blocks[k]).trace();
     StationError& station = result.stations[place];
     station.rms_m = moments_[k].mass > 0 ? std::sqrt(squares / moments_[k].mass) : 0;
     if (station.rms_m > result.worst_m) {
@@ -127,7 +137,7 @@ RegistrationError RegistrationAdjustment::error() const {
     describe_head(station, at_head * covariances[k] * at_head.transpose());
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.poses[place].data()) = covariances[k];
   }
-  result.rms_m = std::sqrt(total / mass_);
+  result.rms_m = std::sqrt(total / mass_), result.random_m = std::sqrt(random_total / mass_);
   const auto tied_to_the_site = [](const RegistrationTarget& target) {
     return target.control_m > 0 && !target.seen_by.empty();
   };
@@ -153,17 +163,31 @@ MatrixXd RegistrationAdjustment::mean() const {
   return sum.completeOrthogonalDecomposition().solve(metric);
 }
 
-PartialInverse RegistrationAdjustment::own_covariances() const {
+PartialInverse RegistrationAdjustment::inverse_times(const MatrixXd& right) const {
   const Eigen::Index d = unknowns_;
-  const MatrixXd mean = this->mean();
-  if (stations_.size() >= kSparseStations) return partial_inverse(sparse_information(), d, mean.transpose());
+  if (stations_.size() >= kSparseStations) return partial_inverse(sparse_information(), d, right);
   const MatrixXd all = covariance();
-  PartialInverse own{.blocks = {}, .times = all * mean.transpose()};
+  PartialInverse own{.blocks = {}, .times = all * right};
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k) * d;
     own.blocks.emplace_back(all.block(at, at, d, d));
   }
   return own;
+}
+
+MatrixXd RegistrationAdjustment::instrument() const {
+  constexpr auto errors = static_cast<Eigen::Index>(RegistrationSums::instrument_errors);
+  const Eigen::Index d = unknowns_;
+  if (sums_.instrument.empty()) return MatrixXd(static_cast<Eigen::Index>(stations_.size()) * d, 0);
+  using Sums = Eigen::Matrix<double, 6, errors, Eigen::RowMajor>;
+  const Matrix6d moved = from_sums();
+  MatrixXd all(static_cast<Eigen::Index>(stations_.size()) * d, errors);
+  for (std::size_t k = 0; k < stations_.size(); ++k) {
+    const Eigen::Map<const Sums> own(sums_.instrument.data() +
+                                     stations_[k] * static_cast<std::size_t>(Sums::SizeAtCompileTime));
+    all.middleRows(static_cast<Eigen::Index>(k) * d, d) = share_ * (moved * own).bottomRows(d);
+  }
+  return all;
 }
 
 MatrixXd RegistrationAdjustment::metric() const {
@@ -207,10 +231,16 @@ Matrix6d RegistrationAdjustment::information_of(std::size_t i, std::size_t j) co
   Matrix6d h;
   for (int a = 0; a < 6; ++a)
     for (int b = a; b < 6; ++b) h(a, b) = h(b, a) = *sum++ * share_;
+  const Matrix6d moved = from_sums();
+  return moved * h * moved.transpose();
+}
+
+// Takes J of the sums to J about the surface's centre and in its scale.
+Matrix6d RegistrationAdjustment::from_sums() const {
   Matrix6d moved = Matrix6d::Identity();
   moved.topLeftCorner<3, 3>() /= scale_;
   moved.topRightCorner<3, 3>() = -cross_matrix(centre_) / scale_;
-  return moved * h * moved.transpose();
+  return moved;
 }
 
 // Prior of tilt, heading and head.
@@ -312,9 +342,10 @@ MatrixXd RegistrationAdjustment::of_unknowns(const MatrixXd& all) const {
 
 // Covariance of each station's unknowns without the best-fitting motion of the whole: (I − 1 B) C (I − 1 B)ᵀ. B x is
 // that motion, the mean of the stations' motions in the metric of the surface that each sees.
-std::vector<Matrix6d> RegistrationAdjustment::relative_covariances(const PartialInverse& c) const {
+std::vector<Matrix6d> RegistrationAdjustment::relative_covariances(const PartialInverse& c,
+                                                                   const MatrixXd& mean) const {
   const Eigen::Index d = unknowns_, skipped = 6 - d;
-  const MatrixXd of_mean = mean() * c.times;
+  const MatrixXd of_mean = mean * c.times;
   std::vector<Matrix6d> all;
   for (std::size_t k = 0; k < moments_.size(); ++k) {
     const MatrixXd cross = c.times.middleRows(static_cast<Eigen::Index>(k) * d, d);

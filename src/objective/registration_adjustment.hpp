@@ -47,6 +47,8 @@ class RegistrationAdjustment {
   RegistrationAdjustment(const RegistrationSums& sums, double share, const RegistrationSums& covered,
                          const RegistrationOptions& options, std::span<const RegistrationTarget> targets);
 
+  // The errors that all scans of an instrument share (`RegistrationSums::instrument`) are unknown and not estimated:
+  // their effect is added, C + K Kᵀ with K = C · instrument().
   RegistrationError error() const;
 
   // What a further target would bring, without adjusting anew. A column of unknowns has `unknowns()` entries for each
@@ -64,9 +66,12 @@ class RegistrationAdjustment {
   Eigen::Vector3d head(std::size_t place) const;
   Eigen::Vector3d scaled(const Vec3& from_sums_centre) const;
   Matrix6d information_of(std::size_t i, std::size_t j) const;
+  Matrix6d from_sums() const;
   Matrix6d prior_of(std::size_t place) const;
   Eigen::MatrixXd mean() const;
-  PartialInverse own_covariances() const;
+  PartialInverse inverse_times(const Eigen::MatrixXd& right) const;
+  // Σ Jᵀ w (b − b̄) of all unknowns: × errors of the instrument; no columns if none are stated.
+  Eigen::MatrixXd instrument() const;
   std::size_t pair(std::size_t i, std::size_t j) const;  // its first sum
   bool tied(std::size_t i, std::size_t j) const;
   Eigen::MatrixXd information() const;
@@ -76,7 +81,7 @@ class RegistrationAdjustment {
   template <class Add>
   void for_targets(const Add& add) const;
   Eigen::MatrixXd of_unknowns(const Eigen::MatrixXd& all) const;
-  std::vector<Matrix6d> relative_covariances(const PartialInverse& covariances) const;
+  std::vector<Matrix6d> relative_covariances(const PartialInverse& covariances, const Eigen::MatrixXd& mean) const;
 
   const RegistrationSums& sums_;
   double share_;  // voxels of the site over counted voxels

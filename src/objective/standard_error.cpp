@@ -45,6 +45,7 @@ NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
                        .heads = registration.heads,
                        .pairs = registration.pairs,
                        .surface = registration.surface,
+                       .instrument = registration.instrument,
                        .groups = {}};
   return rest;
 }
@@ -77,6 +78,7 @@ void take_off(RegistrationSums& rest, const RegistrationSums& group) {
     subtract(rest.pairs, group.pairs);
   }
   subtract(rest.surface, group.surface);
+  subtract(rest.instrument, group.instrument);
 }
 
 // `of` each delete-one-group replicate; empty if there are fewer than two groups.

@@ -21,6 +21,10 @@ constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
+// Violation that a further station has to make up for where nothing feasible is found and only stations that pay are
+// asked for. Else a hundred stations that capture next to nothing would come before a loft that no link reaches.
+constexpr double kLeastHelp = 0.005;
+
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
 
@@ -58,6 +62,7 @@ FewestAsked fewest_asked(const SurveyProblem& problem) {
   asked.most_coverage = limit == 0 && searched && asked.fewest == asked.most;
   if (asked.most_coverage) asked.captured = problem.objectives.front().needs.attainable;
   if (asked.captured) asked.whole = problem.attainable.value_or(1);
+  if (problem.pays_m2) asked.least_help = kLeastHelp;
   asked.coverage = asked.most_coverage ? 1 : std::min(limit / asked.whole, 1.0);
   return asked;
 }
@@ -87,7 +92,8 @@ CoverProblem cover_problem(const FewestChoice& choice) {
           .fewest = asked.fewest - std::min(asked.fewest, visiting),
           .most = asked.most - visiting,
           .coverage = asked.coverage + (asked.coverage > 0 ? choice.margins.coverage : 0),
-          .link = asked.link};
+          .link = asked.link,
+          .least_help = asked.least_help};
 }
 
 void look(CandidateTable& table, std::span<const PlacedStation> existing, std::span<const PlacedStation> candidates,

@@ -28,6 +28,7 @@ struct FewestAsked {
   bool most_coverage = false;          // the latter
   double link = 0, apart_m = 0;        // 0: not asked
   std::optional<double> minutes = {};  // on site, at most
+  double least_help = 0;               // as of the covering problem
 
   // The measure that `coverage` is.
   const char* measure() const { return captured ? "capture" : "coverage"; }

@@ -199,11 +199,10 @@ class TargetChooser {
 };
 
 // Places for targets, in the order of their choice: the fewest that greedy choice finds, without those that later ones
-// made needless. Returns nothing if it was stopped.
+// made needless. `allowed`: mean square of random errors, m². Returns nothing if it was stopped.
 std::optional<std::vector<std::size_t>> choose(TargetChooser& chooser, std::span<const Target> places,
                                                std::vector<Target> there, std::size_t stations,
-                                               const TargetOptions& options, const Progress& progress) {
-  const double allowed = allowed_rms_m(options) * allowed_rms_m(options);
+                                               const TargetOptions& options, double allowed, const Progress& progress) {
   std::vector<std::size_t> chosen;
   std::vector<bool> open(places.size(), true);
   while (chosen.size() < options.most && (chooser.mean_square() > allowed || chosen.size() < options.least)) {
@@ -278,7 +277,12 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   const RegistrationAdjustment adjustment(inputs.held_by, inputs.share, inputs.covered, registration, sighted);
   if (!adjustment.covers_something() || places.empty()) return proposal;
   TargetChooser chooser(adjustment, all_places);
-  const auto chosen = choose(chooser, places, proposal.targets, adjustment.stations().size(), options, progress);
+  // Targets lower random errors most; the instrument's are taken to stay.
+  const auto square = [](double x) { return x * x; };
+  const double allowed =
+      std::max(square(allowed_rms_m(options)) - (square(proposal.with.rms_m) - square(proposal.with.random_m)), 0.0);
+  const auto chosen =
+      choose(chooser, places, proposal.targets, adjustment.stations().size(), options, allowed, progress);
   if (!chosen) return std::nullopt;
   std::set<std::string> names;
   for (const Target& target : proposal.targets) names.insert(target.name);

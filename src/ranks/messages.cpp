@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kLeastCounts = 31, kLeastStation = sizeof(TraceStation::origin) + 3,
                       kLeastScanner = 1 + sizeof(NoiseModel::min_range) + sizeof(NoiseModel::inverse_span) +
                                       sizeof(NoiseModel::seed) + sizeof(NoiseModel::reach) +
-                                      sizeof(PatchScanner::density);
+                                      sizeof(PatchScanner::density) + sizeof(PatchScanner::angle) +
+                                      sizeof(PatchScanner::offset_m) + sizeof(PatchScanner::scale);
 
 // Members of each struct, in the order in which they are sent. `Archive` is a Writer or a Reader.
 
@@ -38,7 +39,7 @@ void pass_sums(Archive& archive, T& sums) {
   archive.array(sums.heads);
   if (sums.heads.empty()) return;
   archive.raw(sums.voxels), archive.raw(sums.centre), archive.raw(sums.radius_m);
-  archive.array(sums.pairs), archive.array(sums.surface);
+  archive.array(sums.pairs), archive.array(sums.surface), archive.array(sums.instrument);
 }
 
 template <class Archive, class T>
@@ -195,7 +196,7 @@ void pass(Writer& writer, const RegistrationJob& job) {
   writer.whole(job.scanners.size());
   for (const PatchScanner& scanner : job.scanners) {
     pass_noise(writer, *scanner.noise);
-    writer.raw(scanner.density);
+    writer.raw(scanner.density), writer.raw(scanner.angle), writer.raw(scanner.offset_m), writer.raw(scanner.scale);
   }
 }
 
@@ -208,7 +209,7 @@ void pass(Reader& reader, RegistrationJob& job) {
     auto noise = std::make_shared<NoiseModel>();
     pass_noise(reader, *noise);
     scanner.noise = std::move(noise);
-    reader.raw(scanner.density);
+    reader.raw(scanner.density), reader.raw(scanner.angle), reader.raw(scanner.offset_m), reader.raw(scanner.scale);
   }
 }
 

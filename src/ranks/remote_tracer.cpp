@@ -15,8 +15,10 @@ std::vector<NetworkCounts> none_of(std::size_t networks) {
 
 // The comparer keeps the models alive, so that no address is reused.
 bool same_scanners(const std::vector<PatchScanner>& a, const std::vector<PatchScanner>& b) {
-  return std::ranges::equal(
-      a, b, [](const PatchScanner& x, const PatchScanner& y) { return x.noise == y.noise && x.density == y.density; });
+  return std::ranges::equal(a, b, [](const PatchScanner& x, const PatchScanner& y) {
+    return x.noise == y.noise && x.density == y.density && x.angle == y.angle && x.offset_m == y.offset_m &&
+           x.scale == y.scale;
+  });
 }
 
 }  // namespace

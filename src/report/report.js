@@ -134,7 +134,7 @@
     tradeOffChart(at('trade-off-chart'), report.trade_off);
     at('registration-jump').textContent = report.registration_jump;
     at('trade-off-table').replaceChildren(table(['Stations', 'Captured', 'Registered to', 'On site', ''], report.trade_off.map((p) => [
-      p.stations, `${percent(p.capture)} ± ${percent(p.capture_se)}`, p.registration === null ? null : `${p.registration.toFixed(2)} mm`,
+      p.stations, `${percent(p.capture)} ± ${percent(p.capture_se)}`, p.registration === null ? null : `${tenths(p.registration)} mm`,
       p.minutes_on_site === null ? null : duration(60 * p.minutes_on_site), p.answer ? 'the plan' : p.knee ? 'knee' : '']), [4]));
   }
   if (report.axes.length) {

@@ -122,6 +122,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"values", std::move(values)},
                        {"coverage", network.value("coverage")},
                        {"captured", nullptr},
+                       {"random_mm", nullptr},
                        {"minutes_on_site", nullptr},
                        {"summary", std::move(summary)},
                        {"stations", stations_json(network)},
@@ -133,6 +134,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
   }
   json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
+  if (network.registration) json["random_mm"] = 1e3 * network.registration->random_m;
   if (network.visit) json["minutes_on_site"] = network.visit->minutes;
   if (const auto links = network.links()) {
     json["parts"] = links->parts.size();

@@ -287,7 +287,7 @@ void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, Accura
   if (worst_met) {
     words += missed.empty() ? "It is met everywhere: " : "It is met in ";
     words += missed.empty() ? "" : std::to_string(met) + " of " + std::to_string(accuracy.places.size()) + " places: ";
-    words += "the worst there is " + worst_met->name + " with " + fixed(1000 * worst_met->worst_m, 2) + " mm. ";
+    words += "the worst there is " + worst_met->name + " with " + fixed(1000 * worst_met->worst_m, 1) + " mm. ";
   }
   if (!missed.empty()) words += "Not met in those below, the worst first; beyond: share of the seen surface with more.";
   sheet.words(Sheet::kMargin, words, {.size = 9, .colour = kFaintInk});

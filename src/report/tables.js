@@ -14,6 +14,7 @@ function element(name, attributes = {}, ...children) {
 const percent = (share, digits = 1) => `${(100 * share).toFixed(digits)} %`;
 const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, '\u2009');
 const metres = (v) => v.toFixed(3);
+const tenths = (mm) => (mm < 0.05 ? 'less than 0.1' : mm.toFixed(1)); // of a prediction, whose hundredths mean nothing
 function duration(seconds) {
   const minutes = Math.round(seconds / 60);
   return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
@@ -51,7 +52,8 @@ function figures(holder, network) {
   if (registered)
     tiles.push(registered.value === null
       ? tile('Registered', 'Not known', 'surfaces do not hold the scans together', true)
-      : tile('Registered', `${registered.value.toFixed(2)} mm`, `${!network.confirmed && registered.standard_error > 0 ? `± ${registered.standard_error.toFixed(2)} mm, ` : ''}predicted error of the scans`));
+      : tile('Registered', `${tenths(registered.value)} mm`, `${!network.confirmed && registered.standard_error >= 0.05 ? `± ${tenths(registered.standard_error)} mm, ` : ''}predicted error of the scans`
+        + (network.random_mm === null ? '' : network.random_mm < registered.value ? `, random ${tenths(network.random_mm)} mm` : ', random alone')));
   if (network.minutes_on_site !== null) tiles.push(tile('On site', duration(60 * network.minutes_on_site), 'with setting up and walking'));
   holder.replaceChildren(...tiles);
 }
@@ -133,8 +135,8 @@ function accuracyTable(holder, wordsHolder, accuracy) {
   wordsHolder.textContent = `Predicted registration error at 95 % by ${accuracy.by}, the worst first; ${accuracy.class} allows ${accuracy.allowed_mm} mm.`;
   const kShown = 20;
   holder.replaceChildren(...foldedTable([accuracy.by === 'room' ? 'Room' : 'Mesh', 'Mean (mm)', 'Worst place (mm)', 'Beyond the class', ''],
-    accuracy.rows.map((r) => [r.name, r.mean_mm.toFixed(2), r.worst_mm.toFixed(2), percent(r.beyond),
-      r.beyond > 0 ? element('span', { class: 'tag weak' }, 'not met') : 'met']), [0, 4], kShown, (n) => `${n} more`));
+    accuracy.rows.map((r) => [r.name, tenths(r.mean_mm), tenths(r.worst_mm), percent(r.beyond),
+      r.beyond > 0 ? element('span', { class: 'tag weak' }, 'not met') : accuracy.class === 'LOA50' ? 'predicted' : 'met']), [0, 4], kShown, (n) => `${n} more`));
 }
 
 function roomTable(holder, rooms) {

@@ -164,7 +164,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
   node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
              "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
-             "default_setting", "noise", "detection"});
+             "default_setting", "noise", "detection", "angle_accuracy_arcsec", "range_accuracy_mm",
+             "range_accuracy_ppm"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -200,6 +201,10 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   if (node.has("beam_divergence_mrad"))
     scanner.beam_divergence = Angle::radians(node.member("beam_divergence_mrad").figure() * 1e-3);
   if (node.has("exit_diameter_mm")) scanner.exit_diameter_m = node.member("exit_diameter_mm").figure() * 1e-3;
+  if (node.has("angle_accuracy_arcsec"))
+    scanner.angle_accuracy = Angle::degrees(node.member("angle_accuracy_arcsec").figure() / 3600);
+  if (node.has("range_accuracy_mm")) scanner.range_accuracy_m = node.member("range_accuracy_mm").figure() * 1e-3;
+  if (node.has("range_accuracy_ppm")) scanner.range_accuracy_ppm = node.member("range_accuracy_ppm").figure();
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
   if (node.has("detection")) {
     const Node detection = node.member("detection");

@@ -103,6 +103,11 @@ void Scanner::check() const {
     refuse("detection_range_m", detection_range_m, "from 0 to 1e6");
   if (!(detection_reflectivity > 0 && detection_reflectivity <= 1))
     refuse("detection_reflectivity", detection_reflectivity, "above 0 and at most 1");
+  const double arcsec = angle_accuracy.in_degrees() * 3600;
+  if (!(arcsec >= 0 && arcsec <= 3600)) refuse("angle_accuracy in arc seconds", arcsec, "from 0 to 3600");
+  if (!(range_accuracy_m >= 0 && range_accuracy_m <= 1)) refuse("range_accuracy_m", range_accuracy_m, "from 0 to 1");
+  if (!(range_accuracy_ppm >= 0 && range_accuracy_ppm <= 10'000))
+    refuse("range_accuracy_ppm", range_accuracy_ppm, "from 0 to 10000");
   check_number(points_per_second, "scanner: points_per_second", measurable);
   check_noise(noise);
 }

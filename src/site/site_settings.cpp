@@ -178,6 +178,13 @@ void add_scanner(Rows& rows) {
       .advanced()
       .by_scene()
       .by_preset()
+      .numbers("calibration", "ARCSEC,MM,PPM",
+               "Errors that a calibration leaves, which all scans share: of angles in arc seconds, and of the offset "
+               "and the scale of ranges, one standard deviation each",
+               &SiteOptions::calibration, 3, not_negative)
+      .advanced()
+      .by_scene()
+      .by_preset()
       .optional("detection", "M,R",
                 "Longest distance, in metres, from which the scanner detects a surface of reflectivity R, 0 to 1; off: "
                 "every echo",

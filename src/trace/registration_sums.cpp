@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -18,7 +19,9 @@ namespace {
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
 constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
-static_assert(of_pair == pair_sums && of_station == station_sums);
+constexpr std::size_t of_errors = 6 * RegistrationSums::instrument_errors;
+static_assert(of_pair == pair_sums && of_station == station_sums && of_errors == instrument_sums);
+using Deviations = std::array<float, RegistrationSums::instrument_errors>;
 constexpr double least_share = 0.5;       // smallest share of one plane in a voxel's surface, and in that around it
 constexpr double least_area = 1e-3;       // in faces; anything smaller is a corner that no scan resolves
 constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer has no normal to register by
@@ -27,6 +30,7 @@ constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer h
 constexpr double flat_part = 0.5;
 constexpr double widest_fit_m = 1;  // largest surface for a normal's fit, however large patches are
 
+constexpr double kReach = 4;  // of a scan, in half diagonals of the grid's cube; planes farther away are moved no more
 constexpr double largest_section = 1.5;  // in faces: a plane's section of a cube is at most 3√3/4
 
 int quantised(double x) { return static_cast<int>(std::lround(x * patch_unit)); }
@@ -36,13 +40,14 @@ __extension__ using Wide = __int128;
 // Sums of one block, or of several.
 template <class Number>
 struct Accumulator {
-  std::vector<Number> pairs, surface;
-  Accumulator(std::size_t stations, std::size_t pairs_kept)
-      : pairs(pairs_kept * of_pair), surface(stations * of_station) {}
+  std::vector<Number> pairs, surface, instrument;
+  Accumulator(std::size_t stations, std::size_t pairs_kept, bool errors)
+      : pairs(pairs_kept * of_pair), surface(stations * of_station), instrument(errors ? stations * of_errors : 0) {}
   template <class Other>
   void add(const Accumulator<Other>& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
     for (std::size_t k = 0; k < surface.size(); ++k) surface[k] += other.surface[k];
+    for (std::size_t k = 0; k < instrument.size(); ++k) instrument[k] += other.instrument[k];
   }
 };
 
@@ -56,8 +61,10 @@ struct View {
 struct Head {
   Float3 origin;
   std::optional<Float3> axis;  // set if the scanner is turned
+  Float3 start;                // direction in which its scan begins
   const RangeNoise* noise = nullptr;
   float density = 1;
+  float angle = 0, offset = 0, scale = 0;  // errors, in units of the largest deviation
 };
 
 // w = 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
@@ -90,6 +97,41 @@ View view_of(const RegistrationPatch& patch, const Head& head) {
     variance = variance + along * along * exact_reciprocal(points);
   }
   return {exact_reciprocal(variance), facing < 0};
+}
+
+// Distances along the normal by which the scanner's errors move a plane, in units of the largest deviation. The two
+// faces of a mirror see errors of angles with opposite signs.
+Deviations deviations_of(const RegistrationPatch& patch, const Head& head) {
+  const float x = head.origin.x - patch.point.x, y = head.origin.y - patch.point.y, z = head.origin.z - patch.point.z;
+  const float xx = x * x, yy = y * y, zz = z * z;
+  float level = xx + yy;
+  const float square = std::max(level + zz, 1e-6f);
+  const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
+  const float nxy = nx + ny;
+  const float along = nxy + nz;
+  float height = z, up = patch.normal.z, across = patch.normal.y * x - patch.normal.x * y,
+        side = head.start.x * y - head.start.y * x;
+  if (head.axis) {
+    const Float3& a = *head.axis;
+    height = x * a.x + y * a.y + z * a.z;
+    level = std::max(square - height * height, 0.0f);
+    up = patch.normal.x * a.x + patch.normal.y * a.y + patch.normal.z * a.z;
+    const Float3 turned{a.y * z - a.z * y, a.z * x - a.x * z, a.x * y - a.y * x};  // axis × v
+    across = patch.normal.x * turned.x + patch.normal.y * turned.y + patch.normal.z * turned.z;
+    side = -(head.start.x * turned.x + head.start.y * turned.y + head.start.z * turned.z);
+  }
+  const float inverse = exact_inverse_sqrt(square);
+  const float least_level = square * least_sin_zenith_squared;
+  const float inverse_level = exact_inverse_sqrt(std::max(level, least_level));
+  const float sideways = across * inverse_level;
+  const float lifted = height * along, sunk = square * up;
+  const float upwards = (lifted - sunk) * inverse_level;
+  const float range = square * inverse;
+  const float angle = side < 0 ? -head.angle : head.angle;
+  const float collimation = range * sideways, trunnion = height * sideways, facing = along * inverse;
+  Deviations moved{upwards * angle, collimation * angle, trunnion * angle, facing * head.offset, along * head.scale};
+  for (float& one : moved) one = std::min(std::max(one, -1.0f), 1.0f);
+  return moved;
 }
 
 VANTAGE_TARGET_CLONES
@@ -167,22 +209,35 @@ std::vector<std::uint64_t> shared_of(const SeenBy& seen_by, std::size_t stations
 
 class Heads {
  public:
-  Heads(std::span<const PatchScanner> scanners, std::span<const TraceStation> stations, std::size_t count)
-      : heads_(count) {
+  Heads(std::span<const PatchScanner> scanners, double deviation, std::span<const TraceStation> stations,
+        std::size_t count)
+      : heads_(count), deviation_(deviation) {
+    const auto in_units = [&](float error) { return deviation > 0 ? static_cast<float>(error / deviation) : 0; };
     for (const PatchScanner& scanner : scanners) noise_.emplace_back(scanner.noise);
     for (const TraceStation& station : stations) {
-      heads_[station.place] = {station.origin, std::nullopt, &noise_[station.scanner],
-                               scanners[station.scanner].density};
-      if (station.turn) heads_[station.place].axis = Float3{station.turn->x.z, station.turn->y.z, station.turn->z.z};
+      const PatchScanner& scanner = scanners[station.scanner];
+      heads_[station.place] = {station.origin,
+                               std::nullopt,
+                               scan_start(station.place),
+                               &noise_[station.scanner],
+                               scanner.density,
+                               in_units(scanner.angle),
+                               in_units(scanner.offset_m),
+                               in_units(scanner.scale)};
+      if (!station.turn) continue;
+      heads_[station.place].axis = Float3{station.turn->x.z, station.turn->y.z, station.turn->z.z};
+      heads_[station.place].start = Float3{station.turn->x.x, station.turn->y.x, station.turn->z.x};
     }
   }
   Heads(const Heads&) = delete;
   const Head& operator[](std::size_t place) const { return heads_[place]; }
   std::size_t size() const { return heads_.size(); }
+  double deviation() const { return deviation_; }  // unit of the scanners' errors; 0: none are stated
 
  private:
   std::vector<RangeNoise> noise_;  // by scanner
   std::vector<Head> heads_;        // by place
+  double deviation_;
 };
 
 class Summer {
@@ -199,10 +254,10 @@ class Summer {
     const std::size_t voxels = patches_.patches.size(), some = voxels > first ? (voxels - first + step - 1) / step : 0,
                       blocks = (some + patches_a_block - 1) / patches_a_block;
     return parallel::reduce(
-        tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(heads_.size(), pairs_.size()),
+        tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(heads_.size(), pairs_.size(), errors()),
         [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
           for (std::size_t b = range.begin(); b != range.end(); ++b) {
-            Accumulator<std::int64_t> here(heads_.size(), pairs_.size());
+            Accumulator<std::int64_t> here(heads_.size(), pairs_.size(), errors());
             for (std::size_t k = b * patches_a_block; k < std::min(some, (b + 1) * patches_a_block); ++k)
               add_voxel(first + k * step, here);
             sums.add(here);
@@ -216,13 +271,15 @@ class Summer {
   }
 
  private:
+  bool errors() const { return heads_.deviation() > 0; }
+
   void add_voxel(std::size_t k, Accumulator<std::int64_t>& sums) const {
     std::array<std::uint16_t, max_stations> places;
     const auto seen = std::span(places).first(seen_by_.stations_of(k, places));
     if (seen.empty()) return;
     const RegistrationPatch& patch = patches_.patches[k];
     add_surface(patch, seen, sums.surface.data());
-    if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums.pairs.data());
+    if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums);
   }
 
   // Adds moments of the covered surface; the stations that see a voxel share it.
@@ -237,7 +294,8 @@ class Summer {
     }
   }
 
-  void add_pairs(const RegistrationPatch& patch, std::span<const std::uint16_t> seen, std::int64_t* sums) const {
+  void add_pairs(const RegistrationPatch& patch, std::span<const std::uint16_t> seen,
+                 Accumulator<std::int64_t>& sums) const {
     // Stations on either side of the plane.
     std::array<std::array<std::uint16_t, max_stations>, 2> places;
     std::array<std::array<float, max_stations>, 2> weights;
@@ -270,7 +328,37 @@ class Summer {
           shared[length] = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
           columns[length] = pairs_.number(i, places[side][b]);
         }
-        add_products(sums, products.data(), shared.data(), columns.data(), length);
+        add_products(sums.pairs.data(), products.data(), shared.data(), columns.data(), length);
+      }
+      if (errors())
+        add_errors(patch, std::span(places[side]).first(many[side]), std::span(weights[side]).first(many[side]),
+                   total[side], sums.instrument.data());
+    }
+  }
+
+  // Adds w_i (b_i − b̄) J of the stations on one side of a plane.
+  void add_errors(const RegistrationPatch& patch, std::span<const std::uint16_t> places, std::span<const float> weights,
+                  float total, std::int64_t* sums) const {
+    std::array<Deviations, max_stations> moved;
+    Deviations mean{};
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      moved[k] = deviations_of(patch, heads_[places[k]]);
+      for (std::size_t e = 0; e < mean.size(); ++e) {
+        const float weighted = weights[k] * moved[k][e];
+        mean[e] = mean[e] + weighted;
+      }
+    }
+    const float inverse = exact_reciprocal(total);
+    for (float& one : mean) one = one * inverse;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const float scaled = weights[k] * units_;
+      std::int64_t* of = sums + places[k] * of_errors;
+      for (std::size_t e = 0; e < mean.size(); ++e) {
+        const float apart = moved[k][e] - mean[e];
+        const float share = scaled * apart;
+        const float quanta = share * deviation_quanta;
+        const auto whole = static_cast<std::int64_t>(std::floor(quanta + 0.5f));
+        for (std::size_t c = 0; c < 6; ++c) of[c * mean.size() + e] += whole * patch.jacobian[c];
       }
     }
   }
@@ -282,9 +370,10 @@ class Summer {
   float units_;
 };
 
-// `pairs` and `surface`: of all stations.
+// `pairs`, `surface` and `instrument`: of all stations. `deviation`: unit of the latter.
 template <class Number>
-RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> surface, const Patches& patches,
+RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> surface,
+                         std::span<const Number> instrument, double deviation, const Patches& patches,
                          std::span<const TraceStation> stations, std::size_t count) {
   RegistrationSums sums;
   sums.centre = patches.centre;
@@ -297,24 +386,29 @@ RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> 
   constexpr std::array<int, of_station> order{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
   for (std::size_t k = 0; k < surface.size(); ++k)
     sums.surface.push_back(static_cast<double>(surface[k]) * 0x1p-15 / std::pow(patch_unit, order[k % of_station]));
+  const double moved = patches.largest / static_cast<double>(patch_weight_units) / patch_unit * deviation /
+                       static_cast<double>(deviation_quanta);
+  for (const Number& sum : instrument) sums.instrument.push_back(static_cast<double>(sum) * moved);
   return sums;
 }
 
 // Of every pair.
-RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs, const Patches& patches,
-                         std::span<const TraceStation> stations, std::size_t count) {
+RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs, double deviation,
+                         const Patches& patches, std::span<const TraceStation> stations, std::size_t count) {
   if (pairs.all() <= pairs.size())
-    return to_sums(std::span(all.pairs).first(pairs.all() * of_pair), std::span(all.surface), patches, stations, count);
+    return to_sums(std::span(all.pairs).first(pairs.all() * of_pair), std::span(all.surface), std::span(all.instrument),
+                   deviation, patches, stations, count);
   std::vector<Wide> whole(pairs.all() * of_pair);
   for (std::size_t p = 0; p < pairs.size(); ++p)
     std::ranges::copy(std::span(all.pairs).subspan(p * of_pair, of_pair),
                       whole.begin() + static_cast<std::ptrdiff_t>(pairs.pair(p) * of_pair));
-  return to_sums(std::span<const Wide>(whole), std::span(all.surface), patches, stations, count);
+  return to_sums(std::span<const Wide>(whole), std::span(all.surface), std::span(all.instrument), deviation, patches,
+                 stations, count);
 }
 
 // Only of the pairs whose sums in the whole are not 0. Squares are among the sums, so others are 0 in every part.
 RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulator<Wide>& whole,
-                                 const PairNumbers& pairs, const Patches& patches,
+                                 const PairNumbers& pairs, double deviation, const Patches& patches,
                                  std::span<const TraceStation> stations, std::size_t count) {
   std::vector<Wide> kept;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -323,10 +417,25 @@ RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulato
     const auto of_part = std::span(part.pairs).subspan(p * of_pair, of_pair);
     kept.insert(kept.end(), of_part.begin(), of_part.end());
   }
-  return to_sums(std::span<const Wide>(kept), std::span(part.surface), patches, stations, count);
+  return to_sums(std::span<const Wide>(kept), std::span(part.surface), std::span(part.instrument), deviation, patches,
+                 stations, count);
 }
 
 }  // namespace
+
+double deviation_unit(const Patches& patches, std::span<const PatchScanner> scanners) {
+  const double reach = kReach * patches.radius;
+  double largest = 0;
+  for (const PatchScanner& scanner : scanners)
+    largest = std::max({largest, scanner.angle * reach, static_cast<double>(scanner.offset_m), scanner.scale * reach});
+  return largest;
+}
+
+Float3 scan_start(std::uint32_t place) {
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double azimuth = golden * place;
+  return {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth)), 0};
+}
 
 std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, const Patches& patches) {
   const std::size_t voxels = patches.patches.size(), groups = sums.size() - 1;
@@ -387,18 +496,20 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
   const bool large = station_count > mask_bits;
   const PairNumbers pairs =
       large ? PairNumbers(station_count, shared_of(seen_by, station_count)) : PairNumbers(station_count);
-  const Heads heads(scanners, stations, station_count);
+  const double deviation = deviation_unit(patches, scanners);
+  const Heads heads(scanners, deviation, stations, station_count);
   const Summer summer(patches, heads, pairs, seen_by);
-  if (groups == 0) return with_voxels({to_sums(summer.sum(0, 1), pairs, patches, stations, station_count)}, patches);
-  std::vector<Accumulator<Wide>> parts(groups, Accumulator<Wide>(0, 0));
+  if (groups == 0)
+    return with_voxels({to_sums(summer.sum(0, 1), pairs, deviation, patches, stations, station_count)}, patches);
+  std::vector<Accumulator<Wide>> parts(groups, Accumulator<Wide>(0, 0, false));
   parallel::for_all(std::uint32_t{0}, groups, [&](std::uint32_t g) { parts[g] = summer.sum(g, groups); });
-  Accumulator<Wide> whole(station_count, pairs.size());
+  Accumulator<Wide> whole(station_count, pairs.size(), deviation > 0);
   for (const Accumulator<Wide>& part : parts) whole.add(part);
-  std::vector<RegistrationSums> sums{to_sums(whole, pairs, patches, stations, station_count)};
+  std::vector<RegistrationSums> sums{to_sums(whole, pairs, deviation, patches, stations, station_count)};
   for (Accumulator<Wide>& part : parts) {
-    sums.push_back(large ? to_sums_of_part(part, whole, pairs, patches, stations, station_count)
-                         : to_sums(part, pairs, patches, stations, station_count));
-    part = Accumulator<Wide>(0, 0);
+    sums.push_back(large ? to_sums_of_part(part, whole, pairs, deviation, patches, stations, station_count)
+                         : to_sums(part, pairs, deviation, patches, stations, station_count));
+    part = Accumulator<Wide>(0, 0, false);
   }
   return with_voxels(std::move(sums), patches);
 }
@@ -408,16 +519,20 @@ std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std
                                             std::span<const TraceStation> stations, const NetworkCounts& counts,
                                             const StationMasks& masks) {
   const PairNumbers pairs(counts.stations, counts.shared);
-  const Heads heads(scanners, stations, counts.stations);
-  Accumulator<Wide> whole(counts.stations, pairs.size());
   std::shared_ptr<const Patches> patches;
+  std::optional<Heads> heads;
+  std::optional<Accumulator<Wide>> whole;
   for (std::size_t first = 0; first < masks.voxels() || !patches; first += part_voxels) {
     patches = patches_from(first, std::min(part_voxels, masks.voxels() - first));
     if (!patches) return std::nullopt;
+    if (!heads) {  // all parts are of one grid
+      heads.emplace(scanners, deviation_unit(*patches, scanners), stations, counts.stations);
+      whole.emplace(counts.stations, pairs.size(), heads->deviation() > 0);
+    }
     const SeenBy seen_by{.words = {}, .voxels = patches->patches.size(), .kept = &masks, .first = first};
-    whole.add(Summer(*patches, heads, pairs, seen_by).sum(0, 1));
+    whole->add(Summer(*patches, *heads, pairs, seen_by).sum(0, 1));
   }
-  RegistrationSums sums = to_sums(whole, pairs, *patches, stations, counts.stations);
+  RegistrationSums sums = to_sums(*whole, pairs, heads->deviation(), *patches, stations, counts.stations);
   sums.voxels = masks.voxels();
   return sums;
 }
@@ -440,9 +555,11 @@ void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums
 }
 
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
-                                   std::uint32_t station_count, std::span<const std::int64_t> sums) {
-  const std::size_t count = station_count, pairs = count * (count - 1) / 2 * of_pair;
-  return with_voxels({to_sums(sums.first(pairs), sums.subspan(pairs, count * of_station), patches, stations, count)},
+                                   std::uint32_t station_count, std::span<const std::int64_t> sums, double deviation) {
+  const std::size_t count = station_count, pairs = count * (count - 1) / 2 * of_pair, moments = count * of_station;
+  return with_voxels({to_sums(sums.first(pairs), sums.subspan(pairs, moments),
+                              sums.subspan(pairs + moments, deviation > 0 ? count * of_errors : 0), deviation, patches,
+                              stations, count)},
                      patches)
       .front();
 }

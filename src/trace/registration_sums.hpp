@@ -50,7 +50,20 @@ Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<c
 struct PatchScanner {
   std::shared_ptr<const NoiseModel> noise;  // not enabled if ranges are exact
   float density = 1;                        // its ray density relative to the scanner for which the patches were made
+  // Errors that all its scans share, one standard deviation each: radians, metres, share of the range.
+  float angle = 0, offset_m = 0, scale = 0;
+
+  bool states_errors() const { return angle > 0 || offset_m > 0 || scale > 0; }
 };
+
+// Unit of the distances by which a scanner's errors move planes, metres; they are rounded to a `deviation_quanta`-th.
+// 0: no scanner states errors.
+double deviation_unit(const Patches& patches, std::span<const PatchScanner> scanners);
+
+// Horizontal direction in which a scan begins: one face of the mirror sees what lies left of it, the other what lies
+// right. A scanner that turns all the way is set up in any direction, so upright scans begin in directions of their
+// own, by the golden angle. Otherwise errors that change sign with the face would cancel between scans.
+Float3 scan_start(std::uint32_t place);
 
 // Request for `NetworkCounts::registration` beside the counts of a sample, with masks.
 struct RegistrationJob {
@@ -90,8 +103,9 @@ std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, co
 // Number of voxels whose whole numbers fit in 64 bits together, signed: 2^15 of weight times 2^30 of two components of
 // J.
 inline constexpr std::size_t patches_in_64_bits = std::size_t{1} << 17;
-// Converts whole numbers summed by an engine: `sums` of each pair, then of each station.
+// Converts whole numbers summed by an engine: `sums` of each pair, of each station, and, unless `deviation` is 0, of
+// the errors of each station's scanner.
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
-                                   std::uint32_t station_count, std::span<const std::int64_t> sums);
+                                   std::uint32_t station_count, std::span<const std::int64_t> sums, double deviation);
 
 }  // namespace vantage

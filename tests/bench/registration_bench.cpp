@@ -41,6 +41,7 @@ struct Options {
   std::string site = "office", csv;
   std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000, samples = 0;
   std::uint64_t sample = std::numeric_limits<std::uint64_t>::max(), seed = 1;
+  std::vector<double> calibration = {0, 0, 0};  // arc seconds, millimetres, millionths
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
   bool growing = false;
   std::vector<std::string> plans;  // tables of stations: networks that are given
@@ -290,7 +291,10 @@ void run(const Options& o) {
                         .height_m = 1.7,
                         .min_range_m = 0.5,
                         .max_range_m = 60,
-                        .noise = rtc360_noise()};
+                        .noise = rtc360_noise(),
+                        .angle_accuracy = Angle::degrees(o.calibration[0] / 3600),
+                        .range_accuracy_m = o.calibration[1] * 1e-3,
+                        .range_accuracy_ppm = o.calibration[2]};
   std::optional<Site> opened;
   std::optional<Scene> made;
   if (own) {
@@ -324,7 +328,9 @@ void run(const Options& o) {
               static_cast<std::size_t>(simulator.voxel_count()), simulator.voxel_size_m(), scans.size());
   std::fflush(stdout);
 
-  const AdjustmentTruth truth;
+  const AdjustmentTruth truth{.angle = scanner.angle_accuracy.in_radians(),
+                              .range_m = scanner.range_accuracy_m,
+                              .range_share = scanner.range_accuracy_ppm * 1e-6};
   std::ofstream csv;
   if (!o.csv.empty()) {
     csv.open(o.csv);
@@ -434,6 +440,9 @@ int main(int argc, char** argv) {
   app.add_option("--samples", o.samples, "Tell how far so many of these are off every voxel, and adjust nothing");
   app.add_flag("--growing", o.growing,
                "Tell how far the sample of evaluations by every ray is off every voxel, and adjust nothing");
+  app.add_option("--calibration", o.calibration, "What it leaves: arc seconds, millimetres, millionths")
+      ->delimiter(',')
+      ->expected(3);
   app.add_option("--step", o.step_deg, "Of the scanner, degrees");
   app.add_option("--user-size", o.user_size_m, "Of voxels, metres");
   app.add_option("--connected", o.connected, "Least overlap of the weakest link of the strongest tree");

@@ -73,6 +73,27 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return m;
 }
 
+// An instrument's errors in one trial.
+struct Instrument {
+  double index = 0, collimation = 0, trunnion = 0, offset_m = 0, scale = 0;
+
+  // Where the scan that begins in direction `start` has a point: its range and angles, changed and read back.
+  Vector3d measured(const Vector3d& head, double start, const Vector3d& point) const {
+    const Vector3d v = point - head;
+    const double range = v.norm(), level = std::max(std::hypot(v.x(), v.y()), 0.05 * range);
+    double azimuth = std::atan2(v.y(), v.x()), zenith = std::atan2(level, v.z());
+    const double face = std::sin(azimuth - start) > 0 ? 1 : -1;
+    azimuth += face * (collimation * range + trunnion * v.z()) / level;
+    zenith += face * index;
+    const double wrong = range * (1 + scale) + offset_m;
+    // Off by as much as from the place that unchanged angles give: that is `point` but for the clamp above it.
+    const Vector3d to(std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith));
+    const double before = std::atan2(level, v.z()), around = std::atan2(v.y(), v.x());
+    const Vector3d from(std::sin(before) * std::cos(around), std::sin(before) * std::sin(around), std::cos(before));
+    return point + wrong * to - range * from;
+  }
+};
+
 double sigma_of(const NoiseTable& table, double range, double reflectivity) {
   if (table.empty()) return 0;
   const auto cell = [](const std::vector<double>& nodes, double x) {
@@ -209,6 +230,14 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
     shift[i] = shift0[i] = disturbance(truth.position_m, truth.position_m, truth.position_m);
     turn[i] = rotation(turn0[i]);
   }
+  Instrument instrument;
+  std::vector<double> starts(n, 0.0);
+  if (truth.angle > 0 || truth.range_m > 0 || truth.range_share > 0) {
+    instrument = {gauss(random) * truth.angle, gauss(random) * truth.angle, gauss(random) * truth.angle,
+                  gauss(random) * truth.range_m, gauss(random) * truth.range_share};
+    std::uniform_real_distribution<double> any(0, 2 * EIGEN_PI);
+    for (double& start : starts) start = any(random);
+  }
   // Error of each scan along a point's normal.
   std::vector<std::vector<float>> wrong(n);
   for (std::size_t i = 0; i < n; ++i) wrong[i].assign(scans[i]->points.size(), std::numeric_limits<float>::quiet_NaN());
@@ -216,7 +245,9 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
     float& w = wrong[i][k];
     if (std::isnan(w)) {
       const std::uint64_t own = seed * 1000 + i;
+      const Vector3d point = scans[i]->points[k].cast<double>();
       w = static_cast<float>(
+          scans[i]->normals[k].cast<double>().dot(instrument.measured(scans[i]->head, starts[i], point) - point) +
           modelling_error(own, scans[i]->points[k].cast<double>(), scans[i]->normals[k].cast<double>(), truth) +
           normal_of(own ^ 0xABCDEFull << 32, k) * std::sqrt(double(scans[i]->variances[k])));
     }

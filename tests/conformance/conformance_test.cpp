@@ -592,7 +592,9 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
     const auto patches = std::make_shared<const Patches>(make_patches(surfaces, *site.grid, sample, *site.pattern, {}));
     for (const auto& [noisy, groups] : {std::pair{false, false}, {true, false}, {true, true}}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (groups ? ", groups" : ""));
-      const RegistrationJob registration{patches, {{noisy ? site.noise : site.no_noise}}, groups};
+      PatchScanner scanner{.noise = noisy ? site.noise : site.no_noise};
+      if (noisy) scanner.angle = 7e-5f, scanner.offset_m = 1e-3f, scanner.scale = 1e-5f;
+      const RegistrationJob registration{patches, {scanner}, groups};
       std::vector<std::vector<std::uint64_t>> masks(networks.size());
       Tracer::SampleJob job{sample, 20, true, 0};
       job.station_masks = [&](std::size_t first, std::span<const std::uint64_t> of) {
@@ -608,9 +610,13 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
         const auto expected = sum_patches(registration, networks[n], sizes[n], masks[n], 20);
         EXPECT_EQ(counts[n].registration.pairs, expected[0].pairs) << n;
         EXPECT_EQ(counts[n].registration.surface, expected[0].surface) << n;
+        EXPECT_EQ(counts[n].registration.instrument, expected[0].instrument) << n;
+        EXPECT_EQ(expected[0].instrument.empty(), !noisy) << n;
         EXPECT_EQ(counts[n].registration.heads.size(), sizes[n]);
         for (std::size_t g = 0; groups && g < 20; ++g)
           EXPECT_EQ(counts[n].registration.groups[g].pairs, expected[g + 1].pairs) << n << ' ' << g;
+        for (std::size_t g = 0; groups && g < 20; ++g)
+          EXPECT_EQ(counts[n].registration.groups[g].instrument, expected[g + 1].instrument) << n << ' ' << g;
         any = any || std::ranges::any_of(expected[0].pairs, [](double sum) { return sum != 0; });
       }
       EXPECT_TRUE(any);

@@ -20,10 +20,16 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   upload_patches(job);
   const auto networks = static_cast<std::uint32_t>(of.networks.size());
   const std::uint32_t most = *std::ranges::max_element(of.station_counts), pairs = most * (most - 1) / 2;
-  std::vector<vec3> heads(std::size_t{networks} * most);
+  // Of all networks, then the directions in which scans begin.
+  std::vector<vec3> heads((std::size_t{networks} + 1) * most);
   for (std::size_t n = 0; n < networks; ++n)
     for (const TraceStation& s : of.networks[n]) heads[n * most + s.place] = {s.origin.x, s.origin.y, s.origin.z};
-  const std::uint32_t stride = pairs * pair_sums + most * station_sums;
+  for (std::uint32_t place = 0; place < most; ++place) {
+    const Float3 start = scan_start(place);
+    heads[std::size_t{networks} * most + place] = {start.x, start.y, start.z};
+  }
+  const double deviation = deviation_unit(*job.patches, job.scanners);
+  const std::uint32_t stride = pairs * pair_sums + most * (station_sums + (deviation > 0 ? instrument_sums : 0));
   std::vector<std::int64_t> sums(std::size_t{networks} * stride);
   ensure(registration_.heads, heads.size() * sizeof(vec3), "registration heads");
   ensure(registration_.sums, sums.size() * sizeof(std::int64_t), "registration sums");
@@ -34,6 +40,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.patches = registration_.patches.address();
   push.masks = sums_.masks.address();
   push.heads = registration_.heads.address();
+  push.starts = registration_.heads.address() + std::uint64_t{networks} * most * sizeof(vec3);
   push.station_counts = sums_.station_counts.address();
   push.sums = registration_.sums.address();
   push.sigma = registration_.uploaded_noise->enabled() ? registration_.sigma.address() : 0;
@@ -44,6 +51,12 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.units = static_cast<float>(patch_weight_units / job.patches->largest);
   push.noise_min_range = registration_.uploaded_noise->min_range;
   push.noise_inverse_span = registration_.uploaded_noise->inverse_span;
+  if (deviation > 0) {
+    const PatchScanner& scanner = job.scanners.front();
+    push.angle = static_cast<float>(scanner.angle / deviation);
+    push.offset = static_cast<float>(scanner.offset_m / deviation);
+    push.scale = static_cast<float>(scanner.scale / deviation);
+  }
   const auto record = [&](const Recorder& r) {
     r.zero(registration_.sums, 0, sums.size() * sizeof(std::int64_t));
     r.shader_after_transfer();
@@ -55,7 +68,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   std::vector<RegistrationSums> result;
   for (std::size_t n = 0; n < networks; ++n)
     result.push_back(registration_sums(*job.patches, of.networks[n], of.station_counts[n],
-                                       std::span(sums).subspan(n * stride, stride)));
+                                       std::span(sums).subspan(n * stride, stride), deviation));
   return result;
 }
 

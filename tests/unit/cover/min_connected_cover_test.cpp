@@ -84,11 +84,14 @@ TEST(MinConnectedCover, TakesWhatNoLinkReachesBeforeCrumbs) {
   StationGraph graph(matrix.candidates());
   for (std::size_t i = 0; i < loft; ++i)
     for (std::size_t j = 0; j < i; ++j) graph.set_overlap(i, j, 0.5f);
-  const CoverSolution best =
-      min_connected_cover({.matrix = matrix, .graph = &graph, .coverage = 0.88, .link = 0.3}).best;
-  Chosen chosen = best.chosen;
+  CoverProblem problem{.matrix = matrix, .graph = &graph, .coverage = 0.88, .link = 0.3, .least_help = 0.005};
+  Chosen chosen = min_connected_cover(problem).best.chosen;
   std::ranges::sort(chosen);
   EXPECT_EQ(chosen, (Chosen{0, 1, loft}));
+  problem.least_help = 0;
+  const CoverSolution all = min_connected_cover(problem).best;
+  EXPECT_GT(all.chosen.size(), kCrumbs) << "whatever helps is taken";
+  EXPECT_LT(all.violation, evaluate_cover(problem, chosen).violation);
 }
 
 TEST(MinConnectedCover, IsTheFewestThereIs) {

@@ -67,8 +67,11 @@ const std::vector<Change<Scanner>> kScanner{
     {"beam_divergence", [](Scanner& s) { s.beam_divergence = Angle::radians(3e-4); }},
     {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }},
     {"detection_range_m", [](Scanner& s) { s.detection_range_m = 80; }},
+    {"angle_accuracy", [](Scanner& s) { s.angle_accuracy = Angle::degrees(0.005); }},
+    {"range_accuracy_m", [](Scanner& s) { s.range_accuracy_m = 0.001; }},
+    {"range_accuracy_ppm", [](Scanner& s) { s.range_accuracy_ppm = 10; }},
     {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
-static_assert(member_count<Scanner>() == 16);
+static_assert(member_count<Scanner>() == 19);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{

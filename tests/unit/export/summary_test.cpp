@@ -44,7 +44,7 @@ TEST(Summary, SaysWhyMoreStationsRegisterWorse) {
   EXPECT_EQ(registration_jump_text(points), "") << "more stations register better";
   add(10, 8.81, 0.32), add(12, 1.5, 0.4);
   EXPECT_EQ(registration_jump_text(points),
-            "10 stations register to 8.81 mm, 8 to 0.99 mm: each number is a network of its own, chosen by what it "
+            "10 stations register to 8.8 mm, 8 to 1.0 mm: each number is a network of its own, chosen by what it "
             "captures, and the scans of the 10 are held together by a link of 0.32, those of the 8 by one of 0.45");
   points[2].values["link"].value = 0.5;
   EXPECT_TRUE(registration_jump_text(points).ends_with("chosen by what it captures")) << "no link explains it";
@@ -62,14 +62,17 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
     return text;
   };
   network.registration.emplace().stations.resize(5);
-  EXPECT_EQ(told(5), "to about 5.00 mm, as predicted; LOA30 (15 mm at 95 %) is met with 5.2 mm to spare");
+  EXPECT_EQ(told(5),
+            "to about 5.0 mm, as predicted by random errors alone (the scanner states no calibration); LOA30 (15 mm at "
+            "95 %) is met with 5.2 mm to spare");
   network.registration->stations[3].rms_m = 0.01;
-  EXPECT_EQ(
-      told(5),
-      "to about 5.00 mm, as predicted; LOA30 (15 mm at 95 %) is met with 5.2 mm to spare, but not at S4 (19.6 mm)");
+  EXPECT_EQ(told(5),
+            "to about 5.0 mm, as predicted by random errors alone (the scanner states no calibration); LOA30 (15 mm at "
+            "95 %) is met with 5.2 mm to spare, but not at S4 (19.6 mm)");
   for (const std::size_t k : {0, 1, 2}) network.registration->stations[k].rms_m = 0.02 + 0.01 * static_cast<double>(k);
   EXPECT_EQ(told(20),
-            "to about 20.00 mm, as predicted; LOA30 (15 mm at 95 %) is missed by 24.2 mm, most at S3 (78.4 mm), S2 "
+            "to about 20.0 mm, as predicted by random errors alone (the scanner states no calibration); LOA30 (15 mm "
+            "at 95 %) is missed by 24.2 mm, most at S3 (78.4 mm), S2 "
             "(58.8 mm), S1 (39.2 mm) and 1 more");
   const auto advice = [&] { return summary_lines(network).back().text; };
   EXPECT_NE(advice().find("let targets be proposed"), std::string::npos);
@@ -78,9 +81,22 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
   network.targets = {{.name = "T1", .proposed = true, .stations = {0, 1}}};
   EXPECT_NE(advice().find("nor do the proposed targets"), std::string::npos);
   network.registration->stations.assign(5, {});
+  EXPECT_EQ(
+      told(2),
+      "to about 2.0 mm, as predicted by random errors alone (the scanner states no calibration), with 1 target that "
+      "ties scans together (20.0 mm without); LOA30 (15 mm at 95 %) is met with 11.1 mm to spare");
+  network.registration->rms_m = 0.002, network.registration->random_m = 0.0004;
   EXPECT_EQ(told(2),
-            "to about 2.00 mm, as predicted, with 1 target that ties scans together (20.00 mm without); LOA30 "
-            "(15 mm at 95 %) is met with 11.1 mm to spare");
+            "to about 2.0 mm, as predicted (random 0.4 mm, the rest by what a calibration leaves), with 1 target that "
+            "ties scans together (20.0 mm without); LOA30 (15 mm at 95 %) is met with 11.1 mm to spare");
+  EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 1);
+  network.targets.clear(), network.without_targets_m.reset();
+  network.registration->rms_m = network.registration->random_m = 0.00004;
+  network.accuracy_class = AccuracyClass::loa50;
+  EXPECT_EQ(told(0.04),
+            "to less than 0.1 mm, as predicted by random errors alone (the scanner states no calibration); LOA50 "
+            "(1 mm at 95 %) is within reach, and no prediction promises it: check it on site");
+  EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 0);
 }
 
 TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
@@ -96,7 +112,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       summary_text(network),
       "captured   92.0 % ± 1.0 % of what is attainable; 71.2 % ± 0.4 % of the site\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
-      "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met with 12.6 mm to spare\n"
+      "registered to about 1.2 mm, as predicted; LOA30 (15 mm at 95 %) is met with 12.6 mm to spare\n"
       "on site    about 3 h 25 min\n"
       "to do      link S4 to S3, the nearest to it with 0.004: put a station on the way between "
       "them, in a doorway if there is one, or move them closer\n"

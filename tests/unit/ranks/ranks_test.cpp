@@ -126,6 +126,7 @@ void expect_all_equal(const NetworkCounts& got, const NetworkCounts& expected) {
   EXPECT_EQ(got.successive_difference_sum, expected.successive_difference_sum);
   EXPECT_EQ(got.registration.pairs, expected.registration.pairs);
   EXPECT_EQ(got.registration.surface, expected.registration.surface);
+  EXPECT_EQ(got.registration.instrument, expected.registration.instrument);
   EXPECT_EQ(got.registration.radius_m, expected.registration.radius_m);
   EXPECT_FALSE(got.cancelled);
   ASSERT_EQ(got.groups.size(), expected.groups.size());
