@@ -16,7 +16,8 @@ constexpr std::size_t kLeastCounts = 31, kLeastStation = sizeof(TraceStation::or
                       kLeastScanner = 1 + sizeof(NoiseModel::min_range) + sizeof(NoiseModel::inverse_span) +
                                       sizeof(NoiseModel::seed) + sizeof(NoiseModel::reach) +
                                       sizeof(PatchScanner::density) + sizeof(PatchScanner::angle) +
-                                      sizeof(PatchScanner::offset_m) + sizeof(PatchScanner::scale);
+                                      sizeof(PatchScanner::offset_m) + sizeof(PatchScanner::scale) +
+                                      sizeof(PatchScanner::range_m);
 
 // Members of each struct, in the order in which they are sent. `Archive` is a Writer or a Reader.
 
@@ -197,6 +198,7 @@ void pass(Writer& writer, const RegistrationJob& job) {
   for (const PatchScanner& scanner : job.scanners) {
     pass_noise(writer, *scanner.noise);
     writer.raw(scanner.density), writer.raw(scanner.angle), writer.raw(scanner.offset_m), writer.raw(scanner.scale);
+    writer.raw(scanner.range_m);
   }
 }
 
@@ -210,6 +212,7 @@ void pass(Reader& reader, RegistrationJob& job) {
     pass_noise(reader, *noise);
     scanner.noise = std::move(noise);
     reader.raw(scanner.density), reader.raw(scanner.angle), reader.raw(scanner.offset_m), reader.raw(scanner.scale);
+    reader.raw(scanner.range_m);
   }
 }
 

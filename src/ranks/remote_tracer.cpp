@@ -17,7 +17,7 @@ std::vector<NetworkCounts> none_of(std::size_t networks) {
 bool same_scanners(const std::vector<PatchScanner>& a, const std::vector<PatchScanner>& b) {
   return std::ranges::equal(a, b, [](const PatchScanner& x, const PatchScanner& y) {
     return x.noise == y.noise && x.density == y.density && x.angle == y.angle && x.offset_m == y.offset_m &&
-           x.scale == y.scale;
+           x.scale == y.scale && x.range_m == y.range_m;
   });
 }
 

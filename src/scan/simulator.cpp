@@ -328,11 +328,11 @@ struct Simulator::Impl {
         return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
       };
       for (const Scanner& scanner : registered)
-        patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
-                                  static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner)),
-                                  static_cast<float>(scanner.angle_accuracy.in_radians()),
-                                  static_cast<float>(scanner.range_accuracy_m),
-                                  static_cast<float>(scanner.range_accuracy_ppm * 1e-6)});
+        patch_scanners.push_back(
+            {std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
+             static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner)),
+             static_cast<float>(scanner.angle_accuracy.in_radians()), static_cast<float>(scanner.range_accuracy_m),
+             static_cast<float>(scanner.range_accuracy_ppm * 1e-6), static_cast<float>(scanner.max_range_m)});
     }
     return patch_scanners;
   }

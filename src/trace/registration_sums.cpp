@@ -30,7 +30,6 @@ constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer h
 constexpr double flat_part = 0.5;
 constexpr double widest_fit_m = 1;  // largest surface for a normal's fit, however large patches are
 
-constexpr double kReach = 4;  // of a scan, in half diagonals of the grid's cube; planes farther away are moved no more
 constexpr double largest_section = 1.5;  // in faces: a plane's section of a cube is at most 3√3/4
 
 int quantised(double x) { return static_cast<int>(std::lround(x * patch_unit)); }
@@ -423,12 +422,11 @@ RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulato
 
 }  // namespace
 
-double deviation_unit(const Patches& patches, std::span<const PatchScanner> scanners) {
-  const double reach = kReach * patches.radius;
-  double largest = 0;
+double deviation_unit(std::span<const PatchScanner> scanners) {
+  float largest = 0;
   for (const PatchScanner& scanner : scanners)
-    largest = std::max({largest, scanner.angle * reach, static_cast<double>(scanner.offset_m), scanner.scale * reach});
-  return largest;
+    largest = std::max({largest, scanner.angle * scanner.range_m, scanner.offset_m, scanner.scale * scanner.range_m});
+  return static_cast<double>(largest);
 }
 
 Float3 scan_start(std::uint32_t place) {
@@ -496,7 +494,7 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
   const bool large = station_count > mask_bits;
   const PairNumbers pairs =
       large ? PairNumbers(station_count, shared_of(seen_by, station_count)) : PairNumbers(station_count);
-  const double deviation = deviation_unit(patches, scanners);
+  const double deviation = deviation_unit(scanners);
   const Heads heads(scanners, deviation, stations, station_count);
   const Summer summer(patches, heads, pairs, seen_by);
   if (groups == 0)
@@ -519,20 +517,16 @@ std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std
                                             std::span<const TraceStation> stations, const NetworkCounts& counts,
                                             const StationMasks& masks) {
   const PairNumbers pairs(counts.stations, counts.shared);
+  const Heads heads(scanners, deviation_unit(scanners), stations, counts.stations);
+  Accumulator<Wide> whole(counts.stations, pairs.size(), heads.deviation() > 0);
   std::shared_ptr<const Patches> patches;
-  std::optional<Heads> heads;
-  std::optional<Accumulator<Wide>> whole;
   for (std::size_t first = 0; first < masks.voxels() || !patches; first += part_voxels) {
     patches = patches_from(first, std::min(part_voxels, masks.voxels() - first));
     if (!patches) return std::nullopt;
-    if (!heads) {  // all parts are of one grid
-      heads.emplace(scanners, deviation_unit(*patches, scanners), stations, counts.stations);
-      whole.emplace(counts.stations, pairs.size(), heads->deviation() > 0);
-    }
     const SeenBy seen_by{.words = {}, .voxels = patches->patches.size(), .kept = &masks, .first = first};
-    whole->add(Summer(*patches, *heads, pairs, seen_by).sum(0, 1));
+    whole.add(Summer(*patches, heads, pairs, seen_by).sum(0, 1));
   }
-  RegistrationSums sums = to_sums(*whole, pairs, heads->deviation(), *patches, stations, counts.stations);
+  RegistrationSums sums = to_sums(whole, pairs, heads.deviation(), *patches, stations, counts.stations);
   sums.voxels = masks.voxels();
   return sums;
 }

@@ -52,13 +52,12 @@ struct PatchScanner {
   float density = 1;                        // its ray density relative to the scanner for which the patches were made
   // Errors that all its scans share, one standard deviation each: radians, metres, share of the range.
   float angle = 0, offset_m = 0, scale = 0;
-
-  bool states_errors() const { return angle > 0 || offset_m > 0 || scale > 0; }
+  float range_m = 0;  // its longest
 };
 
-// Unit of the distances by which a scanner's errors move planes, metres; they are rounded to a `deviation_quanta`-th.
-// 0: no scanner states errors.
-double deviation_unit(const Patches& patches, std::span<const PatchScanner> scanners);
+// Unit of the distances by which scanners' errors move planes, metres: the largest. They are rounded to a
+// `deviation_quanta`-th. 0: no scanner states errors.
+double deviation_unit(std::span<const PatchScanner> scanners);
 
 // Horizontal direction in which a scan begins: one face of the mirror sees what lies left of it, the other what lies
 // right. A scanner that turns all the way is set up in any direction, so upright scans begin in directions of their

@@ -216,9 +216,10 @@ void judge_sight(Site& site, const PlanEntry& entry, const StationLinks& links, 
     }
 }
 
-void judge_number(const PlanResult& result, Score& score) {
+// `capture`: what the number is judged for.
+void judge_number(const PlanResult& result, double capture, Score& score) {
   const CoverageMatrix matrix = result.candidates->captured_matrix();
-  const StationsBound bound = min_cover({.matrix = matrix, .coverage = kCapture}, {.max_seconds = kBoundSeconds});
+  const StationsBound bound = min_cover({.matrix = matrix, .coverage = capture}, {.max_seconds = kBoundSeconds});
   score.at_least = bound.at_least, score.greedy = bound.chosen.size();
 }
 
@@ -314,6 +315,47 @@ std::vector<std::string> cells(const SweptSite& site, const Score& score) {
           fixed(score.seconds, 0)};
 }
 
+// Least number of steps without a link of any order of the stations, by dynamic programming over sets (Held and Karp: A
+// Dynamic Programming Approach to Sequencing Problems, 1962); empty if they are too many for that.
+std::optional<std::size_t> least_unlinked(const StationLinks& links, std::size_t stations) {
+  constexpr std::size_t kMost = 20;
+  if (stations == 0 || stations > kMost) return std::nullopt;
+  std::vector<std::uint32_t> linked(stations, 0);  // to which others
+  for (std::size_t i = 0; i < stations; ++i)
+    for (std::size_t j = 0; j < stations; ++j)
+      if (i != j && links.values(i, j) >= links.least && links.values(i, j) > 0) linked[i] |= 1u << j;
+  // By visited set and last station.
+  constexpr std::uint8_t kNone = 255;
+  const std::size_t sets = std::size_t{1} << stations;
+  std::vector<std::uint8_t> least(sets * stations, kNone);
+  for (std::size_t k = 0; k < stations; ++k) least[(std::size_t{1} << k) * stations + k] = 0;
+  for (std::size_t set = 1; set < sets; ++set)
+    for (std::size_t last = 0; last < stations; ++last) {
+      const std::uint8_t here = least[set * stations + last];
+      if (here == kNone) continue;
+      for (std::size_t next = 0; next < stations; ++next) {
+        if (set >> next & 1) continue;
+        std::uint8_t& there = least[(set | std::size_t{1} << next) * stations + next];
+        there = std::min(there, static_cast<std::uint8_t>(here + (linked[last] >> next & 1 ? 0 : 1)));
+      }
+    }
+  return *std::min_element(least.end() - static_cast<std::ptrdiff_t>(stations), least.end());
+}
+
+// The round of a plan against the shortest that is found without regard to links.
+std::vector<std::string> round_cells(const SweptSite& swept, Site& site, const PlanEntry& entry,
+                                     const StationLinks& links) {
+  const double shortest_m = site.on_site().visit(entry.stations).walk_m;
+  const std::size_t stations = entry.stations.size();
+  const auto least = least_unlinked(links, stations);
+  return {swept.name,
+          number(stations),
+          fixed(entry.visit->walk_m, 0),
+          shortest_m > 0 ? fixed(entry.visit->walk_m / shortest_m, 2) : "–",
+          number(entry.visit->unlinked) + " of " + number(stations - 1),
+          least ? number(*least) : "–"};
+}
+
 // What no plan may do, in words.
 std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   std::vector<std::string> faults;
@@ -332,9 +374,11 @@ std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   return faults;
 }
 
-PlanResult planned(Site& site, const SweepOptions& options, double capture, double link) {
+// Without `capture`, for the stations that pay.
+PlanResult planned(Site& site, const SweepOptions& options, std::optional<double> capture, double link) {
   SurveyQuestion question;
   question.capture = capture, question.link = link, question.targets = 0;
+  if (!capture) question.pays_m2 = options.pays_m2;
   return plan(site, question, {.max_seconds = options.max_seconds});
 }
 
@@ -369,6 +413,7 @@ class Sweep {
   bool add(const SweptSite& swept, const SweepOptions& options);
   void write(const std::filesystem::path& folder) const {
     sites_.write(folder, "sweep");
+    rounds_.write(folder, "rounds");
     if (any_by_hand_) by_hand_.write(folder, "by_hand");
     draw_sheet(folder / "sweep.png", tiles_);
   }
@@ -376,6 +421,7 @@ class Sweep {
  private:
   Table sites_{{"site", "what", "ground m²", "stations", "proven least", "greedy", "rule of thumb", "rooms visited",
                 "rooms left out", "off ground", "too near", "links through walls", "linked", "captured", "met", "s"}};
+  Table rounds_{{"site", "stations", "walk, m", "of the shortest", "steps without a link", "least possible"}};
   Table by_hand_{
       {"site", "by hand", "captured", "linked", "default", "captured", "linked", "default at equal figures"}};
   std::vector<std::unique_ptr<Canvas>> tiles_;
@@ -389,14 +435,16 @@ bool Sweep::add(const SweptSite& swept, const SweepOptions& options) {
   as.user_size_m = options.user_size_m, as.spacing_m = options.spacing_m;
   const Stopwatch watch;
   Site site = Site::open(swept.file, as);
-  const PlanResult result = planned(site, options, kCapture, default_link);
+  const PlanResult result =
+      planned(site, options, options.pays_m2 ? std::nullopt : std::optional(kCapture), default_link);
   Score score;
   score.seconds = watch.seconds();
   const PlanEntry& entry = result.front[answer(result)];
   score.plan = judged(entry), score.met = met(result);
   judge_ground(swept, site, entry, score);
   if (const auto links = entry.links()) judge_sight(site, entry, *links, default_link, score);
-  judge_number(result, score);
+  judge_number(result, options.pays_m2 ? score.plan.captured : kCapture, score);
+  if (const auto links = entry.links(); links && entry.visit) rounds_.add(round_cells(swept, site, entry, *links));
   sites_.add(cells(swept, score));
   tiles_.push_back(tile_of(
       site, entry, swept.name + ": " + number(score.plan.stations) + " stations, " + percent(score.plan.captured)));
@@ -432,6 +480,7 @@ void SweepOptions::add(CLI::App& command) {
   command.add_option("--step", step_deg, "Degrees between rays; that of the default scanner otherwise");
   command.add_option("--user-size", user_size_m, "Upper bound of the voxel size, metres; the site's own otherwise");
   command.add_option("--spacing", spacing_m, "Wanted distance of points, metres; the site's own otherwise");
+  command.add_option("--pays", pays_m2, "Plan for the stations that add so many m², and not for 90 %");
   command.add_option("--max-time", max_seconds, "Seconds for each plan; none otherwise");
 }
 

@@ -14,12 +14,14 @@ struct SweepOptions {
   std::string folder, by_hand;          // for results; of plans by hand, NAME.csv each. Empty: none
   std::optional<std::string> unit, up;  // of files
   std::optional<double> step_deg, user_size_m, spacing_m;
+  std::optional<double> pays_m2;  // empty: 90 % of what is attainable
   double max_seconds = 0;
   void add(CLI::App& command);
 };
 
-// Writes sweep.csv, sweep.md and sweep.png to the folder, with plans by hand also by_hand.csv and by_hand.md. Returns
-// false if a site cannot be planned, or a plan does what none may do; standard error tells which.
+// Writes sweep.csv, sweep.md and sweep.png to the folder, the rounds on site as rounds.csv and rounds.md, with plans by
+// hand also by_hand.csv and by_hand.md. Returns false if a site cannot be planned, or a plan does what none may do;
+// standard error tells which.
 bool run_sweep(const SweepOptions& options);
 
 }  // namespace vantage::bench

@@ -593,7 +593,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
     for (const auto& [noisy, groups] : {std::pair{false, false}, {true, false}, {true, true}}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (groups ? ", groups" : ""));
       PatchScanner scanner{.noise = noisy ? site.noise : site.no_noise};
-      if (noisy) scanner.angle = 7e-5f, scanner.offset_m = 1e-3f, scanner.scale = 1e-5f;
+      if (noisy) scanner.angle = 7e-5f, scanner.offset_m = 1e-3f, scanner.scale = 1e-5f, scanner.range_m = 50;
       const RegistrationJob registration{patches, {scanner}, groups};
       std::vector<std::vector<std::uint64_t>> masks(networks.size());
       Tracer::SampleJob job{sample, 20, true, 0};

@@ -28,7 +28,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
     const Float3 start = scan_start(place);
     heads[std::size_t{networks} * most + place] = {start.x, start.y, start.z};
   }
-  const double deviation = deviation_unit(*job.patches, job.scanners);
+  const double deviation = deviation_unit(job.scanners);
   const std::uint32_t stride = pairs * pair_sums + most * (station_sums + (deviation > 0 ? instrument_sums : 0));
   std::vector<std::int64_t> sums(std::size_t{networks} * stride);
   ensure(registration_.heads, heads.size() * sizeof(vec3), "registration heads");

@@ -710,7 +710,7 @@ Made hall() {
     m.patch({0, 16.5 * s, 6}, X * (37 * s), Z * 12, 40, 3);
   }
   m.scanner.angle = static_cast<float>(14.4 / 3600 * std::numbers::pi / 180);
-  m.scanner.offset_m = 0.001f, m.scanner.scale = 1e-5f;
+  m.scanner.offset_m = 0.001f, m.scanner.scale = 1e-5f, m.scanner.range_m = 120;
   return m;
 }
 
