@@ -72,7 +72,7 @@ float weight_of(RegistrationPatch plane, vec3 head) {
 }
 
 // Distance along the normal by which an error of the scanner moves a plane, in units of the largest deviation.
-float deviation_of(RegistrationPatch plane, vec3 head, vec3 start, uint error) {
+float deviation_of(RegistrationPatch plane, vec3 head, uint place, uint error) {
   precise float x = head.x - plane.point.x;
   precise float y = head.y - plane.point.y;
   precise float z = head.z - plane.point.z;
@@ -88,19 +88,21 @@ float deviation_of(RegistrationPatch plane, vec3 head, vec3 start, uint error) {
   precise float nxy = nx + ny;
   precise float along = nxy + nz;
   precise float moved;
-  if (error == 4u) {
+  if (error == start_draws * angle_errors + 1u) {
     moved = along * push.scale;
-  } else if (error == 3u) {
+  } else if (error == start_draws * angle_errors) {
     precise float facing = along * exact_inverse_sqrt(square);
     moved = facing * push.offset;
   } else {
     precise float least_level = square * least_sin_zenith_squared;
     precise float inverse_level = exact_inverse_sqrt(max(level, least_level));
+    const vec3 start = push.starts.at[error / angle_errors * push.heads_stride + place];
+    const uint kind = error % angle_errors;
     precise float begun_y = start.x * y;
     precise float begun_x = start.y * x;
     precise float side = begun_y - begun_x;
     const float angle = side < 0.0 ? -push.angle : push.angle;
-    if (error == 0u) {
+    if (kind == 0u) {
       precise float lifted = z * along;
       precise float sunk = square * plane.normal.z;
       precise float difference = lifted - sunk;
@@ -112,7 +114,7 @@ float deviation_of(RegistrationPatch plane, vec3 head, vec3 start, uint error) {
       precise float across = across_x - across_y;
       precise float sideways = across * inverse_level;
       precise float range = square * exact_inverse_sqrt(square);
-      precise float by = (error == 1u ? range : z) * sideways;
+      precise float by = (kind == 1u ? range : z) * sideways;
       moved = by * angle;
     }
   }
@@ -135,8 +137,10 @@ void main() {
   const uint n = push.station_counts.at[network];
   const uint pairs = n * (n - 1u) / 2u;
   const uint first_pair = gl_WorkGroupID.y * register_pairs;
-  if (first_pair >= pairs && gl_WorkGroupID.y > 0u) return;
-  const uint pairs_here = min(pairs - first_pair, register_pairs);
+  const bool instrument = push.angle > 0.0 || push.offset > 0.0 || push.scale > 0.0;
+  const uint errors = instrument ? instrument_errors * n : 0u;
+  if (first_pair >= max(pairs, errors) && gl_WorkGroupID.y > 0u) return;
+  const uint pairs_here = first_pair < pairs ? min(pairs - first_pair, register_pairs) : 0u;
   // With fewer pairs than threads, several threads share a pair's voxels.
   const uint pair = pairs_here > 0u ? first_pair + thread % pairs_here : 0u;
   const uint pair_slices = pairs_here > 0u ? register_pairs / pairs_here : 0u;
@@ -148,10 +152,8 @@ void main() {
   }
   const uint j = i + 1u + rest;
   const uint station = thread % n, station_slices = register_pairs / n, station_slice = thread / n;
-  // Stations times errors: a thread each, over all workgroups of pairs.
-  const bool instrument = push.angle > 0.0 || push.offset > 0.0 || push.scale > 0.0;
-  const uint errors_here = instrument && instrument_errors * n > first_pair
-                               ? min(instrument_errors * n - first_pair, register_pairs) : 0u;
+  // Stations times errors likewise.
+  const uint errors_here = first_pair < errors ? min(errors - first_pair, register_pairs) : 0u;
   const uint error_slices = errors_here > 0u ? register_pairs / errors_here : 0u;
   const uint error_slice = errors_here > 0u ? thread / errors_here : 0u;
   const uint erring = errors_here > 0u ? (first_pair + thread % errors_here) / instrument_errors : 0u;
@@ -228,8 +230,7 @@ void main() {
           for (uint s = 0u; s < n; ++s) {
             const float weight = weights[v * n + s];
             if (weight == 0.0) continue;
-            const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + s],
-                                             push.starts.at[s], e);
+            const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + s], s, e);
             precise float weighted = abs(weight) * moved;
             if (weight > 0.0) front = front + weighted, front_total = front_total + weight, ++many.x, last.x = moved;
             if (weight < 0.0) behind = behind + weighted, behind_total = behind_total - weight, ++many.y, last.y = moved;
@@ -248,8 +249,7 @@ void main() {
         const float weight = weights[v * n + erring];
         if (weight == 0.0) continue;
         const RegistrationPatch plane = push.patches.at[first + v];
-        const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + erring],
-                                         push.starts.at[erring], error);
+        const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + erring], erring, error);
         precise float apart = moved - means[2u * (v * instrument_errors + error) + (weight < 0.0 ? 1u : 0u)];
         precise float scaled = abs(weight) * push.units;
         precise float share = scaled * apart;

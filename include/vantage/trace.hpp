@@ -69,7 +69,7 @@ struct RegistrationModel {
 /// Registration information in the station masks: sums over voxels of point-to-plane information (docs/method.md).
 /// Exact, except for one rounding of each sum to double.
 struct RegistrationSums {
-  static constexpr std::size_t of_pair = 21, of_station = 10, instrument_errors = 5;
+  static constexpr std::size_t of_pair = 21, of_station = 10, instrument_errors = 14;
   std::uint64_t voxels = 0;  ///< Voxels that were summed: those counted, or a sample of them.
   Vec3 centre;               ///< Local frame; places and rotations are relative to it.
   double radius_m = 1;       ///< Unit of places; rotations are in units of 1 / it.
@@ -80,10 +80,10 @@ struct RegistrationSums {
   /// Per station: moments 1, x, y, z, xx, xy, xz, yy, yz, zz of the places of the surface it sees, in voxel faces.
   /// Surface seen by k stations counts 1/k for each.
   std::vector<double> surface;
-  /// Per station, 6 × 5 row-major: Σ w_i (b_i − b̄) · J in 1/m, where b are the distances along the normal by which the
-  /// five errors of a scanner (`Scanner::angle_accuracy`: vertical index, collimation, trunnion axis; range offset,
-  /// scale), one standard deviation each, move the plane in a scan, and b̄ their mean over the scans that see it.
-  /// Empty if no scanner states them.
+  /// Per station, 6 × 14 row-major: Σ w_i (b_i − b̄) · J in 1/m, where b are the distances along the normal by which a
+  /// scanner's errors (`Scanner::angle_accuracy`), one standard deviation each, move the plane in a scan, and b̄ their
+  /// mean over the scans that see it. Vertical index, collimation and trunnion axis, halved, for each of four draws of
+  /// the directions in which scans begin; then offset and scale of ranges. Empty if no scanner states them.
   std::vector<double> instrument;
   /// The same sums for each of G interleaved groups of a sample, for standard errors; empty if all voxels were summed.
   /// Networks of more than 64 stations leave out the pairs whose sums are 0.

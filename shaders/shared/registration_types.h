@@ -18,10 +18,14 @@ struct RegistrationPatch {
   int jacobian[6];  // [(p − c)/R × n, n] · patch_unit
   int place[3];     // (p − c)/R · patch_unit
 };
-VANTAGE_CONST uint pair_sums = 21;         // the upper triangle, row by row, of J Jᵀ
-VANTAGE_CONST uint station_sums = 10;      // moments 1, x, y, z, xx, xy, xz, yy, yz, zz
-VANTAGE_CONST uint instrument_errors = 5;  // vertical index, collimation, trunnion axis, range offset, range scale
-VANTAGE_CONST uint instrument_sums = 30;   // of J times each
+VANTAGE_CONST uint pair_sums = 21;     // the upper triangle, row by row, of J Jᵀ
+VANTAGE_CONST uint station_sums = 10;  // moments 1, x, y, z, xx, xy, xz, yy, yz, zz
+// Errors of an instrument: vertical index, collimation and trunnion axis, which change sign with the face of the
+// mirror, for each of several draws of the directions in which scans begin; then offset and scale of ranges.
+VANTAGE_CONST uint start_draws = 4;
+VANTAGE_CONST uint angle_errors = 3;
+VANTAGE_CONST uint instrument_errors = 14;
+VANTAGE_CONST uint instrument_sums = 84;         // of J times each
 VANTAGE_CONST float deviation_quanta = 8192.0f;  // of the unit in which moved planes are rounded
 VANTAGE_CONST float least_cosine = 0.01f;        // below it, the visible side is uncertain
 // Above and below the head, rays are no denser than at 3°.
@@ -35,7 +39,7 @@ struct RegisterPush {
   VANTAGE_ADDRESS(RegistrationPatches) patches;
   VANTAGE_ADDRESS(Uints) masks;   // [network][word][voxel]
   VANTAGE_ADDRESS(Vec3s) heads;   // [network][heads_stride], by place
-  VANTAGE_ADDRESS(Vec3s) starts;  // by place: directions in which scans begin
+  VANTAGE_ADDRESS(Vec3s) starts;  // [draw][heads_stride], by place: directions in which scans begin
   VANTAGE_ADDRESS(Uints) station_counts;
   VANTAGE_ADDRESS(Uints) sums;
   VANTAGE_ADDRESS(Floats) sigma;  // 0: ranges are exact

@@ -122,7 +122,12 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
         grow_and_swap(problem, ColumnIndex(problem.matrix), start ? std::move(start->chosen) : problem.existing, stop);
     return;
   }
-  ConnectedCover found = min_connected_cover(cover_problem(choice), std::move(stop), std::move(start));
+  CoverProblem problem = cover_problem(choice);
+  ConnectedCover found = min_connected_cover(problem, stop, start);
+  // What is out of reach is not chased by ever more stations.
+  problem.least_help = kLeastHelp;
+  if (found.best.violation > 0 && problem.least_help > choice.asked.least_help && !stop.stop_requested())
+    found = min_connected_cover(problem, stop, std::move(start));
   choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
 }
 

@@ -21,6 +21,8 @@ constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = Registra
 constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
 constexpr std::size_t of_errors = 6 * RegistrationSums::instrument_errors;
 static_assert(of_pair == pair_sums && of_station == station_sums && of_errors == instrument_sums);
+static_assert(instrument_errors == RegistrationSums::instrument_errors &&
+              instrument_errors == start_draws * angle_errors + 2);
 using Deviations = std::array<float, RegistrationSums::instrument_errors>;
 constexpr double least_share = 0.5;       // smallest share of one plane in a voxel's surface, and in that around it
 constexpr double least_area = 1e-3;       // in faces; anything smaller is a corner that no scan resolves
@@ -59,8 +61,8 @@ struct View {
 // Scanner head that sees the planes.
 struct Head {
   Float3 origin;
-  std::optional<Float3> axis;  // set if the scanner is turned
-  Float3 start;                // direction in which its scan begins
+  std::optional<Float3> axis;                // set if the scanner is turned
+  std::array<Float3, start_draws> starts{};  // directions in which its scan begins
   const RangeNoise* noise = nullptr;
   float density = 1;
   float angle = 0, offset = 0, scale = 0;  // errors, in units of the largest deviation
@@ -108,8 +110,10 @@ Deviations deviations_of(const RegistrationPatch& patch, const Head& head) {
   const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
   const float nxy = nx + ny;
   const float along = nxy + nz;
-  float height = z, up = patch.normal.z, across = patch.normal.y * x - patch.normal.x * y,
-        side = head.start.x * y - head.start.y * x;
+  float height = z, up = patch.normal.z, across = patch.normal.y * x - patch.normal.x * y;
+  std::array<float, start_draws> sides{};
+  for (std::size_t draw = 0; draw < start_draws; ++draw)
+    sides[draw] = head.starts[draw].x * y - head.starts[draw].y * x;
   if (head.axis) {
     const Float3& a = *head.axis;
     height = x * a.x + y * a.y + z * a.z;
@@ -117,7 +121,8 @@ Deviations deviations_of(const RegistrationPatch& patch, const Head& head) {
     up = patch.normal.x * a.x + patch.normal.y * a.y + patch.normal.z * a.z;
     const Float3 turned{a.y * z - a.z * y, a.z * x - a.x * z, a.x * y - a.y * x};  // axis × v
     across = patch.normal.x * turned.x + patch.normal.y * turned.y + patch.normal.z * turned.z;
-    side = -(head.start.x * turned.x + head.start.y * turned.y + head.start.z * turned.z);
+    const Float3& start = head.starts.front();
+    sides.fill(-(start.x * turned.x + start.y * turned.y + start.z * turned.z));
   }
   const float inverse = exact_inverse_sqrt(square);
   const float least_level = square * least_sin_zenith_squared;
@@ -126,9 +131,15 @@ Deviations deviations_of(const RegistrationPatch& patch, const Head& head) {
   const float lifted = height * along, sunk = square * up;
   const float upwards = (lifted - sunk) * inverse_level;
   const float range = square * inverse;
-  const float angle = side < 0 ? -head.angle : head.angle;
   const float collimation = range * sideways, trunnion = height * sideways, facing = along * inverse;
-  Deviations moved{upwards * angle, collimation * angle, trunnion * angle, facing * head.offset, along * head.scale};
+  Deviations moved;
+  for (std::size_t draw = 0; draw < start_draws; ++draw) {
+    const float angle = sides[draw] < 0 ? -head.angle : head.angle;
+    float* const of = moved.data() + draw * angle_errors;
+    of[0] = upwards * angle, of[1] = collimation * angle, of[2] = trunnion * angle;
+  }
+  moved[start_draws * angle_errors] = facing * head.offset;
+  moved[start_draws * angle_errors + 1] = along * head.scale;
   for (float& one : moved) one = std::min(std::max(one, -1.0f), 1.0f);
   return moved;
 }
@@ -217,15 +228,17 @@ class Heads {
       const PatchScanner& scanner = scanners[station.scanner];
       heads_[station.place] = {station.origin,
                                std::nullopt,
-                               scan_start(station.place),
+                               {},
                                &noise_[station.scanner],
                                scanner.density,
-                               in_units(scanner.angle),
+                               in_units(scanner.angle) / std::sqrt(static_cast<float>(start_draws)),
                                in_units(scanner.offset_m),
                                in_units(scanner.scale)};
+      for (std::uint32_t draw = 0; draw < start_draws; ++draw)
+        heads_[station.place].starts[draw] = scan_start(station.place, draw);
       if (!station.turn) continue;
       heads_[station.place].axis = Float3{station.turn->x.z, station.turn->y.z, station.turn->z.z};
-      heads_[station.place].start = Float3{station.turn->x.x, station.turn->y.x, station.turn->z.x};
+      heads_[station.place].starts.fill({station.turn->x.x, station.turn->y.x, station.turn->z.x});
     }
   }
   Heads(const Heads&) = delete;
@@ -429,9 +442,10 @@ double deviation_unit(std::span<const PatchScanner> scanners) {
   return static_cast<double>(largest);
 }
 
-Float3 scan_start(std::uint32_t place) {
-  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  const double azimuth = golden * place;
+// By the golden angle; draws differ by quarter turns from one scan to the next.
+Float3 scan_start(std::uint32_t place, std::uint32_t draw) {
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0)), quarter = std::numbers::pi / 2;
+  const double azimuth = place * (golden + draw * quarter) + draw * quarter / start_draws;
   return {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth)), 0};
 }
 

@@ -60,9 +60,9 @@ struct PatchScanner {
 double deviation_unit(std::span<const PatchScanner> scanners);
 
 // Horizontal direction in which a scan begins: one face of the mirror sees what lies left of it, the other what lies
-// right. A scanner that turns all the way is set up in any direction, so upright scans begin in directions of their
-// own, by the golden angle. Otherwise errors that change sign with the face would cancel between scans.
-Float3 scan_start(std::uint32_t place);
+// right. A scanner that turns all the way is set up in any direction, so those of upright scans are drawn: were they
+// alike, errors that change sign with the face would cancel between scans. A turned one has its own.
+Float3 scan_start(std::uint32_t place, std::uint32_t draw);
 
 // Request for `NetworkCounts::registration` beside the counts of a sample, with masks.
 struct RegistrationJob {

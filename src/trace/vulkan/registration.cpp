@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "shared/registration_types.h"
 #include "trace/vulkan/vulkan_tracer.hpp"
@@ -21,13 +22,14 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   const auto networks = static_cast<std::uint32_t>(of.networks.size());
   const std::uint32_t most = *std::ranges::max_element(of.station_counts), pairs = most * (most - 1) / 2;
   // Of all networks, then the directions in which scans begin.
-  std::vector<vec3> heads((std::size_t{networks} + 1) * most);
+  std::vector<vec3> heads(std::size_t{networks + start_draws} * most);
   for (std::size_t n = 0; n < networks; ++n)
     for (const TraceStation& s : of.networks[n]) heads[n * most + s.place] = {s.origin.x, s.origin.y, s.origin.z};
-  for (std::uint32_t place = 0; place < most; ++place) {
-    const Float3 start = scan_start(place);
-    heads[std::size_t{networks} * most + place] = {start.x, start.y, start.z};
-  }
+  for (std::uint32_t draw = 0; draw < start_draws; ++draw)
+    for (std::uint32_t place = 0; place < most; ++place) {
+      const Float3 start = scan_start(place, draw);
+      heads[std::size_t{networks + draw} * most + place] = {start.x, start.y, start.z};
+    }
   const double deviation = deviation_unit(job.scanners);
   const std::uint32_t stride = pairs * pair_sums + most * (station_sums + (deviation > 0 ? instrument_sums : 0));
   std::vector<std::int64_t> sums(std::size_t{networks} * stride);
@@ -53,15 +55,17 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.noise_inverse_span = registration_.uploaded_noise->inverse_span;
   if (deviation > 0) {
     const PatchScanner& scanner = job.scanners.front();
-    push.angle = static_cast<float>(scanner.angle / deviation);
+    push.angle = static_cast<float>(scanner.angle / deviation) / std::sqrt(static_cast<float>(start_draws));
     push.offset = static_cast<float>(scanner.offset_m / deviation);
     push.scale = static_cast<float>(scanner.scale / deviation);
   }
+  // A thread for each pair, and for each error of each station.
+  const std::uint32_t threads = std::max({pairs, deviation > 0 ? most * instrument_errors : 0, 1u});
   const auto record = [&](const Recorder& r) {
     r.zero(registration_.sums, 0, sums.size() * sizeof(std::int64_t));
     r.shader_after_transfer();
     r.dispatch(kernels_.get(Kernel::registration), push, groups_of(of.voxels, register_voxels * register_rounds),
-               groups_of(std::max(pairs, 1u), register_pairs), networks);
+               groups_of(threads, register_pairs), networks);
   };
   const Commands::Download wanted{registration_.sums, sums.data(), sums.size() * sizeof(std::int64_t)};
   commands_.run_and_download(record, {&wanted, 1});
