@@ -21,8 +21,8 @@ constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
-// Violation that a further station has to make up for where nothing feasible is found and only stations that pay are
-// asked for. Else a hundred stations that capture next to nothing would come before a loft that no link reaches.
+// Violation that a further station has to make up for where nothing feasible is found. Else a hundred stations that
+// capture next to nothing would come before a loft that no link reaches.
 constexpr double kLeastHelp = 0.005;
 
 // Rounds of adding stations to units of floor.
@@ -122,13 +122,14 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
         grow_and_swap(problem, ColumnIndex(problem.matrix), start ? std::move(start->chosen) : problem.existing, stop);
     return;
   }
-  CoverProblem problem = cover_problem(choice);
-  ConnectedCover found = min_connected_cover(problem, stop, start);
-  // What is out of reach is not chased by ever more stations.
-  problem.least_help = kLeastHelp;
-  if (found.best.violation > 0 && problem.least_help > choice.asked.least_help && !stop.stop_requested())
-    found = min_connected_cover(problem, stop, std::move(start));
+  ConnectedCover found = min_connected_cover(cover_problem(choice), std::move(stop), std::move(start));
   choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
+}
+
+void settle(FewestChoice& choice, const std::stop_token& stop) {
+  if (choice.network.violation == 0 || choice.asked.most_coverage || choice.asked.least_help > 0) return;
+  choice.asked.least_help = kLeastHelp;
+  choose_from(choice, std::nullopt, stop);
 }
 
 void strengthen(FewestChoice& choice, const std::stop_token& stop) {

@@ -77,6 +77,8 @@ struct VisitTime {
   std::function<double(std::span<const PlacedStation>)> minutes = {};  // the round over the placed ones
 };
 
+// What is out of reach with all candidates is not chased by ever more stations: chooses anew with a least help of each.
+void settle(FewestChoice& choice, const std::stop_token& stop);
 // Swaps stations until the weakest link has what is asked and the margin of its error. Stronger links serve nobody.
 void strengthen(FewestChoice& choice, const std::stop_token& stop);
 // Chooses the fewest stations, and strengthens their links. If their round is longer than

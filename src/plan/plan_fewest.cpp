@@ -211,6 +211,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
     report.traced += choice.table.stations().size() - before;
     if (round == 0 && !report.stopped() && choice.placed() > 0) report("choose", kRestOfPlan * report.seconds());
   }
+  settle(choice, watch.stop);
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
@@ -315,40 +316,53 @@ std::vector<std::string> cells(const SweptSite& site, const Score& score) {
           fixed(score.seconds, 0)};
 }
 
-// Least number of steps without a link of any order of the stations from `first` on, however long, by dynamic
-// programming over sets (Held and Karp: A Dynamic Programming Approach to Sequencing Problems, 1962); empty if they are
-// too many.
-std::optional<std::size_t> least_unlinked(const StationLinks& links, std::size_t stations, std::size_t first) {
-  constexpr std::size_t kMost = 20;
-  if (stations == 0 || stations > kMost) return std::nullopt;
-  std::vector<std::uint32_t> linked(stations, 0);  // to which others
-  for (std::size_t i = 0; i < stations; ++i)
-    for (std::size_t j = 0; j < stations; ++j)
-      if (i != j && links.values(i, j) >= links.least && links.values(i, j) > 0) linked[i] |= 1u << j;
-  // By visited set and last station.
-  constexpr std::uint8_t kNone = 255;
+// Least number of steps without a link of any round from `first` and back that is no longer than `most_m`, by dynamic
+// programming over sets (Held and Karp: A Dynamic Programming Approach to Sequencing Problems, 1962); `known` if it is
+// no smaller. Empty if the stations are too many for that.
+std::optional<std::size_t> least_unlinked(const StationLinks& links, const std::vector<std::vector<float>>& metres,
+                                          std::size_t first, float most_m, std::size_t known) {
+  constexpr std::size_t kMostStations = 20, kMostStates = std::size_t{1} << 26;
+  const std::size_t stations = metres.size();
+  if (stations > kMostStations || (stations * known << stations) > kMostStates) return std::nullopt;
   const std::size_t sets = std::size_t{1} << stations;
-  std::vector<std::uint8_t> least(sets * stations, kNone);
-  least[(std::size_t{1} << first) * stations + first] = 0;
+  // Shortest walk by visited set, last station and steps without a link: fewer than `known`.
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  std::vector<float> least(sets * stations * known, kNone);
+  const auto at = [&](std::size_t set, std::size_t last) { return (set * stations + last) * known; };
+  if (known > 0) least[at(std::size_t{1} << first, first)] = 0;
   for (std::size_t set = 1; set < sets; ++set)
-    for (std::size_t last = 0; last < stations; ++last) {
-      const std::uint8_t here = least[set * stations + last];
-      if (here == kNone) continue;
+    for (std::size_t last = 0; last < stations; ++last)
       for (std::size_t next = 0; next < stations; ++next) {
         if (set >> next & 1) continue;
-        std::uint8_t& there = least[(set | std::size_t{1} << next) * stations + next];
-        there = std::min(there, static_cast<std::uint8_t>(here + (linked[last] >> next & 1 ? 0 : 1)));
+        const bool linked = links.values(last, next) >= links.least && links.values(last, next) > 0;
+        for (std::size_t u = 0; u + (linked ? 0 : 1) < known; ++u) {
+          float& there = least[at(set | std::size_t{1} << next, next) + u + (linked ? 0 : 1)];
+          there = std::min(there, least[at(set, last) + u] + metres[last][next]);
+        }
       }
-    }
-  return *std::min_element(least.end() - static_cast<std::ptrdiff_t>(stations), least.end());
+  for (std::size_t u = 0; u < known; ++u)
+    for (std::size_t last = 0; last < stations; ++last)
+      if (least[at(sets - 1, last) + u] + metres[last][first] <= most_m) return u;
+  return known;
 }
 
 // The round of a plan against the shortest that is found without regard to links.
 std::vector<std::string> round_cells(const SweptSite& swept, Site& site, const PlanEntry& entry,
                                      const StationLinks& links) {
-  const double shortest_m = site.on_site().visit(entry.stations).walk_m;
+  constexpr double kMostLonger = 1.3;
+  const OnSite on_site = site.on_site();
+  const double shortest_m = on_site.visit(entry.stations).walk_m;
   const std::size_t stations = entry.stations.size();
-  const auto least = least_unlinked(links, stations, entry.visit->order.front());
+  std::vector<std::vector<float>> metres(stations, std::vector<float>(stations, 0));
+  for (std::size_t i = 0; i < stations; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3 &a = entry.stations[i].ground, &b = entry.stations[j].ground;
+      const double straight_m = std::sqrt(dot(a - b, a - b));
+      metres[i][j] = metres[j][i] =
+          static_cast<float>(on_site.way_m(a, b).value_or(on_site.options().detour * straight_m));
+    }
+  const auto least = least_unlinked(links, metres, entry.visit->order.front(),
+                                    static_cast<float>(kMostLonger * shortest_m), entry.visit->unlinked);
   return {swept.name,
           number(stations),
           fixed(entry.visit->walk_m, 0),
@@ -422,8 +436,7 @@ class Sweep {
  private:
   Table sites_{{"site", "what", "ground m²", "stations", "proven least", "greedy", "rule of thumb", "rooms visited",
                 "rooms left out", "off ground", "too near", "links through walls", "linked", "captured", "met", "s"}};
-  Table rounds_{
-      {"site", "stations", "walk, m", "of the shortest", "steps without a link", "least possible from there"}};
+  Table rounds_{{"site", "stations", "walk, m", "of the shortest", "steps without a link", "least possible"}};
   Table by_hand_{
       {"site", "by hand", "captured", "linked", "default", "captured", "linked", "default at equal figures"}};
   std::vector<std::unique_ptr<Canvas>> tiles_;
