@@ -62,8 +62,7 @@ Options<Scanner> scanner_options() {
           "standard deviation each; 0: not stated.")
       .add<double>(
           "range_accuracy_mm", [](const Scanner& s) { return s.range_accuracy_m * 1e3; },
-          [](Scanner& s, double mm) { s.range_accuracy_m = mm * 1e-3; },
-          "The same of the offset of ranges.")
+          [](Scanner& s, double mm) { s.range_accuracy_m = mm * 1e-3; }, "The same of the offset of ranges.")
       .add("range_accuracy_ppm", &Scanner::range_accuracy_ppm, "The same of their scale.")
       .add("detection_range_m", &Scanner::detection_range_m,
            "Longest distance from which a surface of detection_reflectivity is detected; 0: every echo is.")

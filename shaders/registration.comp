@@ -232,8 +232,15 @@ void main() {
             if (weight == 0.0) continue;
             const float moved = deviation_of(plane, push.heads.at[network * push.heads_stride + s], s, e);
             precise float weighted = abs(weight) * moved;
-            if (weight > 0.0) front = front + weighted, front_total = front_total + weight, ++many.x, last.x = moved;
-            if (weight < 0.0) behind = behind + weighted, behind_total = behind_total - weight, ++many.y, last.y = moved;
+            if (weight > 0.0) {
+              front = front + weighted;
+              front_total = front_total + weight;
+              ++many.x, last.x = moved;
+            } else {
+              behind = behind + weighted;
+              behind_total = behind_total - weight;
+              ++many.y, last.y = moved;
+            }
           }
         }
         precise float front_mean = front * exact_reciprocal(front_total);
