@@ -21,10 +21,6 @@ constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
-// Violation that a further station has to make up for where nothing feasible is found. Else a hundred stations that
-// capture next to nothing would come before a loft that no link reaches.
-constexpr double kLeastHelp = 0.005;
-
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
 
@@ -62,7 +58,6 @@ FewestAsked fewest_asked(const SurveyProblem& problem) {
   asked.most_coverage = limit == 0 && searched && asked.fewest == asked.most;
   if (asked.most_coverage) asked.captured = problem.objectives.front().needs.attainable;
   if (asked.captured) asked.whole = problem.attainable.value_or(1);
-  if (problem.pays_m2) asked.least_help = kLeastHelp;
   asked.coverage = asked.most_coverage ? 1 : std::min(limit / asked.whole, 1.0);
   return asked;
 }
@@ -126,9 +121,10 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
   choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
 }
 
-void settle(FewestChoice& choice, const std::stop_token& stop) {
-  if (choice.network.violation == 0 || choice.asked.most_coverage || choice.asked.least_help > 0) return;
-  choice.asked.least_help = kLeastHelp;
+bool out_of_reach(const FewestChoice& choice) { return choice.network.violation > 0 && !choice.asked.most_coverage; }
+
+void choose_anew(FewestChoice& choice, double least_help, const std::stop_token& stop) {
+  choice.asked.least_help = least_help;
   choose_from(choice, std::nullopt, stop);
 }
 

@@ -18,6 +18,10 @@
 
 namespace vantage {
 
+// Violation that a further station has to make up for where nothing feasible is found. Else a hundred stations that
+// capture next to nothing would come before a loft that no link reaches.
+inline constexpr double kLeastHelp = 0.005;
+
 // The part of a survey problem that a covering problem can express.
 struct FewestAsked {
   std::size_t existing = 0;            // number of existing stations
@@ -28,7 +32,7 @@ struct FewestAsked {
   bool most_coverage = false;          // the latter
   double link = 0, apart_m = 0;        // 0: not asked
   std::optional<double> minutes = {};  // on site, at most
-  double least_help = 0;               // as of the covering problem
+  double least_help = kLeastHelp;      // as of the covering problem
 
   // The measure that `coverage` is.
   const char* measure() const { return captured ? "capture" : "coverage"; }
@@ -77,8 +81,10 @@ struct VisitTime {
   std::function<double(std::span<const PlacedStation>)> minutes = {};  // the round over the placed ones
 };
 
-// What is out of reach with all candidates is not chased by ever more stations: chooses anew with a least help of each.
-void settle(FewestChoice& choice, const std::stop_token& stop);
+// Whether the candidates have no network that meets what is asked, as far as is known.
+bool out_of_reach(const FewestChoice& choice);
+// Chooses from none, and from now on with another least help of a further station.
+void choose_anew(FewestChoice& choice, double least_help, const std::stop_token& stop);
 // Swaps stations until the weakest link has what is asked and the margin of its error. Stronger links serve nobody.
 void strengthen(FewestChoice& choice, const std::stop_token& stop);
 // Chooses the fewest stations, and strengthens their links. If their round is longer than

@@ -204,14 +204,23 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   report("choose");
   choose(choice, visit_time(context, choice.asked), watch.stop);
   visit_units(choice, watch.stop);
-  for (std::size_t round = 0; round < kRounds && !report.stopped(); ++round) {
-    const std::size_t before = choice.table.stations().size();
-    const double radius_m = kAroundRadius * std::ldexp(std::max(candidates.spacing_m(), 0.1), -static_cast<int>(round));
-    refine_around(choice, context.oracle(), radius_m, report.progress("choose"));
-    report.traced += choice.table.stations().size() - before;
-    if (round == 0 && !report.stopped() && choice.placed() > 0) report("choose", kRestOfPlan * report.seconds());
+  const auto refine = [&] {
+    for (std::size_t round = 0; round < kRounds && !report.stopped(); ++round) {
+      const std::size_t before = choice.table.stations().size();
+      const double radius_m =
+          kAroundRadius * std::ldexp(std::max(candidates.spacing_m(), 0.1), -static_cast<int>(round));
+      refine_around(choice, context.oracle(), radius_m, report.progress("choose"));
+      report.traced += choice.table.stations().size() - before;
+      if (round == 0 && !report.stopped() && choice.placed() > 0) report("choose", kRestOfPlan * report.seconds());
+    }
+  };
+  refine();
+  // A share that is asked for is reached whatever it takes; if it is out of reach then too, each station has to help.
+  if (out_of_reach(choice) && !problem.pays_m2 && !report.stopped()) {
+    choose_anew(choice, 0, watch.stop);
+    refine();
+    if (out_of_reach(choice)) choose_anew(choice, kLeastHelp, watch.stop);
   }
-  settle(choice, watch.stop);
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
