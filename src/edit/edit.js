@@ -119,7 +119,7 @@
     if (registration && !state.exact && registration.standard_error > registration.value / 2)
       at('figures').querySelectorAll('div').forEach((tile) => {
         if (tile.querySelector('dt').textContent === 'Registered')
-          tile.querySelector('small').textContent = `± ${registration.standard_error.toFixed(2)} mm: the sample is too small to tell, “Every ray” does`;
+          tile.querySelector('small').textContent = `± ${tenths(registration.standard_error)} mm: the sample is too small to tell, “Every ray” does`;
       });
     if (!registration) at('figures').append(unknownTile('Registered', whyUnknown(network)));
     if (network.minutes_on_site === null && state.ids.length) at('figures').append(unknownTile('On site', whyUnknown(network)));
