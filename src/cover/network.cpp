@@ -14,10 +14,6 @@
 namespace vantage {
 namespace {
 
-// Violation of a missing link, as a share of the wanted coverage. It is so large that no network of two components wins
-// by its coverage, and so small that a search may pass through one.
-constexpr double kMissingLink = 0.2;
-
 std::vector<std::uint32_t> places_of(const CoverProblem& problem, std::span<const std::size_t> network) {
   std::vector<std::uint32_t> places(problem.matrix.candidates(), static_cast<std::uint32_t>(network.size()));
   for (std::size_t at = 0; at < network.size(); ++at) places[network[at]] = static_cast<std::uint32_t>(at);

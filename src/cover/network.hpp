@@ -12,6 +12,10 @@
 
 namespace vantage {
 
+// Violation of a missing link, as a share of the wanted coverage. It is so large that no network of two components wins
+// by its coverage, and so small that a search may pass through one.
+inline constexpr double kMissingLink = 0.2;
+
 // Throws Error invalid_argument if a candidate of the problem does not exist, or the graph and the matrix differ in
 // size.
 void check(const CoverProblem& problem);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/graph.hpp"
+#include "cover/network.hpp"
 #include "plan/decision_space.hpp"
 #include "plan/drop_networks.hpp"
 
@@ -38,11 +39,23 @@ Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<co
   return margins;
 }
 
-// The violation by the values alone: what holds within its standard error only is still repaired.
+// Links that the network lacks to be one, of which each is at least `least`.
+std::size_t missing_links(const PlanEntry& entry, double least) {
+  if (!entry.exact || entry.scan_overlap_matrix.size() == 0) return 0;
+  return std::max<std::size_t>(station_links(entry.scan_overlap_matrix, least, entry.stations).parts.size(), 1) - 1;
+}
+
+// The violation by the values alone: what holds within its standard error only is still repaired. Each missing link
+// counts for itself: by the weakest alone, one that nothing can mend would hide all others.
 double strict_violation(const PlanEntry& entry, std::span<const Requirement> requirements) {
   double violation = 0;
-  for (const Requirement& requirement : requirements)
-    violation += requirement.missed_by(entry.value(requirement.objective.name));
+  for (const Requirement& requirement : requirements) {
+    const bool linking =
+        requirement.objective.kind == Objective::Kind::link && requirement.bound == Requirement::Bound::at_least;
+    const std::size_t missing = linking ? missing_links(entry, requirement.limit) : 0;
+    violation += missing > 0 ? kMissingLink * static_cast<double>(missing)
+                             : requirement.missed_by(entry.value(requirement.objective.name));
+  }
   return violation;
 }
 
@@ -294,14 +307,15 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
     choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
     choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
   }
-  const bool was_known = known > 0 && choice.network.violation >= known;
+  const double told = choice.network.violation;  // by the links of every ray
+  const bool was_known = known > 0 && told >= known;
   if (was_known && missing.link == 0) return false;
   const std::vector<std::size_t> before = choice.network.chosen;
   if (!was_known) raise_margins(choice, missing, stop);
   if (const auto links = last.links(); links && choice.network.violation > 0 && missing.link > 0)
     look_between(choice, oracle, last.stations, *links, stop);
   if (choice.network.violation == 0) return true;
-  return choice.network.chosen != before && (known == 0 || choice.network.violation < known);
+  return choice.network.chosen != before && (known == 0 || choice.network.violation < told);
 }
 
 bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,

@@ -4,15 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "sites/random_site.hpp"
 #include "sites/site.hpp"
 #include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 namespace {
@@ -122,6 +126,25 @@ TEST(PlansInATime, HaveAsManyStationsAsThereIsTimeFor) {
   const std::vector<std::string> help = what_would_help(result);
   ASSERT_FALSE(help.empty());
   EXPECT_NE(help.front().find("more time than"), std::string::npos) << help.front();
+}
+
+// A building of two storeys that no scan of this resolution links: its storeys are two parts, and not each room one.
+TEST(PlansOfParts, MendTheLinksThatCanBeMended) {
+  const test::TemporaryFolder folder;
+  test::write_site(test::make_random_site(5), folder / "site.glb");
+  const Angle step = Angle::degrees(0.4);
+  SiteOptions coarse;
+  coarse.scene = {.unit = Unit::foot, .up = UpAxis::z};
+  coarse.engine = Engine::embree;
+  coarse.steps = {step, step};
+  coarse.user_size_m = kVoxel_m, coarse.spacing_m = kSpacing_m;
+  Site site = Site::open(folder / "site.glb", coarse);
+  SurveyQuestion question;
+  question.targets = 0;
+  const PlanResult result = plan(site, question);
+  const auto links = result.front[answer(result)].links();
+  ASSERT_TRUE(links);
+  EXPECT_EQ(links->parts.size(), 2u);
 }
 
 // The larger two only with VANTAGE_WHOLE_SITES=1.
