@@ -249,7 +249,7 @@ TEST_F(Plan, AsksTheSurveyorsQuestionWhereNoneIsNamed) {
   EXPECT_EQ(run_program(plan("plan", {"--stations", "2"})).exit_code, 2) << "the folder holds another run";
   for (const char* name : {"missed.csv", "plan-level-2.png", "targets.csv", "report.pdf", "notes.txt"})
     std::ofstream(path("plan/") + name) << "of the run before";
-  const Outcome few = run_program(plan("plan", {"--stations", "2", "--force", "--no-report"}));
+  const Outcome few = run_program(plan("plan", {"--stations", "2", "--capture", "0.9", "--force", "--no-report"}));
   EXPECT_EQ(few.exit_code, 3) << few.err;
   EXPECT_NE(few.out.find("to do"), std::string::npos) << few.out;
   for (const char* name : {"plan-level-2.png", "targets.csv", "report.pdf"})
