@@ -129,7 +129,7 @@ struct StationError {
 /// Predicted error of a registered network, metres.
 struct RegistrationError {
   double rms_m = 0;     ///< Root mean square displacement of the points of the covered surface.
-  double random_m = 0;  ///< What it would be without the errors that all scans of an instrument share.
+  double random_m = 0;  ///< The same without the errors that all scans of an instrument share.
   double worst_m = 0;   ///< `rms_m` of the worst station.
   std::size_t worst_station = 0;
   /// As `rms_m`, in the site's frame and not in the survey's own; known if a station sees a control point.

@@ -81,7 +81,7 @@ struct VisitTime {
   std::function<double(std::span<const PlacedStation>)> minutes = {};  // the round over the placed ones
 };
 
-// Whether the candidates have no network that meets what is asked, as far as is known.
+// True if no network of the candidates is known to meet what is asked.
 bool out_of_reach(const FewestChoice& choice);
 // Chooses from none, and from now on with another least help of a further station.
 void choose_anew(FewestChoice& choice, double least_help, const std::stop_token& stop);

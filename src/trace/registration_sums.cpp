@@ -442,7 +442,7 @@ double deviation_unit(std::span<const PatchScanner> scanners) {
   return static_cast<double>(largest);
 }
 
-// By the golden angle; draws differ by quarter turns from one scan to the next.
+// The golden angle lies between scans; draws differ by quarter turns from one scan to the next.
 Float3 scan_start(std::uint32_t place, std::uint32_t draw) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0)), quarter = std::numbers::pi / 2;
   const double azimuth = place * (golden + draw * quarter) + draw * quarter / start_draws;

@@ -77,7 +77,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
 struct Instrument {
   double index = 0, collimation = 0, trunnion = 0, offset_m = 0, scale = 0;
 
-  // Where the scan that begins in direction `start` has a point: its range and angles, changed and read back.
+  // The place where the scan that begins in direction `start` has a point: its range and angles, changed and read back.
   Vector3d measured(const Vector3d& head, double start, const Vector3d& point) const {
     const Vector3d v = point - head;
     const double range = v.norm(), level = std::max(std::hypot(v.x(), v.y()), 0.05 * range);

@@ -17,8 +17,9 @@ namespace vantage::bench {
 struct AdjustmentTruth {
   double rho_m = 0.0015, patch_m = 0.5;  // modelling error of a scan, and over how far it is the same
   double position_m = 0.03, heading = 0.2 * 0.017453292519943295, tilt = 15.0 / 3600 * 0.017453292519943295;
-  // Of the instrument, drawn once for a trial: vertical index, collimation and trunnion axis each; offset and scale of
-  // ranges. Each scan begins in a direction of its own, and the mirror's two faces see angles with opposite errors.
+  // Errors of the instrument, drawn once for a trial: vertical index, collimation and trunnion axis each; offset and
+  // scale of ranges. Each scan begins in a direction of its own, and the mirror's two faces see angles with opposite
+  // errors.
   double angle = 0, range_m = 0, range_share = 0;
   std::size_t samples = 800;  // points of a scan that are matched with another, at most
   int iterations = 12;

@@ -389,7 +389,7 @@ std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   return faults;
 }
 
-// Without `capture`, for the stations that pay.
+// Plans for the stations that pay if there is no `capture`.
 PlanResult planned(Site& site, const SweepOptions& options, std::optional<double> capture, double link) {
   SurveyQuestion question;
   question.capture = capture, question.link = link, question.targets = 0;

@@ -21,7 +21,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   upload_patches(job);
   const auto networks = static_cast<std::uint32_t>(of.networks.size());
   const std::uint32_t most = *std::ranges::max_element(of.station_counts), pairs = most * (most - 1) / 2;
-  // Of all networks, then the directions in which scans begin.
+  // The heads of all networks, then the directions in which scans begin.
   std::vector<vec3> heads(std::size_t{networks + start_draws} * most);
   for (std::size_t n = 0; n < networks; ++n)
     for (const TraceStation& s : of.networks[n]) heads[n * most + s.place] = {s.origin.x, s.origin.y, s.origin.z};
