@@ -65,7 +65,7 @@ struct Head {
   std::array<Float3, start_draws> starts{};  // directions in which its scan begins
   const RangeNoise* noise = nullptr;
   float density = 1;
-  float angle = 0, offset = 0, scale = 0;  // errors, in units of the largest deviation
+  DeviationErrors errors;
 };
 
 // w = 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
@@ -134,12 +134,12 @@ Deviations deviations_of(const RegistrationPatch& patch, const Head& head) {
   const float collimation = range * sideways, trunnion = height * sideways, facing = along * inverse;
   Deviations moved;
   for (std::size_t draw = 0; draw < start_draws; ++draw) {
-    const float angle = sides[draw] < 0 ? -head.angle : head.angle;
+    const float angle = sides[draw] < 0 ? -head.errors.angle : head.errors.angle;
     float* const of = moved.data() + draw * angle_errors;
     of[0] = upwards * angle, of[1] = collimation * angle, of[2] = trunnion * angle;
   }
-  moved[start_draws * angle_errors] = facing * head.offset;
-  moved[start_draws * angle_errors + 1] = along * head.scale;
+  moved[start_draws * angle_errors] = facing * head.errors.offset;
+  moved[start_draws * angle_errors + 1] = along * head.errors.scale;
   for (float& one : moved) one = std::min(std::max(one, -1.0f), 1.0f);
   return moved;
 }
@@ -222,18 +222,11 @@ class Heads {
   Heads(std::span<const PatchScanner> scanners, double deviation, std::span<const TraceStation> stations,
         std::size_t count)
       : heads_(count), deviation_(deviation) {
-    const auto in_units = [&](float error) { return deviation > 0 ? static_cast<float>(error / deviation) : 0; };
     for (const PatchScanner& scanner : scanners) noise_.emplace_back(scanner.noise);
     for (const TraceStation& station : stations) {
       const PatchScanner& scanner = scanners[station.scanner];
-      heads_[station.place] = {station.origin,
-                               std::nullopt,
-                               {},
-                               &noise_[station.scanner],
-                               scanner.density,
-                               in_units(scanner.angle) / std::sqrt(static_cast<float>(start_draws)),
-                               in_units(scanner.offset_m),
-                               in_units(scanner.scale)};
+      heads_[station.place] = {station.origin,           std::nullopt,    {},
+                               &noise_[station.scanner], scanner.density, deviation_errors(scanner, deviation)};
       for (std::uint32_t draw = 0; draw < start_draws; ++draw)
         heads_[station.place].starts[draw] = scan_start(station.place, draw);
       if (!station.turn) continue;
@@ -434,6 +427,12 @@ RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulato
 }
 
 }  // namespace
+
+DeviationErrors deviation_errors(const PatchScanner& scanner, double deviation) {
+  const auto in_units = [&](float error) { return deviation > 0 ? static_cast<float>(error / deviation) : 0; };
+  return {in_units(scanner.angle) / std::sqrt(static_cast<float>(start_draws)), in_units(scanner.offset_m),
+          in_units(scanner.scale)};
+}
 
 double deviation_unit(std::span<const PatchScanner> scanners) {
   float largest = 0;

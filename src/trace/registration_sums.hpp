@@ -58,6 +58,11 @@ struct PatchScanner {
 // Unit of the distances by which scanners' errors move planes, metres: the largest. They are rounded to a
 // `deviation_quanta`-th. 0: no scanner states errors.
 double deviation_unit(std::span<const PatchScanner> scanners);
+// A scanner's errors in that unit; those of angles are shared out to the draws of directions. All 0 if it is 0.
+struct DeviationErrors {
+  float angle = 0, offset = 0, scale = 0;
+};
+DeviationErrors deviation_errors(const PatchScanner& scanner, double deviation);
 
 // Horizontal direction in which a scan begins: one face of the mirror sees what lies left of it, the other what lies
 // right. A scanner that turns all the way is set up in any direction, so those of upright scans are drawn: were they

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
 #include "shared/registration_types.h"
 #include "trace/vulkan/vulkan_tracer.hpp"
@@ -53,12 +52,8 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.units = static_cast<float>(patch_weight_units / job.patches->largest);
   push.noise_min_range = registration_.uploaded_noise->min_range;
   push.noise_inverse_span = registration_.uploaded_noise->inverse_span;
-  if (deviation > 0) {
-    const PatchScanner& scanner = job.scanners.front();
-    push.angle = static_cast<float>(scanner.angle / deviation) / std::sqrt(static_cast<float>(start_draws));
-    push.offset = static_cast<float>(scanner.offset_m / deviation);
-    push.scale = static_cast<float>(scanner.scale / deviation);
-  }
+  const DeviationErrors errors = deviation_errors(job.scanners.front(), deviation);
+  push.angle = errors.angle, push.offset = errors.offset, push.scale = errors.scale;
   // A thread for each pair, and for each error of each station.
   const std::uint32_t threads = std::max({pairs, deviation > 0 ? most * instrument_errors : 0, 1u});
   const auto record = [&](const Recorder& r) {
