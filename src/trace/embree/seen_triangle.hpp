@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "scene/scene_data.hpp"
 #include "vantage/types.hpp"
@@ -36,18 +37,27 @@ class SeenTriangle {
     normal_ = normal_ * sign;
     height_ *= sign;
     edge_ = {cross(a, b) * sign, cross(b, c) * sign, cross(c, a) * sign};
-    const double longest = longest_square(a, b, c);
-    tolerance_ = edge_doubt * std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c)}) * longest);
-    steep_ = steep * longest;
+    const double longest = longest_square(a, b, c), far = std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c)}));
+    tolerance_ = edge_doubt * far * std::sqrt(longest);
+    slope_doubt_ = kNormalDoubt * longest;
+    distance_doubt_ = slope_doubt_ * far / height_ + kRounding;
+    least_slope_ = distance_doubt_ < kMostDoubt ? slope_doubt_ / (kMostDoubt - distance_doubt_) : kNever;
   }
 
-  // Whether Embree is certain to report a hit. REQUIRES: is_steep(d).
+  // Whether Embree is certain to report a hit, if its distance is known.
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_ && dot(edge_[1], d) > tolerance_ && dot(edge_[2], d) > tolerance_;
   }
-  // Whether the distance of a hit is accurate to within distance_doubt.
-  bool is_steep(const Vec3& d) const { return dot(normal_, d) > steep_; }
   double distance(const Vec3& d) const { return height_ / dot(normal_, d); }
+  // Bounds on the distance that Embree reports for a hit; 0 and infinity if nothing is known of it.
+  double nearest_hit(const Vec3& d) const {
+    const double slope = dot(normal_, d);
+    return slope > least_slope_ ? height_ / slope * (1 - doubt(slope)) : 0;
+  }
+  double farthest_hit(const Vec3& d) const {
+    const double slope = dot(normal_, d);
+    return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
+  }
   // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
   // such a point.
   bool hides(const SeenBox& box, double start) const {
@@ -55,9 +65,10 @@ class SeenTriangle {
   }
   // Whether each hit by such a ray lies beyond `start` and before the box.
   bool is_before(const SeenBox& box, double start) const {
-    const double beyond = box.least(normal_);
-    return height_ > start * (1 + distance_doubt) * std::sqrt(dot(normal_, normal_)) &&
-           beyond > height_ * (1 + distance_doubt) && beyond > steep_ * box.far;
+    const double beyond = box.least(normal_), slope = beyond / box.far;
+    if (!(slope > least_slope_)) return false;
+    const double most = doubt(slope);
+    return height_ * (1 - most) > start * std::sqrt(dot(normal_, normal_)) && beyond > height_ * (1 + most);
   }
   // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
   // The edges are those from corner k to the next.
@@ -76,10 +87,6 @@ class SeenTriangle {
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight
   // roundings of 2^−24 of their product. This is eight times that.
   static constexpr double edge_doubt = 0x1p-18;
-  // Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
-  // Above `steep`, cosine / slenderness makes that less than distance_doubt.
-  static constexpr double steep = 0x1p-5;
-  static constexpr double distance_doubt = 0x1p-13;
   // Longest edge squared over twice the area; 1.15 for an equilateral triangle.
   static double slenderness(const Vec3& a, const Vec3& b, const Vec3& c, double twice_area) {
     return longest_square(a, b, c) / twice_area;
@@ -90,11 +97,24 @@ class SeenTriangle {
     return std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
   }
 
+  // Embree's distance is a quotient of products of a normal in float, with a corner and with the ray. The normal is a
+  // cross product of edges, so an error of up to 2^−22 of the longest edge squared is in it, which may be as long as a
+  // sliver's normal. This is four times that, which allows for the rounding of corners and products, too.
+  static constexpr double kNormalDoubt = 0x1p-20;
+  static constexpr double kRounding = 0x1p-22;  // of the quotient
+  static constexpr double kMostDoubt = 0x1p-6;  // beyond it nothing is said
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  // Bound on the relative error of the distance of rays with this product with the normal, or a larger one.
+  double doubt(double slope) const { return slope_doubt_ / slope + distance_doubt_; }
+
   // All times twice the area.
   std::array<Vec3, 3> edge_;  // normals of the planes through head and edges, inwards
   Vec3 normal_;               // away from the head
-  double height_, steep_;
-  double tolerance_;  // of the edges
+  double height_;
+  double slope_doubt_, distance_doubt_;  // errors of the products with the ray, and with a corner (relative)
+  double least_slope_;                   // of the products with rays whose distance is known
+  double tolerance_;                     // of the edges
 };
 
 }  // namespace vantage

@@ -42,7 +42,9 @@ constexpr float sure_height = 1.5f * grazing;
 // Embree's allowance is at least eight times that, so half as much again is allowed for it.
 constexpr float float_doubt = 0x1p-21f;
 constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
-constexpr auto steep_part = static_cast<float>(1 - SeenTriangle::distance_doubt * 1.5);
+// Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
+// Above `steep`, cosine / slenderness makes that less than what `steep_part` leaves.
+constexpr float steep = 0x1p-5f, steep_part = 1 - 0x1.8p-13f;
 
 // Whether VoxelGrid::cell_of(p) is `cell`.
 bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint32_t, 3>& cell) {
@@ -222,8 +224,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const SampledVoxels::Plane& plane = planes[k];
     const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = heights_[k],
-                steep = static_cast<float>(SeenTriangle::steep) * plane.slenderness,
-                graze = grazing * plane.slenderness;
+                sure = steep * plane.slenderness, graze = grazing * plane.slenderness;
     std::uint32_t any = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       const float slope = nx * batch.x[i] + ny * batch.y[i] + nz * batch.z[i], cosine = std::abs(slope),
@@ -236,7 +237,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
       batch.pz[i] = pz;
       batch.slant[i] = slant;
       any |= beyond <= half ? 1u : 0u;
-      batch.candidate[i] = t * (cosine < steep ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
+      batch.candidate[i] = t * (cosine < sure ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
       batch.nearest[i] = std::min(batch.nearest[i], nearest_of_all + (cosine >= graze ? infinity : 0.0f));
     }
     if (any == 0) continue;
@@ -441,16 +442,13 @@ void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
   if (rays.begin == rays.end) return;
   const SeenTriangle triangle = seen(by);
   // Nearer triangles may lie before the ray's start.
-  const double nearest = static_cast<double>(bundle_.start) * (1 + SeenTriangle::distance_doubt);
+  const auto start = static_cast<double>(bundle_.start);
   std::uint32_t kept = rays.begin;
   for (std::uint32_t k = rays.begin; k < rays.end; ++k) {
     const Vec3 d{listed_[k].d.x, listed_[k].d.y, listed_[k].d.z};
-    if (triangle.is_steep(d)) {
-      const double own = triangle.distance(d);
-      if (own > nearest && own * (1 + SeenTriangle::distance_doubt) < static_cast<double>(listed_[k].nearest) &&
-          triangle.must_hit(d))
-        continue;
-    }
+    if (triangle.must_hit(d) && triangle.nearest_hit(d) > start &&
+        triangle.farthest_hit(d) < static_cast<double>(listed_[k].nearest))
+      continue;
     listed_[kept++] = listed_[k];
   }
   rays.end = kept;
