@@ -7,8 +7,8 @@
 // Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
 // ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
 // listed, settle() probes one ray of each `VoxelRays` up to its nearest hit that counts. A triangle in the way hides
-// that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. After `rounds` of
-// that, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
+// that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. Once that removes
+// few, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
 // included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays. With a
 // limit `stop_at`, as many rays of a voxel are listed as usually suffice, and the rest only if they did not.
 #include "trace/embree/voxel_counter.hpp"
@@ -26,9 +26,11 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t rays_at_once = 2048;
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-// Rays of a voxel probed one by one for an occluder: the first, and the first that its occluder does not hide. Then all
-// are traced.
-constexpr int rounds = 2;
+// Rays of a voxel are probed one by one for an occluder as long as there are as many, and each hides as many: to trace
+// fewer takes no longer than a probe.
+constexpr std::uint32_t kWorthProbe = 8;
+// With a limit, so many times as many rays of a voxel are traced as before.
+constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
 // Bound on the relative error of any distance computed in float here, on any plane tested, however grazing.
@@ -459,7 +461,7 @@ void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
 // everything that counts, so the answer for the other rays is the same.
 void SampledVoxelCounter::settle() {
   visible_.clear();
-  for (int round = 0; round < rounds && !voxel_rays_.empty(); ++round) {
+  while (!voxel_rays_.empty()) {
     probes_.clear();
     for (const VoxelRays& rays : voxel_rays_)
       probes_.push_back({listed_[rays.begin].d, std::min(listed_[rays.begin].nearest, rays.farthest)});
@@ -483,30 +485,41 @@ void SampledVoxelCounter::settle() {
         visible_.push_back(rays);
         continue;
       }
-      ++rays.begin;
+      const std::uint32_t before = rays.end - ++rays.begin;
       drop_hidden(rays, probes_[k].hit);
-      if (rays.begin < rays.end) voxel_rays_[kept++] = rays;
+      const std::uint32_t left = rays.end - rays.begin;
+      if (left >= kWorthProbe && before - left >= kWorthProbe)
+        voxel_rays_[kept++] = rays;
+      else if (left > 0)
+        visible_.push_back(rays);
     }
     voxel_rays_.resize(kept);
   }
-  visible_.insert(visible_.end(), voxel_rays_.begin(), voxel_rays_.end());
   cast();
-  voxel_rays_.clear();
   listed_size_ = 0;
 }
 
 // Traces the rays of visible voxels and counts points. With a limit `stop_at`, a first pass traces as many rays as
-// usually suffice, or one if the voxel is full and only the station's bit is missing.
+// usually suffice, or one if the voxel is full and only the station's bit is missing; more and more follow until they
+// do.
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
-  if (stop_at_ != 0) {
-    for (VoxelRays& rays : visible_)
-      if (!full(rays.voxel)) cast(rays, std::min(wanted(rays.voxel), rays.end - rays.begin));
+  if (stop_at_ == 0) {
+    for (VoxelRays& rays : visible_) cast(rays, rays.end - rays.begin);
+    finish();
+    return;
+  }
+  for (std::uint64_t times = 1; !visible_.empty(); times *= kMore) {
+    std::size_t kept = 0;
+    for (VoxelRays rays : visible_) {
+      if (full(rays.voxel)) continue;
+      cast(rays,
+           static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(rays.voxel), rays.end - rays.begin)));
+      if (rays.begin < rays.end) visible_[kept++] = rays;
+    }
+    visible_.resize(kept);
     finish();
   }
-  for (VoxelRays& rays : visible_)
-    if (!full(rays.voxel)) cast(rays, rays.end - rays.begin);
-  finish();
 }
 
 // Takes the first `many` rays.
