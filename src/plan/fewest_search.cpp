@@ -40,7 +40,8 @@ PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std:
 }
 
 bool worth_searching(const SurveyProblem& problem, const PlanConfig& config) {
-  return config.iterations * population_of(problem, config) >= kLeastTries * 2 * problem.stations_max;
+  return !problem.pays_m2 &&
+         config.iterations * population_of(problem, config) >= kLeastTries * 2 * problem.stations_max;
 }
 
 }  // namespace vantage

@@ -61,7 +61,7 @@ class SeenTriangle {
   // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
   // such a point.
   bool hides(const SeenBox& box, double start) const {
-    return is_before(box, start) && inside(0, box) && inside(1, box) && inside(2, box);
+    return inside(0, box) && inside(1, box) && inside(2, box) && is_before(box, start);
   }
   // Whether each hit by such a ray lies beyond `start` and before the box.
   bool is_before(const SeenBox& box, double start) const {

@@ -168,7 +168,10 @@ void SampledVoxelCounter::meet(std::uint32_t triangle) {
 
 bool SampledVoxelCounter::hides(std::uint32_t triangle, const Box& box) {
   const auto start = static_cast<double>(bundle_.start);
-  return seen(triangle).hides(SeenBox(box), start) ||
+  const SeenTriangle one = seen(triangle);
+  const SeenBox seen_box(box);
+  if (!one.is_before(seen_box, start)) return false;
+  return one.hides(seen_box, start) ||
          rays_->patches().hide(triangle, head_, box, start,
                                [&](const Vec3& point, double radius) { return any_ray_near(point, radius); });
 }

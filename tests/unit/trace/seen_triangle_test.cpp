@@ -69,6 +69,9 @@ Certainty certain_hits(std::vector<Float3> (*corners_of)(RandomStream&), std::ui
       if (!seen.must_hit(widen(d)) || !(nearest > 0.1) || !(farthest < 200)) continue;
       ++found.certain;
       EXPECT_TRUE(hit) << "triangle " << k << ", ray " << r;
+      // Before another hit that far, too, whatever Embree's own distance is.
+      EXPECT_NE(test::nearest_hit(caster, {}, d, 0.1f, static_cast<float>(farthest), t), RayBundle::no_hit)
+          << "triangle " << k << ", ray " << r;
       EXPECT_LE(nearest, t) << "triangle " << k << ", ray " << r;
       EXPECT_GE(farthest, t) << "triangle " << k << ", ray " << r;
     }
