@@ -2,6 +2,7 @@
 #include "objective/sparse_covariance.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 
 #include "core/parallel.hpp"
 
@@ -27,10 +28,81 @@ Eigen::MatrixXd inverse_block(const Eigen::SparseMatrix<double>& lower, const Ei
   return inverse;
 }
 
+// A matrix with more of its entries fills up when it is factorised, whatever the order of its rows; beyond so many rows
+// (2 GB) it is left sparse all the same.
+constexpr double kDense = 0.1;
+constexpr Eigen::Index kMostDenseRows = 16'000;
+constexpr Eigen::Index kTile = 96;  // rows and columns of a dense matrix that one task works on
+
+bool fills_up(const Eigen::SparseMatrix<double>& lower) {
+  const auto rows = static_cast<double>(lower.rows());
+  return lower.rows() <= kMostDenseRows && static_cast<double>(lower.nonZeros()) > kDense * rows * rows / 2;
+}
+
+// Calls each(begin, size) for the tiles of rows from `first` on, in parallel.
+template <class Each>
+void for_tiles(Eigen::Index first, Eigen::Index rows, const Each& each) {
+  if (first >= rows) return;
+  parallel::for_all(std::size_t{0}, static_cast<std::size_t>((rows - first + kTile - 1) / kTile), [&](std::size_t t) {
+    const Eigen::Index begin = first + static_cast<Eigen::Index>(t) * kTile;
+    each(begin, std::min(kTile, rows - begin));
+  });
+}
+
+// L of A = L Lᵀ, tile by tile: the same bits on any number of threads. What is above the diagonal means nothing.
+Eigen::MatrixXd dense_factor(const Eigen::SparseMatrix<double>& lower) {
+  Eigen::MatrixXd a(lower);
+  const Eigen::Index n = a.rows();
+  for (Eigen::Index k = 0; k < n; k += kTile) {
+    const Eigen::Index width = std::min(kTile, n - k), next = k + width;
+    auto own = a.block(k, k, width, width);
+    const Eigen::MatrixXd factor = own.llt().matrixL();
+    own = factor;
+    for_tiles(next, n, [&](Eigen::Index i, Eigen::Index size) {
+      auto tile = a.block(i, k, size, width);
+      factor.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(tile);
+    });
+    for_tiles(next, n, [&](Eigen::Index i, Eigen::Index size) {
+      for (Eigen::Index j = next; j <= i; j += kTile) {
+        const Eigen::Index wide = std::min(kTile, n - j);
+        a.block(i, j, size, wide).noalias() -= a.block(i, k, size, width) * a.block(j, k, wide, width).transpose();
+      }
+    });
+  }
+  return a;
+}
+
+// Blocks of A⁻¹ = L⁻ᵀ L⁻¹ from columns of L⁻¹, which begin at the diagonal.
+PartialInverse dense_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
+                             const Eigen::MatrixXd& right) {
+  const Eigen::MatrixXd factor = dense_factor(lower);
+  const Eigen::Index n = factor.rows(), together = std::max(kTile / block, Eigen::Index{1}) * block;
+  const auto l = [&](Eigen::Index from) {
+    return factor.bottomRightCorner(n - from, n - from).triangularView<Eigen::Lower>();
+  };
+  PartialInverse found{.blocks = std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(n / block)), .times = right};
+  parallel::for_all(Eigen::Index{0}, right.cols(), [&](Eigen::Index k) {
+    auto column = found.times.col(k);
+    l(0).solveInPlace(column);
+    factor.transpose().triangularView<Eigen::Upper>().solveInPlace(column);
+  });
+  parallel::for_all(Eigen::Index{0}, (n + together - 1) / together, [&](Eigen::Index t) {
+    const Eigen::Index from = t * together, width = std::min(together, n - from);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Identity(n - from, width);
+    l(from).solveInPlace(columns);
+    for (Eigen::Index at = 0; at < width; at += block) {
+      const auto own = columns.block(at, at, n - from - at, block);
+      found.blocks[static_cast<std::size_t>((from + at) / block)] = own.transpose() * own;
+    }
+  });
+  return found;
+}
+
 }  // namespace
 
 PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
                                const Eigen::MatrixXd& right) {
+  if (fills_up(lower)) return dense_inverse(lower, block, right);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(lower);
   PartialInverse found{.blocks = {}, .times = factor.solve(right)};
   const Eigen::SparseMatrix<double> l = factor.matrixL().nestedExpression();  // below its diagonal of ones
