@@ -34,7 +34,7 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
   };
   const PartialCover cover(problem.matrix, chosen);
   const double whole = cover.value();
-  const std::vector<std::size_t> components = NetworkLinks(problem, chosen, problem.link).counts_without();
+  const std::vector<std::size_t> components = NetworkLinks(problem, chosen, problem.link).trees().without;
   std::vector<Loss> losses;
   for (std::size_t at = problem.existing.size(); at < chosen.size(); ++at) {
     const double coverage = whole - cover.loss(chosen[at]);

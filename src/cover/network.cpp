@@ -102,66 +102,67 @@ void NetworkLinks::replace(std::size_t at, std::size_t joining) {
   });
 }
 
-Components NetworkLinks::components_without(std::size_t at) const {
+NetworkLinks::Trees NetworkLinks::trees() const {
   const std::size_t size = network_.size();
-  if (all_) return {.of = std::vector<std::size_t>(size, 0), .count = 1};
-  Components found{.of = std::vector<std::size_t>(size, size)};
-  std::vector<std::size_t> open;
-  for (std::size_t first = 0; first < size; ++first) {
-    if (first == at || found.of[first] < size) continue;
-    found.of[first] = found.count;
-    open.assign(1, first);
-    while (!open.empty()) {
-      const std::size_t here = open.back();
-      open.pop_back();
-      for (const std::uint32_t other : of(network_[here])) {
-        if (other == at || found.of[other] < size) continue;
-        found.of[other] = found.count;
-        open.push_back(other);
-      }
-    }
-    ++found.count;
-  }
-  return found;
-}
-
-std::vector<std::size_t> NetworkLinks::counts_without() const {
-  const std::size_t size = network_.size();
-  if (all_) return std::vector<std::size_t>(size, 1);
-  // In the tree of a depth-first search, a member cuts off the subtrees that have no link to a member above it. `low`:
-  // the earliest member that a subtree is linked to.
-  std::vector<std::size_t> entered(size, 0), low(size, 0), next(size, 0), parent(size, size), cut_off(size, 0);
-  std::vector<std::size_t> path;
-  std::size_t clock = 0, trees = 0;
+  if (all_) return {.order = {}, .parent = {}, .end = {}, .cut = {}, .without = std::vector<std::size_t>(size, 1)};
+  Trees trees{.order = {},
+              .parent = std::vector<std::size_t>(size, size),
+              .end = std::vector<std::size_t>(size, 0),
+              .cut = std::vector<std::uint8_t>(size, 0),
+              .without = std::vector<std::size_t>(size, 0)};
+  trees.order.reserve(size);
+  // `low`: the earliest member that one or those below it are linked to.
+  std::vector<std::size_t> entered(size, 0), low(size, 0), next(size, 0), path;
+  std::size_t count = 0;
+  const auto enter = [&](std::size_t member) {
+    trees.order.push_back(member);
+    entered[member] = low[member] = trees.order.size();
+    path.push_back(member);
+  };
   for (std::size_t root = 0; root < size; ++root) {
     if (entered[root] > 0) continue;
-    ++trees;
-    entered[root] = low[root] = ++clock;
-    path.assign(1, root);
+    ++count;
+    enter(root);
     while (!path.empty()) {
       const std::size_t at = path.back();
       if (next[at] < of(network_[at]).size()) {
         const std::size_t other = of(network_[at])[next[at]++];
         if (entered[other] == 0) {
-          parent[other] = at;
-          entered[other] = low[other] = ++clock;
-          path.push_back(other);
-        } else if (other != parent[at]) {
+          trees.parent[other] = at;
+          enter(other);
+        } else if (other != trees.parent[at]) {
           low[at] = std::min(low[at], entered[other]);
         }
         continue;
       }
+      trees.end[at] = trees.order.size();
       path.pop_back();
       if (path.empty()) continue;
       const std::size_t above = path.back();
       low[above] = std::min(low[above], low[at]);
-      if (low[at] >= entered[above]) ++cut_off[above];
+      trees.cut[at] = low[at] >= entered[above];
+      trees.without[above] += trees.cut[at];
     }
   }
-  // A root has nothing above: its subtrees are all that is left of its tree.
-  std::vector<std::size_t> counts(size);
-  for (std::size_t at = 0; at < size; ++at) counts[at] = trees + cut_off[at] - (parent[at] == size ? 1 : 0);
-  return counts;
+  // A root has nothing above: what it cuts off is all that is left of its tree.
+  for (std::size_t at = 0; at < size; ++at) trees.without[at] += count - (trees.parent[at] == size ? 1 : 0);
+  return trees;
+}
+
+Components NetworkLinks::components_without(std::size_t at, const Trees& trees) const {
+  const std::size_t size = network_.size();
+  if (all_) return {.of = std::vector<std::size_t>(size, 0), .count = 1};
+  Components found{.of = std::vector<std::size_t>(size, size)};
+  std::size_t rest = size, cut = size, cut_end = 0;  // components: of the tree, and of those that `at` cuts off
+  for (std::size_t place = 0; place < trees.order.size(); ++place) {
+    const std::size_t member = trees.order[place];
+    if (trees.parent[member] == size) rest = size;
+    if (member == at) continue;
+    if (trees.parent[member] == at && trees.cut[member]) cut = found.count++, cut_end = trees.end[member];
+    if (place >= cut_end && rest == size) rest = found.count++;
+    found.of[member] = place < cut_end ? cut : rest;
+  }
+  return found;
 }
 
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link) {

@@ -41,11 +41,19 @@ class NetworkLinks {
   std::span<const std::uint32_t> of(std::size_t candidate) const {
     return all_ ? std::span<const std::uint32_t>() : std::span(places_[candidate]);
   }
-  // Components of the network, of all members but one, and by member their number without it (Hopcroft, Tarjan:
-  // Efficient Algorithms for Graph Manipulation, 1973).
-  Components components() const { return components_without(network_.size()); }
-  Components components_without(std::size_t at) const;  // the member itself is in none: `of` has the network's size
-  std::vector<std::size_t> counts_without() const;
+  // Trees of a depth-first search over the network (Hopcroft, Tarjan: Efficient Algorithms for Graph Manipulation,
+  // 1973): what falls apart without which member.
+  struct Trees {
+    std::vector<std::size_t> order;    // members as they are entered; those below one follow it
+    std::vector<std::size_t> parent;   // by member; the network's size for a root
+    std::vector<std::size_t> end;      // by member: the place in `order` after those below it
+    std::vector<std::uint8_t> cut;     // by member: whether it and those below it have no link above their parent
+    std::vector<std::size_t> without;  // by member: number of components without it
+  };
+  Trees trees() const;
+  // Components of the network, or of all members but one, which is in none: `of` has the network's size.
+  Components components() const { return components_without(network_.size(), trees()); }
+  Components components_without(std::size_t at, const Trees& trees) const;
   // Number of components that a candidate is linked to. `without`: the place of a member that does not count.
   std::size_t joined(const Components& components, std::size_t candidate, std::size_t without) const;
   // Number of components once a candidate has joined; all members count.

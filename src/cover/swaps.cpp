@@ -57,7 +57,7 @@ class SwapSearch {
   bool may_join(std::size_t k, std::size_t leaving_at, std::optional<Components>& others) const {
     if (!joinable_.may_stand(k)) return false;
     if (!links_) return true;
-    if (!others) others = links_->components_without(leaving_at);
+    if (!others) others = links_->components_without(leaving_at, links_->trees());
     return others->count + 1 - links_->joined(*others, k, leaving_at) == 1;
   }
 

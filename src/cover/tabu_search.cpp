@@ -52,8 +52,8 @@ class TabuSearch::BestSwap {
         state_(state),
         now_(state.gains.now()),
         whole_(whole),
-        components_(state.links.components()),
-        components_without_(state.links.counts_without()),
+        trees_(state.links.trees()),
+        components_(state.links.components_without(state.chosen.size(), trees_)),
         coverage_(state.gains.now().value()),
         least_(state.best.violation),
         for_links_(problem.matrix.candidates(), 0) {
@@ -120,8 +120,8 @@ class TabuSearch::BestSwap {
 
   std::size_t components_with(std::size_t joining) {
     if (state_.link <= 0) return 1;
-    const std::size_t count = components_without_[at_];
-    if (count > components_.count && !cut_) cut_ = state_.links.components_without(at_);
+    const std::size_t count = trees_.without[at_];
+    if (count > components_.count && !cut_) cut_ = state_.links.components_without(at_, trees_);
     return count + 1 - state_.links.joined(cut_ ? *cut_ : components_, joining, at_);
   }
 
@@ -129,8 +129,8 @@ class TabuSearch::BestSwap {
   const State& state_;
   const CoverGains& now_;
   double whole_;
+  NetworkLinks::Trees trees_;
   Components components_;
-  std::vector<std::size_t> components_without_;  // their number, by place
   CoverUnits coverage_;
   double least_;  // violation of the best network so far
   Swap best_;

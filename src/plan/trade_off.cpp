@@ -23,7 +23,7 @@ bool drop_one(const CoverProblem& problem, std::vector<std::size_t>& network) {
   const PartialCover cover(problem.matrix, network);
   const NetworkLinks links(problem, network, problem.link);
   const std::size_t parts = links.components().count;
-  const std::vector<std::size_t> parts_without = links.counts_without();
+  const std::vector<std::size_t> parts_without = links.trees().without;
   std::size_t least = network.size();
   double lost = std::numeric_limits<double>::infinity();
   for (std::size_t at = problem.existing.size(); at < network.size(); ++at) {
