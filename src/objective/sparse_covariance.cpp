@@ -28,16 +28,20 @@ Eigen::MatrixXd inverse_block(const Eigen::SparseMatrix<double>& lower, const Ei
   return inverse;
 }
 
-// A matrix with more of its entries fills up when it is factorised, whatever the order of its rows; beyond so many rows
-// (2 GB) it is left sparse all the same.
-constexpr double kDense = 0.1;
-constexpr Eigen::Index kMostDenseRows = 16'000;
-constexpr Eigen::Index kTile = 96;  // rows and columns of a dense matrix that one task works on
+// Operations of a sparse factor that take as long as one of a dense one, in one thread.
+constexpr double kSparseOperation = 10;
+constexpr Eigen::Index kMostDenseRows = 16'000;  // 2 GB; more are left sparse
+constexpr Eigen::Index kTile = 96;               // rows and columns of a dense matrix that one task works on
 
-bool fills_up(const Eigen::SparseMatrix<double>& lower) {
-  const auto rows = static_cast<double>(lower.rows());
-  return lower.rows() <= kMostDenseRows && static_cast<double>(lower.nonZeros()) > kDense * rows * rows / 2;
-}
+class SparseFactor : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
+ public:
+  // Whether so many of its columns fill up that a dense factor takes less time. REQUIRES: analyzePattern() was called.
+  bool fills_up() const {
+    const auto rows = static_cast<double>(m_nonZerosPerCol.size());
+    const double operations = m_nonZerosPerCol.cast<double>().squaredNorm();
+    return m_nonZerosPerCol.size() <= kMostDenseRows && kSparseOperation * operations > rows * rows * rows / 3;
+  }
+};
 
 // Calls each(begin, size) for the tiles of rows from `first` on, in parallel.
 template <class Each>
@@ -102,8 +106,10 @@ PartialInverse dense_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::In
 
 PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
                                const Eigen::MatrixXd& right) {
-  if (fills_up(lower)) return dense_inverse(lower, block, right);
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(lower);
+  SparseFactor factor;
+  factor.analyzePattern(lower);
+  if (factor.fills_up()) return dense_inverse(lower, block, right);
+  factor.factorize(lower);
   PartialInverse found{.blocks = {}, .times = factor.solve(right)};
   const Eigen::SparseMatrix<double> l = factor.matrixL().nestedExpression();  // below its diagonal of ones
   const Eigen::VectorXd pivots = factor.vectorD();
