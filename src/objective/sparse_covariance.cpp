@@ -35,7 +35,7 @@ constexpr Eigen::Index kTile = 96;               // rows and columns of a dense 
 
 class SparseFactor : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
  public:
-  // Whether so many of its columns fill up that a dense factor takes less time. REQUIRES: analyzePattern() was called.
+  // True if so many of its columns fill up that a dense factor takes less time. REQUIRES: analyzePattern() was called.
   bool fills_up() const {
     const auto rows = static_cast<double>(m_nonZerosPerCol.size());
     const double operations = m_nonZerosPerCol.cast<double>().squaredNorm();

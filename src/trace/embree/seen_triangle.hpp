@@ -44,7 +44,7 @@ class SeenTriangle {
     least_slope_ = distance_doubt_ < kMostDoubt ? slope_doubt_ / (kMostDoubt - distance_doubt_) : kNever;
   }
 
-  // Whether Embree is certain to report a hit, if its distance is known.
+  // True if Embree is certain to report a hit whose distance is known.
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_ && dot(edge_[1], d) > tolerance_ && dot(edge_[2], d) > tolerance_;
   }

@@ -29,7 +29,7 @@ constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel are probed one by one for an occluder as long as there are as many, and each hides as many: to trace
 // fewer takes no longer than a probe.
 constexpr std::uint32_t kWorthProbe = 8;
-// With a limit, so many times as many rays of a voxel are traced as before.
+// Rays of a voxel that are traced next where there is a limit, in times of those before.
 constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
