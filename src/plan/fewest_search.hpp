@@ -20,9 +20,9 @@ SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, doub
 // candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
-// True if the search tries some networks for each coordinate, and these may be better. With fewer it cannot tell
-// directions apart, and where all that so many stations can capture is required, moving one loses some: the network it
-// begins at stays the best.
+// True if the search tries some networks for each coordinate, and has something to trade. With fewer it cannot tell
+// directions apart, and the network it begins at stays the best. Where all that so many stations can capture is
+// required, it can only give up capture, within the margins of that limit.
 bool worth_searching(const SurveyProblem& problem, const PlanConfig& config);
 
 }  // namespace vantage

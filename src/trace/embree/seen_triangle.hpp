@@ -48,7 +48,6 @@ class SeenTriangle {
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_ && dot(edge_[1], d) > tolerance_ && dot(edge_[2], d) > tolerance_;
   }
-  double distance(const Vec3& d) const { return height_ / dot(normal_, d); }
   // Bounds on the distance that Embree reports for a hit; 0 and infinity if nothing is known of it.
   double nearest_hit(const Vec3& d) const {
     const double slope = dot(normal_, d);
@@ -60,9 +59,7 @@ class SeenTriangle {
   }
   // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
   // such a point.
-  bool hides(const SeenBox& box, double start) const {
-    return inside(0, box) && inside(1, box) && inside(2, box) && is_before(box, start);
-  }
+  bool hides(const SeenBox& box, double start) const { return covers(box) && is_before(box, start); }
   // Whether each hit by such a ray lies beyond `start` and before the box.
   bool is_before(const SeenBox& box, double start) const {
     const double beyond = box.least(normal_), slope = beyond / box.far;
@@ -70,6 +67,8 @@ class SeenTriangle {
     const double most = doubt(slope);
     return height_ * (1 - most) > start * std::sqrt(dot(normal_, normal_)) && beyond > height_ * (1 + most);
   }
+  // True if Embree is certain to report a hit for every ray that reaches a point of the box, if its distance is known.
+  bool covers(const SeenBox& box) const { return inside(0, box) && inside(1, box) && inside(2, box); }
   // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
   // The edges are those from corner k to the next.
   bool inside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k]) > tolerance_ * box.far; }

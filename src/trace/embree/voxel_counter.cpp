@@ -171,7 +171,7 @@ bool SampledVoxelCounter::hides(std::uint32_t triangle, const Box& box) {
   const SeenTriangle one = seen(triangle);
   const SeenBox seen_box(box);
   if (!one.is_before(seen_box, start)) return false;
-  return one.hides(seen_box, start) ||
+  return one.covers(seen_box) ||
          rays_->patches().hide(triangle, head_, box, start,
                                [&](const Vec3& point, double radius) { return any_ray_near(point, radius); });
 }
