@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace vantage {
 namespace {
@@ -165,7 +167,7 @@ MatrixXd RegistrationAdjustment::mean() const {
 
 PartialInverse RegistrationAdjustment::inverse_times(const MatrixXd& right) const {
   const Eigen::Index d = unknowns_;
-  if (stations_.size() >= kSparseStations) return partial_inverse(sparse_information(), d, right);
+  if (stations_.size() >= kSparseStations) return partial_inverse(sparse_information(), right);
   const MatrixXd all = covariance();
   PartialInverse own{.blocks = {}, .times = all * right};
   for (std::size_t k = 0; k < stations_.size(); ++k) {
@@ -278,28 +280,21 @@ MatrixXd RegistrationAdjustment::information() const {
   return all;
 }
 
-// The lower triangle, of the unknowns alone.
-Eigen::SparseMatrix<double> RegistrationAdjustment::sparse_information() const {
-  const Eigen::Index d = unknowns_, skipped = 6 - d, size = static_cast<Eigen::Index>(stations_.size()) * d;
-  std::vector<Matrix6d> own(stations_.size(), Matrix6d::Zero());
-  std::vector<Eigen::Triplet<double>> entries;
+// Of the unknowns alone.
+SparseBlocks RegistrationAdjustment::sparse_information() const {
+  const Eigen::Index d = unknowns_;
+  const auto of_unknowns = [d](const Matrix6d& h) { return h.bottomRightCorner(d, d); };
+  SparseBlocks all{.diagonal = std::vector<SmallBlock>(stations_.size(), SmallBlock::Zero(d, d)), .pairs = {}};
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;  // pairs that surfaces and targets both tie
   for_information([&](std::size_t a, std::size_t b, const Matrix6d& h) {
-    own[a] += h;
+    all.diagonal[a] += of_unknowns(h);
     if (a == b) return;
-    own[b] += h;
-    const auto i = static_cast<Eigen::Index>(std::max(a, b)) * d, j = static_cast<Eigen::Index>(std::min(a, b)) * d;
-    for (Eigen::Index r = 0; r < d; ++r)
-      for (Eigen::Index c = 0; c < d; ++c) entries.emplace_back(i + r, j + c, -h(skipped + r, skipped + c));
+    all.diagonal[b] += of_unknowns(h);
+    const auto [at, added] = known.try_emplace(std::minmax(a, b), all.pairs.size());
+    if (added) all.pairs.push_back({std::max(a, b), std::min(a, b), SmallBlock::Zero(d, d)});
+    all.pairs[at->second].block -= of_unknowns(h);
   });
-  for (std::size_t k = 0; k < own.size(); ++k)
-    for (Eigen::Index r = 0; r < d; ++r)
-      for (Eigen::Index c = 0; c <= r; ++c) {
-        const auto at = static_cast<Eigen::Index>(k) * d;
-        entries.emplace_back(at + r, at + c, own[k](skipped + r, skipped + c));
-      }
-  Eigen::SparseMatrix<double> lower(size, size);
-  lower.setFromTriplets(entries.begin(), entries.end());
-  return lower;
+  return all;
 }
 
 // A target's centre is unknown, so k sightings of weights w give w_i w_j / Σw for each pair, as a plane does but in all

@@ -75,7 +75,7 @@ class RegistrationAdjustment {
   std::size_t pair(std::size_t i, std::size_t j) const;  // its first sum
   bool tied(std::size_t i, std::size_t j) const;
   Eigen::MatrixXd information() const;
-  Eigen::SparseMatrix<double> sparse_information() const;
+  SparseBlocks sparse_information() const;
   template <class Add>
   void for_information(const Add& add) const;
   template <class Add>

@@ -2,19 +2,33 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCore>
+#include <cstddef>
 #include <vector>
 
 namespace vantage {
 
-// Parts of the inverse of a sparse symmetric positive definite matrix, without the rest of it.
+// At most 6 × 6.
+using SmallBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+// A symmetric matrix of square blocks of one size, of which most are 0.
+struct SparseBlocks {
+  struct Pair {
+    std::size_t row, column;  // row > column; each pair once
+    SmallBlock block;
+  };
+  std::vector<SmallBlock> diagonal;
+  std::vector<Pair> pairs;
+
+  Eigen::MatrixXd dense() const;
+};
+
+// Parts of the inverse of a symmetric positive definite matrix, without the rest of it.
 struct PartialInverse {
-  std::vector<Eigen::MatrixXd> blocks;  // the blocks of `block` rows on its diagonal
+  std::vector<Eigen::MatrixXd> blocks;  // on its diagonal
   Eigen::MatrixXd times;                // inverse · right
 };
-// `lower`: the matrix's lower triangle. Each block by a forward substitution of its own, in parallel; a matrix that
-// would fill up is factorised as a dense one, in parallel too. REQUIRES: rows a multiple of `block`.
-PartialInverse partial_inverse(const Eigen::SparseMatrix<double>& lower, Eigen::Index block,
-                               const Eigen::MatrixXd& right);
+// In one thread by a sparse factor; a matrix that would fill up is factorised as a dense one, in parallel. The same
+// bits on any number of threads. REQUIRES: at least one block.
+PartialInverse partial_inverse(const SparseBlocks& matrix, const Eigen::MatrixXd& right);
 
 }  // namespace vantage

@@ -668,15 +668,20 @@ TEST_P(PartialInverseTest, HasTheBlocksOfTheInverse) {
       full.block(i, j, block, block) -= part.transpose() * part;
       full.block(j, i, block, block) -= part.transpose() * part;
     }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      if (full(i, j) != 0 || i / block == j / block) entries.emplace_back(i, j, full(i, j));
-  Eigen::SparseMatrix<double> lower(size, size);
-  lower.setFromTriplets(entries.begin(), entries.end());
-  if (tied < 0.1) ASSERT_LT(lower.nonZeros(), size * size / 4);
+  SparseBlocks matrix;
+  for (std::size_t i = 0; i < 40; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const SmallBlock own =
+          full.block(static_cast<Eigen::Index>(i) * block, static_cast<Eigen::Index>(j) * block, block, block);
+      if (i == j)
+        matrix.diagonal.push_back(own);
+      else if (!own.isZero(0))
+        matrix.pairs.push_back({i, j, own});
+    }
+  ASSERT_EQ(matrix.dense(), full);
+  if (tied < 0.1) ASSERT_LT(matrix.pairs.size(), 40u * 39 / 2 / 4);
   const Eigen::MatrixXd right = Eigen::MatrixXd::NullaryExpr(size, 3, number), inverse = full.inverse();
-  const PartialInverse found = partial_inverse(lower, block, right);
+  const PartialInverse found = partial_inverse(matrix, right);
   EXPECT_LT((found.times - inverse * right).cwiseAbs().maxCoeff(), 1e-12);
   ASSERT_EQ(found.blocks.size(), 40u);
   for (std::size_t k = 0; k < found.blocks.size(); ++k) {
