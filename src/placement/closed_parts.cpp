@@ -117,7 +117,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> GroundField::climbs(const M
   return links;
 }
 
-GroundField::Ways GroundField::ways_from_reached() const {
+const GroundField::Ways& GroundField::ways_from_reached() {
+  if (!ways_) ways_ = find_ways();
+  return *ways_;
+}
+
+GroundField::Ways GroundField::find_ways() const {
   Ways ways{std::vector<std::uint8_t>(z_.size(), kEfforts), std::vector<std::uint32_t>(z_.size(), nowhere)};
   std::array<std::vector<std::uint32_t>, kEfforts> open;
   std::vector<std::uint8_t> done(z_.size(), 0);
@@ -397,7 +402,7 @@ void GroundField::enter_closed(const MeshTree& tree) {
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i), all += parts_[i].area(cell_);
   if (all < enough) return;
-  const Ways ways = ways_from_reached();
+  const Ways& ways = ways_from_reached();
   const std::vector<std::uint32_t> first = first_closed(ways);
   std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, ClosedPart>>> together;  // by the first on the way
   for (const std::uint32_t i : told) {
@@ -414,16 +419,17 @@ void GroundField::enter_closed(const MeshTree& tree) {
       entered_.push_back(std::move(part));
     }
   }
+  if (!entered_.empty()) ways_.reset();
   std::ranges::stable_sort(entered_, std::ranges::greater{}, &ClosedPart::area_m2);
 }
 
-std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tree) const {
+std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tree) {
   std::vector<ClosedPart> closed;
   std::vector<std::uint32_t> told;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i);
   if (told.empty()) return closed;
-  const Ways ways = ways_from_reached();
+  const Ways& ways = ways_from_reached();
   const double reached = reached_area();
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);

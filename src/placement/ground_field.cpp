@@ -11,6 +11,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -260,21 +261,40 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
     while (at < keys.size() && keys[at] < key) ++at;
     return at < keys.size() && keys[at] == key;
   };
-  std::size_t next_wide = 0, next_covered = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto column = static_cast<std::uint32_t>(all[i] >> 32);
-    const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
-    const bool is_thin = any_thin && !is_next(wide, next_wide, all[i]);
-    const bool at_middle = is_thin && is_next(covered, next_covered, all[i]);
-    if (!column_.empty() && column_.back() == column && z - z_.back() < apart) {
-      if (!is_thin) taken_.back() = 0;
-      if (at_middle && (taken_.back() & kThin)) taken_.back() |= kCovered;
-      continue;
+  constexpr std::size_t kTogether = 1 << 15;  // columns of one task
+  struct Merged {
+    std::vector<std::uint32_t> column;
+    std::vector<float> z;
+    std::vector<std::uint8_t> taken;
+  };
+  std::vector<Merged> merged((count + kTogether - 1) / kTogether);
+  parallel::for_all(std::size_t{0}, merged.size(), [&](std::size_t block) {
+    auto& [columns, heights, taken] = merged[block];
+    const auto from = [&](const std::vector<std::uint64_t>& keys, std::size_t number) {
+      const std::uint64_t key = std::uint64_t{number * kTogether} << 32;
+      return static_cast<std::size_t>(std::ranges::lower_bound(keys, key) - keys.begin());
+    };
+    std::size_t next_wide = any_thin ? from(wide, block) : 0, next_covered = any_thin ? from(covered, block) : 0;
+    for (std::size_t i = from(all, block), end = from(all, block + 1); i < end; ++i) {
+      const auto column = static_cast<std::uint32_t>(all[i] >> 32);
+      const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
+      const bool is_thin = any_thin && !is_next(wide, next_wide, all[i]);
+      const bool at_middle = is_thin && is_next(covered, next_covered, all[i]);
+      if (!columns.empty() && columns.back() == column && z - heights.back() < apart) {
+        if (!is_thin) taken.back() = 0;
+        if (at_middle && (taken.back() & kThin)) taken.back() |= kCovered;
+        continue;
+      }
+      columns.push_back(column);
+      heights.push_back(z);
+      taken.push_back(static_cast<std::uint8_t>((is_thin ? kThin : 0) | (at_middle ? kCovered : 0)));
+      ++first_[column + 1];
     }
-    column_.push_back(column);
-    z_.push_back(z);
-    taken_.push_back(static_cast<std::uint8_t>((is_thin ? kThin : 0) | (at_middle ? kCovered : 0)));
-    ++first_[column + 1];
+  });
+  for (const auto& [columns, heights, taken] : merged) {
+    column_.insert(column_.end(), columns.begin(), columns.end());
+    z_.insert(z_.end(), heights.begin(), heights.end());
+    taken_.insert(taken_.end(), taken.begin(), taken.end());
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
 }
@@ -413,26 +433,51 @@ bool GroundField::is_layer(std::uint32_t sample) const {
          z_[above] - z_[sample] < static_cast<float>(height_);
 }
 
-void GroundField::find_parts() {
-  part_.assign(z_.size(), nowhere);
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t seed = 0; seed < z_.size(); ++seed) {
-    if ((taken_[seed] & kObstacles) || part_[seed] != nowhere) continue;
-    const auto number = static_cast<std::uint32_t>(parts_.size());
-    Part& part = parts_.emplace_back();
-    part.first = seed;
-    part_[seed] = number;
-    open.assign(1, seed);
-    while (!open.empty()) {
-      const std::uint32_t s = open.back();
-      open.pop_back();
-      part.at_door = part.at_door || (taken_[s] & kAtDoor);
-      for_neighbours(s, [&](std::uint32_t n) {
-        if ((taken_[n] & kObstacles) || part_[n] != nowhere) return;
-        part_[n] = number;
-        open.push_back(n);
-      });
+// The first sample of each sample's part, which is its own for what is taken.
+std::vector<std::uint32_t> GroundField::first_of_parts() const {
+  std::vector<std::uint32_t> before(z_.size());  // of the same part, or itself
+  std::iota(before.begin(), before.end(), 0U);
+  const auto of = [&](std::uint32_t s) { return std::atomic_ref<std::uint32_t>(before[s]); };
+  const auto first = [&](std::uint32_t s) {
+    for (;;) {
+      const std::uint32_t next = of(s).load(std::memory_order_relaxed);
+      if (next == s) return s;
+      const std::uint32_t further = of(next).load(std::memory_order_relaxed);
+      if (further != next) of(s).store(further, std::memory_order_relaxed);  // a shorter way for the next one
+      s = next;
     }
+  };
+  const auto unite = [&](std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = first(a), b = first(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      if (std::uint32_t own = a; of(a).compare_exchange_strong(own, b, std::memory_order_relaxed)) return;
+    }
+  };
+  parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
+    if (taken_[s] & kObstacles) return;
+    for_neighbours(s, [&](std::uint32_t n) {
+      if (n < s && !(taken_[n] & kObstacles)) unite(s, n);
+    });
+  });
+  parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()),
+                    [&](std::uint32_t s) { of(s).store(first(s), std::memory_order_relaxed); });
+  return before;
+}
+
+void GroundField::find_parts() {
+  const std::vector<std::uint32_t> first = first_of_parts();
+  part_.assign(z_.size(), nowhere);
+  for (std::uint32_t s = 0; s < z_.size(); ++s) {
+    if (taken_[s] & kObstacles) continue;
+    if (first[s] == s) {
+      part_[s] = static_cast<std::uint32_t>(parts_.size());
+      parts_.emplace_back().first = s;
+    }
+    part_[s] = part_[first[s]];
+    Part& part = parts_[part_[s]];
+    part.at_door = part.at_door || (taken_[s] & kAtDoor);
   }
   begin_.assign(parts_.size() + 1, 0);
   for (const std::uint32_t part : part_)

@@ -77,7 +77,7 @@ class GroundField {
   const std::vector<ClosedPart>& entered() const { return entered_; }
   // Other sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
   // REQUIRES: reach() was called.
-  std::vector<ClosedPart> not_entered(const MeshTree& tree) const;
+  std::vector<ClosedPart> not_entered(const MeshTree& tree);
   // Area of the reached parts.
   double reached_area() const;
   // Area of ground under the sky, reached or not, at any height: no roof, and no top of something that stands there.
@@ -126,6 +126,7 @@ class GroundField {
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
   void find_samples(const SceneData& scene, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
+  std::vector<std::uint32_t> first_of_parts() const;
   void find_parts();
   bool is_layer(std::uint32_t sample) const;
   // Level lines of sight, at knee and head height, that lead out of the model from the edge of the part.
@@ -144,7 +145,8 @@ class GroundField {
     std::vector<std::uint8_t> effort;  // per sample; kEfforts: none
     std::vector<std::uint32_t> from;   // per sample: the one before it
   };
-  Ways ways_from_reached() const;
+  const Ways& ways_from_reached();
+  Ways find_ways() const;
   // Samples that are linked by rungs or steep steps, both ways, sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs(const MeshTree& tree) const;
   std::vector<std::uint32_t> narrow_ones(std::vector<std::uint8_t>& marked) const;
@@ -202,6 +204,7 @@ class GroundField {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs_;  // if any part is to be told
   std::vector<glm::dvec3> entries_;
   std::vector<ClosedPart> entered_;
+  std::optional<Ways> ways_;  // as long as nothing more is entered
   std::optional<HighSteps> high_steps_;
 };
 

@@ -328,7 +328,7 @@ ClosedPart told(const GroundField::ClosedPart& part, const SceneData& scene, dou
   return out;
 }
 
-void tell_entries(WalkableSurface& surface, const GroundField& field, const MeshTree& tree, const SceneData& scene) {
+void tell_entries(WalkableSurface& surface, GroundField& field, const MeshTree& tree, const SceneData& scene) {
   for (const glm::dvec3& entry : field.entries()) surface.entries.push_back(to_vec3(entry) + scene.origin);
   const std::vector<GroundField::ClosedPart> closed = field.not_entered(tree);
   double all = field.reached_area();
@@ -377,12 +377,12 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
   // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
-  const bool around = field.ground_area(lower_half_z) >= ground_share * outline_area(scene);
-  const bool inside = field.covered_area() >= ground_share * field.outline();
+  const auto inside = [&] { return field.covered_area() >= ground_share * field.outline(); };
+  const auto around = [&] { return field.ground_area(lower_half_z) >= ground_share * outline_area(scene); };
   const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
   const auto under_the_sky = [&] { return field.open_ground_area(tree) >= ground_share * field.outline(); };
-  if (field.entries().empty() || (options.enter.empty() && !around && !inside && !floors() && !under_the_sky()))
-    return {};
+  if (field.entries().empty()) return {};
+  if (options.enter.empty() && !inside() && !around() && !floors() && !under_the_sky()) return {};
   if (options.enter.empty() && options.enter_closed) field.enter_closed(tree);
   if (scene.shares()) upward = reached_triangles(scene, field, options, false, points);
   add_thin_floors(field, points, upward);
