@@ -31,6 +31,11 @@ class Growth {
         joinable_(problem, network_) {
     const std::size_t existing = problem.existing.size(), most = problem.most;
     most_ = most < none_ - std::min(existing, none_) ? existing + most : none_;
+    if (problem.link <= 0) return;
+    linked_.resize(none_);
+    for (std::size_t k = 0; k < none_; ++k)
+      for (const StationGraph::Overlap& other : problem.graph->overlaps(k))
+        if (static_cast<double>(other.share) >= problem.link) linked_[k].push_back(other.candidate);
   }
 
   std::vector<std::size_t> run() {
@@ -99,7 +104,8 @@ class Growth {
   std::vector<std::size_t> free_, network_;
   CoverGains gains_;
   Joinable joinable_;
-  std::size_t most_ = 0;  // largest number in the network
+  std::size_t most_ = 0;                            // largest number in the network
+  std::vector<std::vector<std::uint32_t>> linked_;  // by candidate, rising; none if links are not asked for
 };
 
 // The candidate with the most coverage in the component that covers most as a whole.
@@ -164,9 +170,8 @@ Path Growth::best_path() const {
   for (std::size_t hop = 1; hop <= kLongestPath; ++hop) {
     next.clear();
     for (const std::size_t before : reached)
-      for (const StationGraph::Overlap& other : problem_.graph->overlaps(before)) {
-        const std::size_t k = other.candidate;
-        if (hops[k] < none_ || static_cast<double>(other.share) < problem_.link || !joinable_.may_stand(k)) continue;
+      for (const std::size_t k : linked_[before]) {
+        if (hops[k] < none_ || !joinable_.may_stand(k)) continue;
         if ((from[k] < none_ && units(before) <= units(from[k])) || !may_follow(k, before, from)) continue;
         if (from[k] == none_) next.push_back(k);
         from[k] = before;
@@ -220,9 +225,8 @@ Path Growth::path_from(const Components& parts, std::size_t part) const {
   }
   for (std::size_t i = 0; i < open.size(); ++i) {
     const std::size_t at = open[i];
-    for (const StationGraph::Overlap& one : problem_.graph->overlaps(at)) {
-      const std::size_t k = one.candidate;
-      if (seen[k] || static_cast<double>(one.share) < problem_.link || (!other[k] && !joinable_.may_stand(k))) continue;
+    for (const std::size_t k : linked_[at]) {
+      if (seen[k] || (!other[k] && !joinable_.may_stand(k))) continue;
       if (!may_follow(k, at, from)) continue;
       from[k] = at, seen[k] = 1;
       if (!other[k]) {

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Operations of a sparse factor that take as long as one of a dense one, in one thread.
+// Operations of a dense factor, which many threads share, that are worth one of a sparse factor, which one thread
+// makes.
 constexpr double kSparseOperation = 2;
 constexpr Index kMostDenseRows = 16'000;  // 2 GB; more are left sparse
 // Share of the rows of the last column of a supernode that its first one needs.
