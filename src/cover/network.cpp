@@ -2,6 +2,7 @@
 #include "cover/network.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <numeric>
@@ -182,9 +183,16 @@ void Joinable::count(std::size_t candidate, int by) {
 }
 
 std::size_t NetworkLinks::joined(const Components& components, std::size_t candidate, std::size_t without) const {
-  std::size_t found = 0;
   const std::span<const std::uint32_t> places = of(candidate);
   if (components.count == 1) return places.size() > 1 || (places.size() == 1 && places.front() != without) ? 1 : 0;
+  constexpr std::size_t kBits = 64;
+  if (components.count <= kBits) {
+    std::uint64_t bits = 0;
+    for (const std::uint32_t place : places)
+      if (place != without) bits |= std::uint64_t{1} << components.of[place];
+    return static_cast<std::size_t>(std::popcount(bits));
+  }
+  std::size_t found = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] == without) continue;
     const auto same = [&](std::uint32_t before) {

@@ -78,25 +78,29 @@ std::array<double, 3> normal_of(const std::array<Float3, 3>& p) {
   return n;
 }
 
-// Mean of z over a square of 2r + 1 pixels, by running sums; `floor` replaces empty pixels.
+// Mean of z over a square of 2r + 1 pixels, by running sums of columns and rows; `floor` replaces empty pixels.
 std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float floor) {
   const std::size_t w = heights.window.columns, h = heights.window.rows;
-  std::vector<double> sums((w + 1) * (h + 1), 0.0);
-  for (std::size_t y = 0; y < h; ++y) {
-    double row = 0;
-    for (std::size_t x = 0; x < w; ++x) {
-      row += std::max(heights.z[y * w + x], floor);
-      sums[(y + 1) * (w + 1) + x + 1] = sums[y * (w + 1) + x + 1] + row;
-    }
-  }
+  const std::size_t band = std::max(std::size_t{256}, 4 * r);  // rows that one task goes down
   std::vector<float> mean(w * h);
-  parallel::for_all(std::size_t{0}, h, [&](std::size_t y) {
-    const std::size_t y0 = y > r ? y - r : 0, y1 = std::min(h, y + r + 1);
-    for (std::size_t x = 0; x < w; ++x) {
-      const std::size_t x0 = x > r ? x - r : 0, x1 = std::min(w, x + r + 1);
-      const double sum =
-          sums[y1 * (w + 1) + x1] - sums[y0 * (w + 1) + x1] - sums[y1 * (w + 1) + x0] + sums[y0 * (w + 1) + x0];
-      mean[y * w + x] = static_cast<float>(sum / static_cast<double>((y1 - y0) * (x1 - x0)));
+  parallel::for_all(std::size_t{0}, (h + band - 1) / band, [&](std::size_t task) {
+    std::vector<double> columns(w, 0.0);  // of the rows from `first` to `end`
+    const auto add = [&](std::size_t row, double times) {
+      const float* const z = heights.z.data() + row * w;
+      for (std::size_t x = 0; x < w; ++x) columns[x] += times * std::max(z[x], floor);
+    };
+    std::size_t first = task * band > r ? task * band - r : 0, end = first;
+    for (std::size_t y = task * band; y < std::min(h, (task + 1) * band); ++y) {
+      while (end < std::min(h, y + r + 1)) add(end++, 1);
+      while (first + r < y) add(first++, -1);
+      double sum = 0;
+      for (std::size_t x = 0; x < std::min(w, r); ++x) sum += columns[x];
+      for (std::size_t x = 0; x < w; ++x) {
+        if (x + r < w) sum += columns[x + r];
+        if (x > r) sum -= columns[x - r - 1];
+        const std::size_t count = (end - first) * (std::min(w, x + r + 1) - (x > r ? x - r : 0));
+        mean[y * w + x] = static_cast<float>(sum / static_cast<double>(count));
+      }
     }
   });
   return mean;

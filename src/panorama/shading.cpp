@@ -42,6 +42,13 @@ PanoramaShading::PanoramaShading(std::uint32_t rows, std::uint32_t columns, std:
       reach_ = std::max(reach_, static_cast<std::uint32_t>(std::abs(down)));
     }
   }
+  for (const float sine : sin_zenith_) {
+    // Near the poles a ray step across is narrower than one down.
+    const float stretch = std::min(1 / sine, static_cast<float>(columns) / 64);
+    const std::int64_t all = columns;
+    for (const Tap& tap : taps_)
+      across_.push_back(static_cast<std::uint32_t>((std::lround(tap.across * stretch) % all + all) % all));
+  }
 }
 
 void PanoramaShading::turn(const StationSetup& setup) {
@@ -59,16 +66,13 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
   const float range = here.range[column];
   const glm::vec3 normal = glm::make_vec3(here.normal[column].data());
   const glm::vec3 view = direction(row, column);
-  // Near the poles a ray step across is narrower than one down.
-  const float stretch = std::min(1 / sin_zenith_[row], static_cast<float>(columns_) / 64);
-
   float covered = 0;
-  for (const Tap& tap : taps_) {
+  for (std::size_t k = 0; k < taps_.size(); ++k) {
+    const Tap& tap = taps_[k];
     const std::int64_t other_row = static_cast<std::int64_t>(row) + tap.down;
     if (other_row < 0 || other_row >= rows_ || !window.holds(other_row)) continue;
-    const auto across = static_cast<std::int64_t>(std::lround(tap.across * stretch));
-    const auto other_column =
-        static_cast<std::uint32_t>((column + across + 4 * static_cast<std::int64_t>(columns_)) % columns_);
+    std::uint32_t other_column = column + across_[row * taps_.size() + k];
+    if (other_column >= columns_) other_column -= columns_;
     const auto there = static_cast<std::uint32_t>(other_row);
     const float other_range = window[there].range[other_column];
     if (!std::isfinite(other_range)) continue;

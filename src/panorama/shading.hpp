@@ -73,6 +73,7 @@ class PanoramaShading {
   bool turned_ = false;
   glm::mat3 survey_from_scanner_{1};
   std::vector<Tap> taps_;
+  std::vector<std::uint32_t> across_;  // by row and tap: columns to its right, all around
   std::vector<float> sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_;
 };
 
