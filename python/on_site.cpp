@@ -17,7 +17,10 @@ Options<OnSiteOptions> on_site_options() {
       .add("detour", &OnSiteOptions::detour,
            "Length over straight line of paths that the search area does not connect.")
       .add("entrance", &OnSiteOptions::entrance,
-           "Ground (x, y, z) where people enter and leave; None: at the first station.");
+           "Ground (x, y, z) where people enter and leave; None: at the first station.")
+      .add("day_min", &OnSiteOptions::day_min,
+           "Minutes of the longest session; a longer round is split. None: it is not.")
+      .add("crews", &OnSiteOptions::crews, "Crews that work side by side, a session each, every day.");
 }
 
 }  // namespace
@@ -61,18 +64,38 @@ void add_visits(py::module_& m) {
   options.attributes(type);
   options.pickles(type);
 
-  py::class_<Visit> visit(m, "Visit", "One round: in at the entrance, to every station, and back out.");
-  visit.def_readonly("order", &Visit::order, "Indices of the stations; unusable ones are left out.")
-      .def_readonly("legs_m", &Visit::legs_m, "Path to each in that order, then back out, metres.")
-      .def_readonly("paths", &Visit::paths, "Ground points of each of these paths: lists of (x, y, z).")
-      .def_readonly("walk_m", &Visit::walk_m, "All legs together.")
-      .def_readonly("scan_min", &Visit::scan_min, "Minutes of scanning.")
-      .def_readonly("set_up_min", &Visit::set_up_min, "Minutes of setting up.")
-      .def_readonly("photos_min", &Visit::photos_min, "Minutes of taking pictures.")
-      .def_readonly("walk_min", &Visit::walk_min, "Minutes of walking.")
-      .def_readonly("minutes", &Visit::minutes, "Scan, set-up, photos and walking together.")
-      .def_readonly("unconnected", &Visit::unconnected, "Legs that the search area does not connect.")
-      .def_readonly("unlinked", &Visit::unlinked, "Stations without a link to the one before; 0 if no links are known.")
+  py::class_<Round> round(m, "Round", "In at the entrance, to every station, and back out.");
+  round.def_readonly("order", &Round::order, "Indices of the stations; unusable ones are left out.")
+      .def_readonly("arrive_min", &Round::arrive_min, "Minutes from the start to the arrival at each, in that order.")
+      .def_readonly("stay_min", &Round::stay_min, "Minutes at each: scan, set-up and photos.")
+      .def_readonly("legs_m", &Round::legs_m, "Path to each in that order, then back out, metres.")
+      .def_readonly("paths", &Round::paths, "Ground points of each of these paths: lists of (x, y, z).")
+      .def_readonly("walk_m", &Round::walk_m, "All legs together.")
+      .def_readonly("scan_min", &Round::scan_min, "Minutes of scanning.")
+      .def_readonly("set_up_min", &Round::set_up_min, "Minutes of setting up.")
+      .def_readonly("photos_min", &Round::photos_min, "Minutes of taking pictures.")
+      .def_readonly("walk_min", &Round::walk_min, "Minutes of walking.")
+      .def_readonly("minutes", &Round::minutes, "Scan, set-up, photos and walking together.")
+      .def_readonly("unconnected", &Round::unconnected, "Legs that the search area does not connect.")
+      .def_readonly("unlinked", &Round::unlinked,
+                    "Stations without a link to the one before; 0 if no links are known.");
+
+  py::class_<Session, Round> session(m, "Session",
+                                     "Consecutive stations of a longer round, for one crew within a day.");
+  session.def_readonly("day", &Session::day, "From 1.")
+      .def_readonly("crew", &Session::crew, "From 1.")
+      .def_readonly("parts", &Session::parts, "Groups of its stations that no link connects; 1 if no links are known.")
+      .def_readonly("linked", &Session::linked, "Whether a station is linked to one of another session, if any.")
+      .def("__repr__", [](const Session& s) {
+        return "<vantage.Session of day " + std::to_string(s.day) + ", crew " + std::to_string(s.crew) + ": " +
+               std::to_string(s.order.size()) + " stations, " + std::string(py::str(py::float_(s.minutes))) +
+               " minutes>";
+      });
+  add_pickle(session);
+
+  py::class_<Visit, Round> visit(m, "Visit", "The round over all stations.");
+  visit.def_readonly("day_min", &Visit::day_min, "Minutes that its sessions may take; 0: none were asked for.")
+      .def_readonly("sessions", &Visit::sessions, "Its Sessions by day and crew; empty: none were asked for.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
                std::string(py::str(py::float_(v.minutes))) + " minutes>";
@@ -92,9 +115,18 @@ void add_on_site(py::module_& m) {
       .def("way_m", &OnSite::way_m, py::arg("start"), py::arg("end"),
            "Metres from one ground point (x, y, z) to another; None if the search area does not connect them.")
       .def(
-          "visit", [](const OnSite& site, const py::object& stations) { return site.visit(stations_of(stations)); },
+          "visit",
+          [](const OnSite& site, const py::object& given) {
+            const std::vector<PlacedStation> stations = stations_of(given);
+            Visit visit = site.visit(stations);
+            visit.day_min = site.options().day_min.value_or(0);
+            visit.sessions = site.sessions(stations, visit);
+            return visit;
+          },
           py::arg("stations"),
-          "A good order of the stations, and the time of the round. stations: in a form that `evaluate` accepts.");
+          "A good order of the stations, the time of the round, and its sessions if the options have a day. stations: "
+          "in "
+          "a form that `evaluate` accepts. Raises Error invalid_argument if a day is too short for a station.");
 }
 
 }  // namespace vantage::python

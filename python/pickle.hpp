@@ -32,9 +32,15 @@ inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
 inline auto members(RegistrationError& e) {
   return std::tie(e.rms_m, e.random_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
 }
+inline auto members(Round& r) {
+  return std::tie(r.order, r.arrive_min, r.stay_min, r.legs_m, r.paths, r.walk_m, r.scan_min, r.set_up_min,
+                  r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked);
+}
+inline auto members(Session& s) {
+  return std::tuple_cat(members(static_cast<Round&>(s)), std::tie(s.day, s.crew, s.parts, s.linked));
+}
 inline auto members(Visit& v) {
-  return std::tie(v.order, v.legs_m, v.paths, v.walk_m, v.scan_min, v.set_up_min, v.photos_min, v.walk_min, v.minutes,
-                  v.unconnected, v.unlinked);
+  return std::tuple_cat(members(static_cast<Round&>(v)), std::tie(v.day_min, v.sessions));
 }
 inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
 inline auto members(Work& w) {

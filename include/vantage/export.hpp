@@ -89,6 +89,11 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
                         std::span<const Scanner> scanners = {}, std::span<const std::string> names = {});
 
+/// Sessions of an evaluated network as CSV, a line for each station in the order of its session:
+/// `session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min`. Minutes count from the session's start;
+/// `walk_m` is the way to the station; `station` is its line in stations.csv. REQUIRES: the evaluation has a visit.
+void write_sessions_csv(const std::filesystem::path& file, const Evaluation& evaluation);
+
 /// Writes stations for maps and drawings; the extension decides the format:
 /// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.
 ///   Properties: kind ("station"), name, status, existing, head_height_m, and in the survey frame x, y, z of the head
@@ -132,9 +137,9 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
 /// The figures of one network, as JSON text: keys coverage, coverage_se, overlap, overlap_se, overlap_matrix,
-/// scan_overlap_matrix, attainable, attainable_se, captured, captured_se, minutes_on_site, registration{error_mm,
-/// standard_error_mm, worst_mm, worst_station, stations}, dropped, voxels, goal_density, rays, sample, summary. Null:
-/// not known. Stations count from
+/// scan_overlap_matrix, attainable, attainable_se, captured, captured_se, minutes_on_site, sessions,
+/// registration{error_mm, standard_error_mm, worst_mm, worst_station, stations}, dropped, voxels, goal_density, rays,
+/// sample, summary. Null: not known. Stations count from
 /// 1. Axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
 std::string evaluation_json(const Evaluation& evaluation);
 

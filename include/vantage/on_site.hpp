@@ -28,6 +28,9 @@ struct OnSiteOptions {
   /// Ground where people enter and leave; empty: at the station nearest to where a search area found on foot is
   /// entered, else at the first.
   std::optional<Vec3> entrance = std::nullopt;
+  /// Minutes of the longest session, from the entrance and back: a longer round is split. Empty: it is not.
+  std::optional<double> day_min = std::nullopt;
+  std::size_t crews = 1;  ///< Crews that work side by side, a session each, every day.
 };
 
 Settings settings(const OnSiteOptions& options);
@@ -35,8 +38,10 @@ Settings settings(const OnSiteOptions& options);
 const SettingTable<OnSiteOptions>& on_site_settings();
 
 /// One round: in at the entrance, to every station, and back out.
-struct Visit {
+struct Round {
   std::vector<std::size_t> order;  ///< Indices of the stations; unusable ones are left out.
+  std::vector<double> arrive_min;  ///< Minutes from the start to the arrival at each, in that order.
+  std::vector<double> stay_min;    ///< Minutes at each: scan, set-up and photos.
   std::vector<double> legs_m;      ///< Path to each in that order, then back out: one more than stations.
   /// Ground points of each of these paths, survey frame; a straight line if the search area does not connect its ends.
   std::vector<std::vector<Vec3>> paths;
@@ -45,6 +50,19 @@ struct Visit {
   double minutes = 0;           ///< Scan, set-up, photos and walking together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
   std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
+};
+
+/// Consecutive stations of a longer round, as a round of their own that one crew does within a day.
+struct Session : Round {
+  std::size_t day = 1, crew = 1;  ///< Both from 1.
+  std::size_t parts = 1;          ///< Groups of its stations that no link connects; 1 if links were not given.
+  bool linked = true;             ///< Some station is linked to one of another session, if there is one.
+};
+
+/// The round over all stations.
+struct Visit : Round {
+  double day_min = 0;             ///< `OnSiteOptions::day_min` of the sessions; 0: none were asked for.
+  std::vector<Session> sessions;  ///< In the order of the round, by day and crew; empty: none were asked for.
 };
 
 /// Strength of the link between two stations, by their indices: 0 if they are not linked, else at most 1.
@@ -65,6 +83,13 @@ class OnSite {
   /// the scene, and std::out_of_range for a scanner that does not exist.
   Visit visit(std::span<const PlacedStation> stations, const LinkStrength& link = {},
               double most_min = std::numeric_limits<double>::infinity()) const;
+  /// Cuts a visit of these stations into sessions of at most `OnSiteOptions::day_min`: as few as its order allows.
+  /// Among these cuts that one is taken whose sessions fall into the fewest parts, then the one with the fewest
+  /// sessions that are not linked, then with the shortest longest session, then with the least walking. A visit without
+  /// stations, or options without a day, give none. Throws Error invalid_argument if a day is too short for one station
+  /// and the walk there and back.
+  std::vector<Session> sessions(std::span<const PlacedStation> stations, const Visit& visit,
+                                const LinkStrength& link = {}) const;
   /// `Scanner::rays()` / `Scanner::points_per_second`, in minutes. Throws std::out_of_range.
   double minutes_per_scan(std::uint32_t scanner = 0) const;
   const OnSiteOptions& options() const noexcept;

@@ -450,6 +450,8 @@ class OnSiteOptions:
     walking_m_per_s: float
     detour: float
     entrance: Optional[Tuple[float, float, float]]
+    day_min: Optional[float]
+    crews: int
     def __init__(
         self,
         *,
@@ -458,6 +460,8 @@ class OnSiteOptions:
         walking_m_per_s: float = 0.8,
         detour: float = 1.5,
         entrance: Optional[Sequence[float]] = None,
+        day_min: Optional[float] = None,
+        crews: int = 1,
     ) -> None: ...
 
 class Target:
@@ -475,9 +479,13 @@ class Target:
 
 def read_targets_csv(file: Path) -> List[Target]: ...
 
-class Visit:
+class Round:
     @property
     def order(self) -> List[int]: ...
+    @property
+    def arrive_min(self) -> List[float]: ...
+    @property
+    def stay_min(self) -> List[float]: ...
     @property
     def legs_m(self) -> List[float]: ...
     @property
@@ -498,6 +506,22 @@ class Visit:
     def unconnected(self) -> int: ...
     @property
     def unlinked(self) -> int: ...
+
+class Session(Round):
+    @property
+    def day(self) -> int: ...
+    @property
+    def crew(self) -> int: ...
+    @property
+    def parts(self) -> int: ...
+    @property
+    def linked(self) -> bool: ...
+
+class Visit(Round):
+    @property
+    def day_min(self) -> float: ...
+    @property
+    def sessions(self) -> List[Session]: ...
 
 class OnSite:
     def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...
@@ -937,6 +961,8 @@ class Site:
         set_up: Setting = None,
         photos: Setting = None,
         walking: Setting = None,
+        day: Setting = None,
+        crews: Setting = None,
         registration_rho: Setting = None,
         registration_patch: Setting = None,
         registration_position: Setting = None,

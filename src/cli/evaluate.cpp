@@ -29,7 +29,7 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample, registration_sample;
   std::optional<double> error, link, link_overlap;
   std::optional<BeamOptions> beam;
-  std::optional<std::string> cartography, rooms, matrix, picture;
+  std::optional<std::string> cartography, rooms, matrix, picture, sessions;
   std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
   ReportHead report_head;
@@ -103,6 +103,11 @@ struct EvaluateCommandOptions {
              "Write what is captured of each room that the model names, and why one has no station: .csv", rooms)
         ->group("Results");
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
+    add_text(
+        command, "--sessions", "FILE",
+        "Write the sessions that --day splits the round into, with the stations of each in order and their times: .csv",
+        sessions)
+        ->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
         ->group("Results");
     add_texts(command, "--write-stations", "FILE",
@@ -147,6 +152,9 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
   must_end(options.rooms, "--rooms", ".csv");
+  must_end(options.sessions, "--sessions", ".csv");
+  if (options.sessions && !options.on_site.day_min)
+    refuse("--sessions: a round is split by --day, which was not given");
   if (options.rooms && site.scene().rooms().empty())
     refuse("--rooms: the model names no rooms, as IFC and floor plans do");
   must_end(options.proposed_targets, "--propose-targets", ".csv");
@@ -214,6 +222,7 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
                  site, found.stations, options.ply);
   if (judged && options.rooms)
     write_rooms_csv(*options.rooms, site.scene().rooms(), judged->rooms, found.stations, names);
+  if (options.sessions) write_sessions_csv(*options.sessions, found);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
   for (const std::string& file : options.registration_files) {

@@ -354,6 +354,7 @@ void EditSession::measure(bool quick) {
     evaluation_.moves = station_moves(site_.area(), site_.clash(), simulator_.scanner().height_m, stations);
     if (stations.size() <= kQuickStations && !stations.empty()) {
       evaluation_.visit = visit_of(evaluation_, *on_site_);
+      add_sessions(evaluation_, *on_site_);
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
   }

@@ -120,6 +120,14 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     networks.push_back(to_network(one));
   }
 
+  // A day that is too short for a station is told before anything is counted.
+  if (site.on_site && site.on_site->options().day_min)
+    for (const auto& one : stations) {
+      Evaluation plain{.stations = one};
+      plain.visit = visit_of(plain, *site.on_site);
+      add_sessions(plain, *site.on_site);
+    }
+
   // Shares of the time: surveyed voxels, then surroundings and what is attainable.
   const bool counts_around = site.surroundings && options.overlap;
   const auto share = [&](double from, double to) -> Progress {
@@ -202,6 +210,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
     one.names = options.names, one.visit = std::move(visit);
+    if (site.on_site) add_sessions(one, *site.on_site);
     if (site.area && site.clash)
       one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
     if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;

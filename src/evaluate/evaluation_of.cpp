@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/closest_name.hpp"
+#include "core/graph.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
@@ -29,6 +30,34 @@ Visit visit_of(const Evaluation& evaluation, const OnSite& on_site, double most_
         return value >= links->least ? value : 0;
       },
       most_min);
+}
+
+void add_sessions(Evaluation& evaluation, const OnSite& on_site) {
+  if (!evaluation.visit || !on_site.options().day_min) return;
+  const std::vector<PlacedStation>& stations = evaluation.stations;
+  const auto existing = static_cast<std::size_t>(std::ranges::count(stations, true, &PlacedStation::existing));
+  LinkStrength link;
+  const std::optional<StationLinks> links = evaluation.links();
+  // Scans that were taken before are there in every session.
+  Components held;
+  std::vector<std::vector<char>> by;  // by component of existing stations, the placed ones that it is linked to
+  if (links) {
+    const auto linked = [&](std::size_t a, std::size_t b) {
+      return active(stations[a]) && active(stations[b]) && links->values(a, b) > 0 &&
+             links->values(a, b) >= links->least;
+    };
+    held = components(existing, linked);
+    by.assign(held.count, std::vector<char>(stations.size() - existing, 0));
+    for (std::size_t k = 0; k < existing; ++k)
+      for (std::size_t s = existing; s < stations.size(); ++s) by[held.of[k]][s - existing] |= linked(k, s);
+    link = [&, linked, existing](std::size_t a, std::size_t b) {
+      const bool through =
+          std::ranges::any_of(by, [&](const std::vector<char>& known) { return known[a] && known[b]; });
+      return linked(existing + a, existing + b) || through ? 1 : 0;
+    };
+  }
+  evaluation.visit->day_min = *on_site.options().day_min;
+  evaluation.visit->sessions = on_site.sessions(std::span(stations).subspan(existing), *evaluation.visit, link);
 }
 
 double most_minutes(std::span<const Requirement> requirements) {

@@ -15,6 +15,8 @@
 #include "core/parse.hpp"
 #include "core/setting_list.hpp"
 #include "core/site_reach.hpp"
+#include "core/text.hpp"
+#include "evaluate/cut_round.hpp"
 #include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
 
@@ -146,7 +148,7 @@ class Walk {
 };
 
 // Ways between the stops of a round: stations from `first` on, and last the place where the round began.
-struct Round {
+struct Stops {
   Matrix metres;
   std::size_t first = 0;  // 1 after an entrance, which is no station
   std::size_t stations() const { return metres.size() - 1 - first; }
@@ -162,7 +164,7 @@ std::size_t unlinked_in(const std::vector<std::size_t>& order, const Matrix& lin
 // Field software registers each scan to the one before, so that a step to a station without a link to the last one
 // costs as much as a long way. How long is tried: the order with the fewest such steps is taken that is not much longer
 // than the shortest. `link`: strengths of the stations' links. `most_m`: no longer walk is taken for links.
-std::vector<std::size_t> order_along_links(const Round& round, std::vector<std::size_t> shortest, const Matrix& link,
+std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::size_t> shortest, const Matrix& link,
                                            double most_m) {
   constexpr double kMostLonger = 1.25;        // of the shortest walk that is found
   constexpr double kStrength = 0.1;           // of the mean leg, for the strongest link instead of the weakest
@@ -198,6 +200,13 @@ std::vector<std::size_t> order_along_links(const Round& round, std::vector<std::
 }  // namespace
 
 struct OnSite::Impl {
+  // A path between two ground points.
+  struct Leg {
+    double metres = 0;
+    bool connected = true;
+    std::vector<Vec3> path = {};
+  };
+
   Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans,
        const Vec3& centre)
       : options(o),
@@ -208,6 +217,46 @@ struct OnSite::Impl {
           const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}
+  double stay_min(const PlacedStation& station) const {
+    return scan_min.at(station.setup.scanner) + options.set_up_min + options.photos_min;
+  }
+  // `way`: of the search area, if it connects them.
+  Leg leg(const Vec3& from, const Vec3& to, const std::optional<double>& way) const {
+    const Vec3 apart = to - from;
+    return {.metres = way ? *way : options.detour * std::sqrt(dot(apart, apart)), .connected = way.has_value()};
+  }
+  double walk_min(double metres) const { return metres / options.walking_m_per_s / 60; }
+
+  // Sums by scanner, so that equal stations make a product, without rounding of a sum.
+  void stand(Round& round, std::span<const PlacedStation> stations, const std::vector<std::size_t>& at) const {
+    std::vector<double> scans(scan_min.size());
+    for (const std::size_t i : at) scans.at(stations[i].setup.scanner) += 1;
+    for (std::size_t k = 0; k < scans.size(); ++k) round.scan_min += scans[k] * scan_min[k];
+    const auto count = static_cast<double>(at.size());
+    round.set_up_min = count * options.set_up_min;
+    round.photos_min = count * options.photos_min;
+    round.minutes = round.scan_min + round.set_up_min + round.photos_min;
+  }
+  // The stations in their order, and a leg before each and after the last.
+  void walk(Round& round, std::span<const PlacedStation> stations, std::vector<std::size_t> order,
+            std::vector<Leg> legs) const {
+    round.order = std::move(order);
+    double minutes = 0;
+    for (std::size_t k = 0; k < legs.size(); ++k) {
+      minutes += walk_min(legs[k].metres);
+      if (k < round.order.size()) {
+        const double stay = stay_min(stations[round.order[k]]);
+        round.arrive_min.push_back(minutes), round.stay_min.push_back(stay);
+        minutes += stay;
+      }
+      round.legs_m.push_back(legs[k].metres), round.paths.push_back(std::move(legs[k].path));
+      round.walk_m += legs[k].metres;
+      if (!legs[k].connected) ++round.unconnected;
+    }
+    round.walk_min = walk_min(round.walk_m);
+    round.minutes += round.walk_min;
+  }
+
   OnSiteOptions options;
   Vec3 origin;                   // of the scene
   std::vector<double> scan_min;  // by scanner
@@ -222,6 +271,11 @@ OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<cons
   std::vector<double> scan_min;
   for (const Scanner& scanner : scanners)
     scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  const double least_min = std::ranges::min(scan_min) + options.set_up_min + options.photos_min;
+  if (options.day_min && *options.day_min < least_min)
+    throw Error(Errc::invalid_argument, "day: " + fixed(*options.day_min, 1) +
+                                            " min are too short for one station, which takes " + fixed(least_min, 1) +
+                                            " min with setting up. Give a longer day");
   impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin);
 }
 
@@ -253,17 +307,11 @@ Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength&
     std::swap(stops.front(), stops[static_cast<std::size_t>(nearest)]);
     std::swap(station_of.front(), station_of[static_cast<std::size_t>(nearest)]);
   }
-  // Sums by scanner, so that equal stations make a product, without rounding of a sum.
-  std::vector<double> scans(impl_->scan_min.size());
-  for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
-  for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];
-  const auto count = static_cast<double>(station_of.size());
-  visit.set_up_min = count * options.set_up_min;
-  visit.photos_min = count * options.photos_min;
-  const double standing_min = visit.scan_min + visit.set_up_min + visit.photos_min;
+  impl_->stand(visit, stations, station_of);
+  const double standing_min = visit.minutes;
 
   const std::size_t n = stops.size();
-  Round round{.metres = Matrix(n + 1, std::vector<double>(n + 1, 0)), .first = options.entrance ? 1u : 0u};
+  Stops round{.metres = Matrix(n + 1, std::vector<double>(n + 1, 0)), .first = options.entrance ? 1u : 0u};
   std::vector<std::vector<bool>> connected(n + 1, std::vector<bool>(n + 1, true));
   const auto ways = impl_->ways.between_all(stops);
   const auto put = [&](std::size_t i, std::size_t j, double metres, bool known) {
@@ -272,11 +320,9 @@ Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength&
   };
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
-      const Vec3 apart = stops[j] - stops[i];
-      const std::optional<double>& way = ways[i][j];
-      const double metres = way ? *way : options.detour * std::sqrt(dot(apart, apart));
-      put(i, j, metres, way.has_value());
-      if (i == 0) put(n, j, metres, way.has_value());
+      const auto [metres, known, path] = impl_->leg(stops[i], stops[j], ways[i][j]);
+      put(i, j, metres, known);
+      if (i == 0) put(n, j, metres, known);
     }
   }
   std::vector<std::size_t> order = Walk(round.metres).order();
@@ -293,21 +339,61 @@ Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength&
   if (options.entrance && round.metres[0][order[n - 1]] < round.metres[0][order[1]])
     std::reverse(order.begin() + 1, order.end() - 1);
 
-  for (std::size_t k = round.first; k < n; ++k) visit.order.push_back(station_of[order[k] - round.first]);
-  if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
-  std::vector<std::vector<Vec3>> paths(n);
-  parallel::for_all(std::size_t{0}, n,
-                    [&](std::size_t k) { paths[k] = impl_->ways.path(stops[order[k]], stops[order[k + 1] % n]); });
-  for (std::size_t k = 0; k < n; ++k) {
+  std::vector<std::size_t> visited;
+  for (std::size_t k = round.first; k < n; ++k) visited.push_back(station_of[order[k] - round.first]);
+  const std::size_t skipped = 1 - round.first;  // without an entrance there is no way to the first station
+  std::vector<Impl::Leg> legs(n + skipped);
+  parallel::for_all(std::size_t{0}, n, [&](std::size_t k) {
     const std::size_t a = order[k], b = order[k + 1];
-    visit.legs_m.push_back(round.metres[a][b]);
-    visit.paths.push_back(std::move(paths[k]));
-    visit.walk_m += round.metres[a][b];
-    if (!connected[a][b]) ++visit.unconnected;
-  }
-  visit.walk_min = visit.walk_m / options.walking_m_per_s / 60;
-  visit.minutes = standing_min + visit.walk_min;
+    legs[k + skipped] = {round.metres[a][b], connected[a][b], impl_->ways.path(stops[a], stops[b % n])};
+  });
+  impl_->walk(visit, stations, std::move(visited), std::move(legs));
   return visit;
+}
+
+std::vector<Session> OnSite::sessions(std::span<const PlacedStation> stations, const Visit& visit,
+                                      const LinkStrength& link) const {
+  const OnSiteOptions& options = impl_->options;
+  if (!options.day_min || visit.order.empty()) return {};
+  const std::vector<std::size_t>& order = visit.order;
+  const std::size_t n = order.size();
+  const auto ground = [&](std::size_t k) { return stations[order[k]].ground; };
+  const Vec3 entrance = options.entrance.value_or(ground(0));
+  const auto leg = [&](const Vec3& from, const Vec3& to) {
+    return from == to ? Impl::Leg() : impl_->leg(from, to, impl_->ways.between(from, to));
+  };
+  RoundTimes times{.stay_min = visit.stay_min};
+  for (std::size_t k = 0; k < n; ++k) {
+    times.out_min.push_back(impl_->walk_min(leg(entrance, ground(k)).metres));
+    if (k > 0) times.step_min.push_back(impl_->walk_min(visit.legs_m[k]));
+    if (const double alone = visit.stay_min[k] + 2 * times.out_min[k]; alone > *options.day_min)
+      throw Error(Errc::invalid_argument, "day: station " + std::to_string(order[k] + 1) + " takes " + fixed(alone, 1) +
+                                              " min from the entrance and back, " + fixed(visit.stay_min[k], 1) +
+                                              " of them at the station; a day has " + fixed(*options.day_min, 1) +
+                                              ". Give a longer day");
+  }
+  if (link) times.linked = [&](std::size_t a, std::size_t b) { return link(order[a], order[b]) > 0; };
+  std::vector<Session> sessions;
+  for (const RoundPiece& piece : cut_round(times, *options.day_min)) {
+    Session& session = sessions.emplace_back();
+    const std::size_t number = sessions.size() - 1, size = piece.end - piece.first;
+    session.day = number / options.crews + 1, session.crew = number % options.crews + 1;
+    session.parts = piece.parts, session.linked = piece.linked;
+    std::vector<std::size_t> own(order.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                                 order.begin() + static_cast<std::ptrdiff_t>(piece.end));
+    for (std::size_t k = piece.first + 1; k < piece.end && times.linked; ++k)
+      if (!times.linked(k - 1, k)) ++session.unlinked;
+    std::vector<Impl::Leg> legs(size + 1);
+    parallel::for_all(std::size_t{0}, legs.size(), [&](std::size_t k) {
+      const Vec3 from = k == 0 ? entrance : ground(piece.first + k - 1);
+      const Vec3 to = k == size ? entrance : ground(piece.first + k);
+      legs[k] = leg(from, to);
+      if (!(from == to)) legs[k].path = impl_->ways.path(from, to);
+    });
+    impl_->stand(session, stations, own);
+    impl_->walk(session, stations, std::move(own), std::move(legs));
+  }
+  return sessions;
 }
 
 }  // namespace vantage

@@ -20,6 +20,21 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
                   &OnSiteOptions::photos_min, not_negative)
           .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
                   &OnSiteOptions::walking_m_per_s, measurable)
+          .optional("day", "T",
+                    "Longest session, from the entrance and back: 8h or 450min. A longer round is split into sessions",
+                    &OnSiteOptions::day_min,
+                    [](const std::string& text, const std::string& what) { return parse_duration(text, what) / 60; })
+          .checked([](const OnSiteOptions& options, const std::string& what) {
+            if (options.day_min) check_number(*options.day_min, what, positive);
+          })
+          .count("crews", "N", "Crews that work side by side, a session each, every day; 1 otherwise. Takes a day",
+                 &OnSiteOptions::crews, 1, 1000)
+          .checked([](const OnSiteOptions& options, const std::string& what) {
+            parse_count(std::to_string(options.crews), what, 1, 1000);
+            if (options.crews > 1 && !options.day_min)
+              throw Error(Errc::invalid_argument,
+                          what + ": only a round that is split is shared by crews; give the length of a day too");
+          })
           .take();
   return table;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/run_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -66,12 +67,24 @@ ordered_json links_json(const PairMatrix& overlap, double min_overlap) {
 }
 
 // Stations are numbered from 1, in the order of visiting.
-ordered_json visit_json(const Visit& visit, std::size_t kept) {
+ordered_json round_json(const Round& round, std::size_t kept) {
   ordered_json order = ordered_json::array();
-  for (const std::size_t station : visit.order) order.push_back(kept + station + 1);
-  return {{"order", std::move(order)},      {"minutes", visit.minutes},         {"scan_min", visit.scan_min},
-          {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},   {"walk_min", visit.walk_min},
-          {"walk_m", visit.walk_m},         {"unconnected", visit.unconnected}, {"unlinked", visit.unlinked}};
+  for (const std::size_t station : round.order) order.push_back(kept + station + 1);
+  return {{"order", std::move(order)},      {"minutes", round.minutes},         {"scan_min", round.scan_min},
+          {"set_up_min", round.set_up_min}, {"photos_min", round.photos_min},   {"walk_min", round.walk_min},
+          {"walk_m", round.walk_m},         {"unconnected", round.unconnected}, {"unlinked", round.unlinked}};
+}
+
+ordered_json sessions_json(const std::vector<Session>& sessions, std::size_t kept) {
+  ordered_json json = ordered_json::array();
+  for (const Session& session : sessions) {
+    ordered_json one = {{"day", session.day}, {"crew", session.crew}};
+    one.update(round_json(session, kept));
+    one["arrive_min"] = session.arrive_min;
+    one["parts"] = session.parts, one["linked"] = session.linked;
+    json.push_back(std::move(one));
+  }
+  return json;
 }
 
 // NaN has no JSON; what is not known is null.
@@ -175,7 +188,11 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     if (entry.registration && entry.registration->absolute_rms_m)
       json["registration_mm"]["in_site_frame"] = 1e3 * *entry.registration->absolute_rms_m;
   }
-  if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.existing.size());
+  if (entry.visit) {
+    const std::size_t kept = result.problem.existing.size();
+    json["on_site"] = round_json(*entry.visit, kept);
+    if (!entry.visit->sessions.empty()) json["on_site"]["sessions"] = sessions_json(entry.visit->sessions, kept);
+  }
   return json;
 }
 
@@ -282,6 +299,10 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (const auto capture = evaluation.values.find("capture"); capture != evaluation.values.end())
     json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
+  if (evaluation.visit && !evaluation.visit->sessions.empty())
+    json["sessions"] = sessions_json(
+        evaluation.visit->sessions,
+        static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing)));
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
   if (!evaluation.targets.empty()) {

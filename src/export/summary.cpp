@@ -29,6 +29,48 @@ std::string duration(double seconds) {
   return minutes < 60 ? rest : std::to_string(minutes / 60) + " h " + rest;
 }
 
+// "8 h", "450 min"
+std::string whole_hours(double minutes) {
+  return std::fmod(minutes, 60) == 0 ? number(minutes / 60) + " h" : duration(60 * minutes);
+}
+
+std::string counted(std::size_t many, const std::string& what) {
+  return std::to_string(many) + " " + what + (many == 1 ? "" : "s");
+}
+
+// "4 sessions of at most 8 h: 2 days with 2 crews; the longest takes 7 h 40 min, all together 28 h 5 min"
+std::string sessions_text(const Visit& visit) {
+  const std::vector<Session>& sessions = visit.sessions;
+  std::size_t crews = 0;
+  double longest = 0, all = 0;
+  for (const Session& one : sessions)
+    crews = std::max(crews, one.crew), longest = std::max(longest, one.minutes), all += one.minutes;
+  const std::size_t days = sessions.back().day;
+  std::string text = counted(sessions.size(), "session") + " of at most " + whole_hours(visit.day_min) + ": " +
+                     counted(days, "day") + (crews > 1 ? " with " + counted(crews, "crew") : "") + "; ";
+  if (sessions.size() == 1) return text + "it takes " + duration(60 * all);
+  return text + "the longest takes " + duration(60 * longest) + ", all together " + duration(60 * all);
+}
+
+// A sentence for each session whose scans no link holds together, or to the others.
+std::vector<std::string> sessions_advice(const Visit& visit, const std::vector<std::string>& placed) {
+  std::vector<std::string> advice;
+  for (const Session& one : visit.sessions) {
+    const std::string which = "the session of day " + std::to_string(one.day) + ", crew " + std::to_string(one.crew) +
+                              " (" +
+                              (one.order.size() == 1 ? placed[one.order.front()]
+                                                     : placed[one.order.front()] + " to " + placed[one.order.back()]) +
+                              ")";
+    if (one.parts > 1)
+      advice.push_back(which + " has its scans in " + std::to_string(one.parts) +
+                       " groups that no link connects: they hold together only with scans of other sessions");
+    if (!one.linked)
+      advice.push_back(which +
+                       " is linked to no other session: put up targets that both see, or a station between them");
+  }
+  return advice;
+}
+
 // "22 m²", "3.4 m²"
 std::string surface_text(double m2) { return (m2 < 10 ? number(std::round(10 * m2) / 10) : fixed(m2, 0)) + " m²"; }
 
@@ -224,11 +266,17 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
     lines.push_back({"to check",
                      "a target more than 30° above or below the heads of two stations: level sights hide an error of "
                      "the scanner's vertical index"});
-  if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
+  if (evaluation.visit)
+    lines.push_back({"on site", evaluation.visit->sessions.empty() ? "about " + duration(60 * evaluation.visit->minutes)
+                                                                   : sessions_text(*evaluation.visit)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
   if (links) to_do(links_advice(*links, names));
+  if (evaluation.visit && !evaluation.visit->sessions.empty()) {
+    const auto existing = std::ranges::count(evaluation.stations, true, &PlacedStation::existing);
+    to_do(sessions_advice(*evaluation.visit, {names.begin() + existing, names.end()}));
+  }
   to_do(stations_advice(evaluation, names));
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
     to_do(registration_advice(evaluation, registered->second.value));

@@ -48,6 +48,7 @@ void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& p
       time->second.value = std::isnan(time->second.value) ? time->second.value : entry.visit->minutes;
   };
   visit(result.front[chosen]);
+  add_sessions(result.front[chosen], context.on_site());
   if (result.front.size() > kMostRounds) return;
   for (PlanEntry& entry : result.front)
     if (!entry.visit && !progress.stopped()) visit(entry);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/setting_list.hpp"
+#include "core/text.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
@@ -29,13 +30,16 @@ nlohmann::ordered_json to_json(const std::vector<Target>& targets) {
 }  // namespace
 
 Settings settings(const OnSiteOptions& options) {
-  return SettingList()
-      .add("set_up_min", options.set_up_min, {"set-up"})
+  SettingList list;
+  list.add("set_up_min", options.set_up_min, {"set-up"})
       .add("photos_min", options.photos_min, {"photos"})
       .add("walking_m_per_s", options.walking_m_per_s, {"walking"})
       .add("detour", options.detour)
-      .add("entrance", options.entrance)
-      .take();
+      .add("entrance", options.entrance);
+  // Sessions are made of the answer's round, and decide nothing in a search for it.
+  if (options.day_min)
+    list.add("day", number(*options.day_min) + "min", {"day", false}).add("crews", options.crews, {"crews", false});
+  return list.take();
 }
 
 Settings settings(const SurveyProblem& problem) {
@@ -59,12 +63,8 @@ Settings settings(const SurveyProblem& problem) {
                       .add("link_overlap", problem.link_overlap, {"link-overlap"})
                       .add("fewest", problem.fewest)
                       .add("attainable", problem.attainable)
-                      .add("set_up_min", problem.on_site.set_up_min, {"set-up"})
-                      .add("photos_min", problem.on_site.photos_min, {"photos"})
-                      .add("walking_m_per_s", problem.on_site.walking_m_per_s, {"walking"})
-                      .add("detour", problem.on_site.detour)
-                      .add("entrance", problem.on_site.entrance)
                       .take();
+  for (Setting& setting : settings(problem.on_site)) list.push_back(std::move(setting));
   // Setups of the existing stations, if any differs from the usual one.
   SettingList setups;
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);

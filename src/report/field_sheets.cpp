@@ -28,11 +28,15 @@ Box grown(Box box, double metres) {
   return box;
 }
 
-std::vector<Vec3> grounds_on(const PlanLevel& level, std::span<const PlacedStation> stations) {
-  std::vector<Vec3> spots;
-  for (const PlacedStation& s : stations)
-    if (s.status != StationStatus::hole && level.holds(s.ground.z)) spots.push_back(s.ground);
-  return spots;
+bool stands_on(const PlacedStation& s, const PlanLevel& level) {
+  return s.status != StationStatus::hole && level.holds(s.ground.z);
+}
+
+// The stations that sheets of a round are of: all of them if there is one round, else those of the session.
+std::vector<bool> own_stations(const SheetRound& round, bool several, std::size_t stations) {
+  std::vector<bool> own(stations, !several);
+  for (const std::size_t k : round.stations) own[k] = true;
+  return own;
 }
 
 // All ground of the storey where that is not much more than what lies around its stations, else the latter, with the
@@ -126,7 +130,7 @@ class MapOnSheet {
     sheet_.canvas->rectangle(map, {.colour = style::ink, .width = 0.8});
   }
 
-  void route(const Visit& visit) {
+  void route(const Round& visit) {
     for (std::size_t leg = 0; leg < visit.paths.size(); ++leg) {
       const std::vector<Vec3>& path = visit.paths[leg];
       if (path.size() < 2) continue;
@@ -165,11 +169,12 @@ class MapOnSheet {
   }
 
   // Marks of the stations with their names, and their distances to corners.
-  void stations(std::span<const PlacedStation> stations, const std::vector<StationFacts>& facts) {
+  void stations(std::span<const PlacedStation> stations, const std::vector<StationFacts>& facts,
+                const std::vector<bool>& own) {
     std::vector<std::size_t> shown;
     std::vector<Point> spots;
     for (std::size_t k = 0; k < stations.size(); ++k)
-      if (stations[k].status != StationStatus::hole && level_.holds(stations[k].ground.z) && holds(stations[k].ground))
+      if (own[k] && stands_on(stations[k], level_) && holds(stations[k].ground))
         shown.push_back(k), spots.push_back(at(stations[k].ground));
     const std::vector<Point> discs = place_discs(spots, kMark, map_);
     for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -235,10 +240,9 @@ class MapOnSheet {
     }
   }
 
-  void dots(std::span<const PlacedStation> stations) {
-    for (const PlacedStation& s : stations)
-      if (s.status != StationStatus::hole && level_.holds(s.ground.z))
-        sheet_.canvas->disc(at(s.ground), 1.8, style::ink);
+  void dots(std::span<const PlacedStation> stations, const std::vector<bool>& which) {
+    for (std::size_t k = 0; k < stations.size(); ++k)
+      if (which[k] && stands_on(stations[k], level_)) sheet_.canvas->disc(at(stations[k].ground), 1.8, style::ink);
   }
 
   void name(const std::string& words) {
@@ -429,7 +433,7 @@ class SheetPanel {
     for (std::size_t k = 0; k < std::min(fit, shown.size()); ++k) {
       const StationFacts& f = facts[shown[k]];
       const double left = x_ + 17;
-      canvas.text({x_ + 12, y_}, f.visit > 0 ? std::to_string(f.visit) + "." : "–",
+      canvas.text({x_ + 12, y_}, f.stop > 0 ? std::to_string(f.stop) + "." : "–",
                   {.size = 7.5, .colour = kFaintInk, .across = Align::end});
       canvas.text({left, y_}, fitted(canvas, f.name, (beside ? after_name : end) - left - 3, name), name);
       const double from = beside ? after_name : left;
@@ -479,8 +483,11 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
   const std::vector<std::uint32_t> surfaces = any_cut ? surfaces_of(scene.data()) : std::vector<std::uint32_t>();
   FieldSheets all{.of_station = std::vector<std::size_t>(stations.size(), 0)};
   std::vector<double> off_middle(stations.size(), std::numeric_limits<double>::max());
+  const std::vector<SheetRound> rounds = sheet_rounds(network);
+  const Round* walked = nullptr;
+  std::vector<bool> own, others;
 
-  // A sheet of a layout; `overview`: where the tiles of another lie.
+  // A sheet of a layout, of the stations that are `own`; `overview`: where the tiles of another lie.
   const auto draw = [&](const SheetLayout& layout, std::size_t number, const PlanLevel& level, const std::string& name,
                         const std::vector<MapTile>* overview) {
     if (stop.stop_requested()) return;
@@ -497,10 +504,11 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
       if (layout.strips) map.name(tile.name + " of " + std::to_string(layout.tiles.size()));
       if (overview) {
         map.tiles(*overview);
-        map.dots(stations);
+        map.dots(stations, own);
       } else {
-        if (network.visit) map.route(*network.visit);
-        map.stations(stations, facts);
+        if (walked) map.route(*walked);
+        map.dots(stations, others);
+        map.stations(stations, facts, own);
         map.targets(network.targets, of_targets);
       }
       map.rooms(scene.rooms());
@@ -509,7 +517,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
       if (overview) continue;
       for (std::size_t k = 0; k < stations.size(); ++k) {
         const PlacedStation& s = stations[k];
-        if (s.status == StationStatus::hole || !level.holds(s.ground.z) || !map.holds(s.ground)) continue;
+        if (!own[k] || !stands_on(s, level) || !map.holds(s.ground)) continue;
         here[k] = true;
         const Vec3 away = s.ground - tile.window.centre();
         if (const double off = std::hypot(away.x, away.y); off < off_middle[k])
@@ -526,7 +534,7 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     if (level.cut) panel.cut_over(*level.cut - level.floor);
     const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
     if (!overview)
-      panel.legend(level.cut.has_value(), network.visit && !overview,
+      panel.legend(level.cut.has_value(), walked != nullptr,
                    any([&](std::size_t k) { return !facts[k].corners.empty(); }),
                    any([&](std::size_t k) { return stations[k].existing; }),
                    any([&](std::size_t k) { return !active(stations[k]); }), target_here, control_here);
@@ -535,20 +543,23 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
     all.names.push_back(name);
   };
 
-  for (std::size_t k = 0; k < levels.size(); ++k) {
+  const auto draw_level = [&](std::size_t k, const std::string& of_round) {
     const PlanLevel& level = levels[k];
-    const std::vector<Vec3> spots = grounds_on(level, stations);
-    if (spots.empty()) continue;
-    std::string name = levels.size() > 1 ? "Storey " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
-                                               ", floor at z = " + fixed(level.floor, 2) + " m"
-                                         : "Map of the stations";
+    std::vector<Vec3> spots;
+    for (std::size_t s = 0; s < stations.size(); ++s)
+      if (own[s] && stands_on(stations[s], level)) spots.push_back(stations[s].ground);
+    if (spots.empty()) return;
+    std::string name = of_round;
+    name += levels.size() > 1 ? "Storey " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
+                                    ", floor at z = " + fixed(level.floor, 2) + " m"
+                              : "Map of the stations";
     name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
     std::vector<Vec3> marks = spots;
     for (const Target& target : network.targets)
       if (stands_on(target, level)) marks.push_back(target.centre);
     std::vector<WallCorner> corners;
     for (std::size_t s = 0; s < stations.size(); ++s)
-      if (stations[s].status != StationStatus::hole && level.holds(stations[s].ground.z))
+      if (own[s] && stands_on(stations[s], level))
         corners.insert(corners.end(), facts[s].corners.begin(), facts[s].corners.end());
     const SheetLayout layout = layout_of(level, site.area().mesh(), marks, corners);
     if (layout.sheets() > 1) {
@@ -571,6 +582,16 @@ FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& 
         part = ": sheet " + first->name;
       draw(layout, sheet, level, name + part, nullptr);
     }
+  };
+
+  for (const SheetRound& round : rounds) {
+    walked = round.round;
+    own = own_stations(round, rounds.size() > 1, stations.size());
+    others.assign(stations.size(), false);
+    for (std::size_t s = 0; s < stations.size(); ++s) others[s] = !own[s] && active(stations[s]);
+    const std::string of_round =
+        round.name.empty() ? "" : round.name + " (" + minutes_text(round.round->minutes) + "): ";
+    for (std::size_t k = 0; k < levels.size(); ++k) draw_level(k, of_round);
   }
   return all;
 }

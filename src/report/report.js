@@ -57,6 +57,7 @@
     factWords(at('facts'), report.facts.filter((f) => k === report.answer || !['stations', 'at each', 'in all'].includes(f.heading)));
     stationTable(at('stations'), network, pick);
     at('round').textContent = roundWords(network);
+    sessionTable(at('sessions'), network);
     targetTable(at('targets'), network);
     at('targets-section').hidden = !network.targets.length;
     accuracyTable(at('accuracy'), at('accuracy-words'), k === report.answer ? report.accuracy : null);
@@ -94,7 +95,7 @@
     item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke');
     if (network.targets.length)
       item(`background:conic-gradient(${VIEW_COLOURS.target[1]} 25%,${VIEW_COLOURS.target[0]} 0 50%,${VIEW_COLOURS.target[1]} 0 75%,${VIEW_COLOURS.target[0]} 0);border-radius:50%;border:1.5px solid ${VIEW_COLOURS.target[0]}`, 'target or control point', 'disc');
-    if (network.visit && network.visit.ways.length) item(`background:${VIEW_COLOURS.route}`, 'the round', 'stroke');
+    if (network.visit && (network.visit.sessions || network.visit.ways.length)) item(`background:${VIEW_COLOURS.route}`, 'the round', 'stroke');
     item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke');
     if (kept && kept.sample > 0 && mode === 'coverage') items.push(element('span', { class: 'muted' }, `colours from a sample of ${grouped(kept.sample)} voxels`));
     at('legend').replaceChildren(...items);

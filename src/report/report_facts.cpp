@@ -35,10 +35,15 @@ std::string stations_text(const Evaluation& network) {
 }
 
 std::string time_text(const Visit& visit) {
-  return "scans " + minutes_text(visit.scan_min) + ", setting up " + minutes_text(visit.set_up_min) +
-         (visit.photos_min > 0 ? ", photos " + minutes_text(visit.photos_min) : "") + ", walking " +
-         minutes_text(visit.walk_min) + " (" + fixed(visit.walk_m, 0) + " m): " + minutes_text(visit.minutes) +
-         " in all";
+  Round all = visit;
+  if (!visit.sessions.empty()) {
+    all.walk_m = all.walk_min = all.minutes = 0;
+    for (const Session& one : visit.sessions)
+      all.walk_m += one.walk_m, all.walk_min += one.walk_min, all.minutes += one.minutes;
+  }
+  return "scans " + minutes_text(all.scan_min) + ", setting up " + minutes_text(all.set_up_min) +
+         (all.photos_min > 0 ? ", photos " + minutes_text(all.photos_min) : "") + ", walking " +
+         minutes_text(all.walk_min) + " (" + fixed(all.walk_m, 0) + " m): " + minutes_text(all.minutes) + " in all";
 }
 
 // Of each scanner that stations have.

@@ -10,6 +10,7 @@
 #include "export/shown_links.hpp"
 #include "export/station_json.hpp"
 #include "report/packed.hpp"
+#include "report/station_facts.hpp"
 #include "vantage/image.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"
@@ -81,20 +82,32 @@ std::vector<std::size_t> link_counts(const StationLinks& network) {
   return counts;
 }
 
-// The round, by the places of stations in the network. `paths`: the ground that it leads over too, to the centimetre.
-ordered_json visit_json(const Visit& visit, std::size_t kept, bool paths) {
+// A round, by the places of stations in the network, with the ground that it leads over, to the centimetre.
+ordered_json round_json(const Round& round, std::size_t kept) {
   ordered_json order = ordered_json::array(), ways = order;
-  for (const std::size_t station : visit.order) order.push_back(kept + station);
-  if (paths)
-    for (const std::vector<Vec3>& path : visit.paths) {
-      ordered_json way = ordered_json::array();
-      for (const Vec3& p : path)
-        for (const double v : {p.x, p.y, p.z}) way.push_back(std::round(100 * v) / 100);
-      ways.push_back(std::move(way));
-    }
-  return {{"order", std::move(order)},  {"legs_m", visit.legs_m},         {"walk_m", visit.walk_m},
-          {"scan_min", visit.scan_min}, {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},
-          {"walk_min", visit.walk_min}, {"minutes", visit.minutes},       {"ways", std::move(ways)}};
+  for (const std::size_t station : round.order) order.push_back(kept + station);
+  for (const std::vector<Vec3>& path : round.paths) {
+    ordered_json way = ordered_json::array();
+    for (const Vec3& p : path)
+      for (const double v : {p.x, p.y, p.z}) way.push_back(std::round(100 * v) / 100);
+    ways.push_back(std::move(way));
+  }
+  return {{"order", std::move(order)},  {"legs_m", round.legs_m},         {"walk_m", round.walk_m},
+          {"scan_min", round.scan_min}, {"set_up_min", round.set_up_min}, {"photos_min", round.photos_min},
+          {"walk_min", round.walk_min}, {"minutes", round.minutes},       {"ways", std::move(ways)}};
+}
+
+ordered_json visit_json(const Visit& visit, std::size_t kept) {
+  ordered_json json = round_json(visit, kept);
+  if (visit.sessions.empty()) return json;
+  // The whole round is not walked.
+  json["ways"] = ordered_json::array();
+  for (const Session& session : visit.sessions) {
+    ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session)}};
+    one.update(round_json(session, kept));
+    json["sessions"].push_back(std::move(one));
+  }
+  return json;
 }
 
 // Stations by their places in the network.
@@ -130,7 +143,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"parts", nullptr}};
   if (network.visit && !network.visit->order.empty()) {
     const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
-    json["visit"] = visit_json(*network.visit, kept, true);
+    json["visit"] = visit_json(*network.visit, kept);
   }
   json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));

@@ -135,56 +135,111 @@ void begin_section(std::vector<Sheet>& sheets, std::size_t lines) {
     sheets.emplace_back(a4());
 }
 
+// Session by session: who takes which stations, and how long that is.
+void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<std::string>& names) {
+  const std::vector<Session>& sessions = network.visit->sessions;
+  const std::vector<SheetRound> rounds = sheet_rounds(network);
+  begin_section(sheets, sessions.size());
+  Sheet& sheet = sheets.back();
+  sheet.heading("Sessions");
+  sheet.words(
+      Sheet::kMargin,
+      "Each begins and ends at the entrance; its stations stand in the table of stations in their order. Links: "
+      "whether its scans hold together by themselves, and with those of other sessions.",
+      {.size = 9, .colour = kFaintInk});
+  sheet.y += 6;
+  write_table(sheets, a4(),
+              {{"Session", Align::start},
+               {"Stations"},
+               {"From, to", Align::start},
+               {"At stations"},
+               {"Walking"},
+               {"Walk, m"},
+               {"In all"},
+               {"Links", Align::start}},
+              sessions.size(), sessions.size(), "", [&](std::size_t k) -> std::vector<std::string> {
+                const Session& one = sessions[k];
+                const std::vector<std::size_t>& stations = rounds[k].stations;
+                return {rounds[k].name,
+                        std::to_string(stations.size()),
+                        names[stations.front()] + ", " + names[stations.back()],
+                        minutes_text(one.minutes - one.walk_min),
+                        minutes_text(one.walk_min),
+                        fixed(one.walk_m, 0),
+                        minutes_text(one.minutes),
+                        session_links(one)};
+              });
+}
+
 // All of them, in the order of visiting. `first_map`: the number of the first map's sheet.
 void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<StationFacts>& facts,
                     const std::vector<std::size_t>& sheet_of, std::size_t first_map) {
   const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
   const Paper paper = lying(a4());
+  const bool sessions = network.visit && !network.visit->sessions.empty();
   sheets.emplace_back(paper);
   sheets.back().heading("All stations, in the order of visiting");
   sheets.back().words(
       Sheet::kMargin,
       "Metres. x, y and z are of the ground under the tripod, the head stands so high over it. Corners: "
-      "tape distances to the two corners that the map marks. Done at: since the start of the round. Field software "
-      "registers each scan to the one before; a station that has no link to that says to which station instead.",
+      "tape distances to the two corners that the map marks. Done at: since the start of the " +
+          std::string(sessions ? "session" : "round") +
+          ". Field software "
+          "registers each scan to the one before; a station that has no link to that says to which station instead.",
       {.size = 9, .colour = kFaintInk});
   sheets.back().y += 6;
-  const std::vector<std::size_t> order = visiting_order(facts);
-  write_table(sheets, paper,
-              {{"No."},
-               {"Station", Align::start},
-               {"Sheet"},
-               {"x"},
-               {"y"},
-               {"z"},
-               {"Head"},
-               {"Corners"},
-               {"Walk"},
-               {"Done at"},
-               {"Points"},
-               {"Notes", Align::start}},
-              order.size(), order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
-                const std::size_t k = order[row];
-                const PlacedStation& s = network.stations[k];
-                const StationFacts& f = facts[k];
-                const bool placed = s.status != StationStatus::hole;
-                std::string notes = f.note;
-                const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
-                if (!f.register_to.empty()) add(f.register_to);
-                if (f.alone > 0) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
-                return {f.visit > 0 ? std::to_string(f.visit) : "",
-                        f.name,
-                        sheet_of[k] > 0 ? std::to_string(first_map + sheet_of[k] - 1) : "",
-                        placed ? fixed(s.ground.x, 3) : "",
-                        placed ? fixed(s.ground.y, 3) : "",
-                        placed ? fixed(s.ground.z, 3) : "",
-                        placed ? fixed(s.position.z - s.ground.z, 2) : "",
-                        tape_text(f.corners),
-                        f.visit > 0 ? fixed(f.walk_m, 1) : "",
-                        f.visit > 0 ? minutes_text(f.done_min) : "",
-                        network.exact && k < points.size() ? grouped(points[k]) : "",
-                        notes};
-              });
+  const auto table = [&](const std::vector<std::size_t>& order) {
+    write_table(sheets, paper,
+                {{"No."},
+                 {"Station", Align::start},
+                 {"Sheet"},
+                 {"x"},
+                 {"y"},
+                 {"z"},
+                 {"Head"},
+                 {"Corners"},
+                 {"Walk"},
+                 {"Done at"},
+                 {"Points"},
+                 {"Notes", Align::start}},
+                order.size(), order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
+                  const std::size_t k = order[row];
+                  const PlacedStation& s = network.stations[k];
+                  const StationFacts& f = facts[k];
+                  const bool placed = s.status != StationStatus::hole;
+                  std::string notes = f.note;
+                  const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
+                  if (!f.register_to.empty()) add(f.register_to);
+                  if (f.alone > 0) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
+                  return {f.stop > 0 ? std::to_string(f.stop) : "",
+                          f.name,
+                          sheet_of[k] > 0 ? std::to_string(first_map + sheet_of[k] - 1) : "",
+                          placed ? fixed(s.ground.x, 3) : "",
+                          placed ? fixed(s.ground.y, 3) : "",
+                          placed ? fixed(s.ground.z, 3) : "",
+                          placed ? fixed(s.position.z - s.ground.z, 2) : "",
+                          tape_text(f.corners),
+                          f.visit > 0 ? fixed(f.walk_m, 1) : "",
+                          f.visit > 0 ? minutes_text(f.done_min) : "",
+                          network.exact && k < points.size() ? grouped(points[k]) : "",
+                          notes};
+                });
+  };
+  std::vector<std::size_t> order = visiting_order(facts);
+  if (!sessions) return table(order);
+  std::erase_if(order, [&](std::size_t k) { return facts[k].visit > 0; });
+  constexpr double kLeastLeft = 90;
+  const auto part = [&](const std::string& title, const std::vector<std::size_t>& stations) {
+    if (sheets.back().left() < kLeastLeft) sheets.emplace_back(paper);
+    Sheet& sheet = sheets.back();
+    sheet.y += 12;
+    sheet.words(Sheet::kMargin, title, {.size = 10, .bold = true});
+    sheet.y += 2;
+    table(stations);
+  };
+  for (const SheetRound& round : sheet_rounds(network))
+    part(round.name + ": " + minutes_text(round.round->minutes), round.stations);
+  if (!order.empty()) part("In no session", order);
 }
 
 // Where each target stands, and then which of them each station must see.
@@ -229,7 +284,7 @@ void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const
   write_table(sheets, a4(), {{"No."}, {"Station", Align::start}, {"Targets", Align::start}}, order.size(), order.size(),
               "", [&](std::size_t row) -> std::vector<std::string> {
                 const StationFacts& f = facts[order[row]];
-                return {f.visit > 0 ? std::to_string(f.visit) : "", f.name, f.targets};
+                return {f.stop > 0 ? std::to_string(f.stop) : "", f.name, f.targets};
               });
 }
 
@@ -388,6 +443,8 @@ bool write_report_pdf(const std::filesystem::path& file, const Report& report, S
   if (stop.stop_requested()) return false;
   const std::size_t first_map = sheets.size() + 1;
   std::ranges::move(maps.sheets, std::back_inserter(sheets));
+  if (network.visit && !network.visit->sessions.empty())
+    sessions_table(sheets, network, station_names(network.stations, network.names));
   stations_table(sheets, network, facts, maps.of_station, first_map);
   if (!network.targets.empty()) targets_tables(sheets, network, facts, of_targets);
   if (const auto links = network.links()) links_table(sheets, *links, station_names(network.stations, network.names));

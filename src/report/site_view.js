@@ -352,7 +352,7 @@ class SiteView {
   // The way of the round as a band on the ground.
   addRoute(size) {
     const corners = [], width = 0.35 * size;
-    for (const way of this.visit.ways)
+    for (const way of [this.visit, ...(this.visit.sessions || [])].flatMap((round) => round.ways))
       for (let k = 0; k + 5 < way.length; k += 3) {
         const a = this.local(way.slice(k, k + 3)), b = this.local(way.slice(k + 3, k + 6));
         if (!this.shown(a) || !this.shown(b)) continue;

@@ -21,23 +21,19 @@ constexpr double kWall_m = 1.2, kHeights_m = 0.5;
 constexpr double kOverWall_m = 0.8, kOverTarget_m = 0.4;
 constexpr std::uint64_t kSeen = 400'000;  // voxels that shares are taken of
 
-void add_round(std::vector<StationFacts>& facts, const Evaluation& network, const Simulator& simulator) {
-  if (!network.visit || network.visit->order.empty()) return;
-  const Visit& visit = *network.visit;
-  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
-  const auto stops = static_cast<double>(visit.order.size());
-  double minutes = 0;
-  for (std::size_t k = 0; k < visit.order.size(); ++k) {
-    const std::size_t station = kept + visit.order[k];
-    const Scanner& scanner = simulator.scanners()[network.stations[station].setup.scanner];
-    const double walk_min = visit.walk_m > 0 ? visit.walk_min * visit.legs_m[k] / visit.walk_m : 0;
-    minutes += walk_min + (visit.set_up_min + visit.photos_min) / stops +
-               static_cast<double>(scanner.rays()) / scanner.points_per_second / 60;
-    facts[station].visit = k + 1, facts[station].walk_m = visit.legs_m[k], facts[station].done_min = minutes;
+void add_round(std::vector<StationFacts>& facts, const Evaluation& network) {
+  std::size_t visited = 0;
+  for (const SheetRound& one : sheet_rounds(network)) {
+    if (!one.round) continue;
+    for (std::size_t k = 0; k < one.round->order.size(); ++k) {
+      StationFacts& f = facts[one.stations[k]];
+      f.visit = ++visited, f.stop = k + 1, f.walk_m = one.round->legs_m[k];
+      f.done_min = one.round->arrive_min[k] + one.round->stay_min[k];
+    }
   }
 }
 
-// Field software registers a scan to the one before, unless it is told another.
+// Field software registers a scan to the one before, unless it is told another. A session begins without one before.
 void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network) {
   const std::optional<StationLinks> links = network.links();
   if (!links) return;
@@ -49,7 +45,8 @@ void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network
     if (network.stations[k].existing && active(network.stations[k])) before.push_back(k);
   for (const std::size_t k : visiting_order(facts)) {
     if (facts[k].visit == 0) continue;
-    if (!before.empty() && !linked(before.back(), k)) {
+    const bool begins = facts[k].stop == 1 && facts[k].visit > 1;
+    if (!before.empty() && (begins || !linked(before.back(), k))) {
       const std::size_t strongest =
           *std::ranges::max_element(before, {}, [&](std::size_t other) { return links->values(other, k); });
       facts[k].register_to =
@@ -135,7 +132,7 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
   for (const Target& target : network.targets)
     for (const std::size_t k : target.stations)
       facts[k].targets += (facts[k].targets.empty() ? "" : ", ") + target.name;
-  add_round(facts, network, simulator);
+  add_round(facts, network);
   add_register_to(facts, network);
   add_corners(facts, network.stations, simulator.scene().data());
   add_alone(facts, report.options.field, simulator);
@@ -161,6 +158,26 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
     }
   }
   return facts;
+}
+
+std::vector<SheetRound> sheet_rounds(const Evaluation& network) {
+  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
+  const auto of = [&](const Round& round, std::string name) {
+    SheetRound one{.round = &round, .name = std::move(name)};
+    for (const std::size_t station : round.order) one.stations.push_back(kept + station);
+    return one;
+  };
+  if (!network.visit) return {SheetRound{}};
+  if (network.visit->sessions.empty()) return {of(*network.visit, "")};
+  std::vector<SheetRound> rounds;
+  for (const Session& session : network.visit->sessions)
+    rounds.push_back(of(session, "Day " + std::to_string(session.day) + ", crew " + std::to_string(session.crew)));
+  return rounds;
+}
+
+std::string session_links(const Session& session) {
+  return (session.parts > 1 ? "in " + std::to_string(session.parts) + " parts; " : std::string("within, and ")) +
+         (session.linked ? "to others" : "to no other session");
 }
 
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts) {

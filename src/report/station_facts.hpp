@@ -14,6 +14,7 @@ namespace vantage {
 struct StationFacts {
   std::string name;
   std::size_t visit = 0;                 // its place in the round, from 1; 0: it is not visited
+  std::size_t stop = 0;                  // the same in its session; in the round if there are no sessions
   double walk_m = 0, done_min = 0;       // the way to it, and the time since the start once it is scanned
   std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
   double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
@@ -35,6 +36,18 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
 
 // Of all stations of the answer, in their order.
 std::vector<StationFacts> station_facts(const Report& report, const Simulator& simulator);
+
+// A round that a crew takes on its own sheets: all of it, or a session.
+struct SheetRound {
+  const Round* round = nullptr;            // borrowed from the network; null: none is known
+  std::string name = {};                   // "Day 1, crew 2" of a session
+  std::vector<std::size_t> stations = {};  // in its order, by their places in the network
+};
+// The sessions of a network, else its round, else one without any.
+std::vector<SheetRound> sheet_rounds(const Evaluation& network);
+
+// "within, and to others", "in 2 parts; to no other session".
+std::string session_links(const Session& session);
 
 // Stations by their place in the round, the others behind them.
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts);

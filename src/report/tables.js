@@ -54,7 +54,12 @@ function figures(holder, network) {
       ? tile('Registered', 'Not known', 'surfaces do not hold the scans together', true)
       : tile('Registered', `${tenths(registered.value)} mm`, `${!network.confirmed && registered.standard_error >= 0.05 ? `± ${tenths(registered.standard_error)} mm, ` : ''}predicted error of the scans`
         + (network.random_mm === null ? '' : network.random_mm < registered.value ? `, random ${tenths(network.random_mm)} mm` : ', random alone')));
-  if (network.minutes_on_site !== null) tiles.push(tile('On site', duration(60 * network.minutes_on_site), 'with setting up and walking'));
+  const sessions = sessionsOf(network);
+  if (sessions.length) {
+    const days = Math.max(...sessions.map((s) => s.day)), crews = Math.max(...sessions.map((s) => s.crew));
+    tiles.push(tile('On site', `${days} day${days > 1 ? 's' : ''}`, `${sessions.length} session${sessions.length > 1 ? 's' : ''}${crews > 1 ? ` of ${crews} crews` : ''}, `
+      + `the longest ${duration(60 * Math.max(...sessions.map((s) => s.minutes)))}`));
+  } else if (network.minutes_on_site !== null) tiles.push(tile('On site', duration(60 * network.minutes_on_site), 'with setting up and walking'));
   holder.replaceChildren(...tiles);
 }
 
@@ -98,6 +103,18 @@ function foldedTable(titles, rows, textColumns, most, words) {
 
 const kRows = 60;  // that a page shows at once
 
+const sessionsOf = (network) => (network.visit && network.visit.sessions) || [];
+const sessionName = (session) => `Day ${session.day}, crew ${session.crew}`;
+
+// Where a station comes in its session, or in the round; null: nowhere.
+function stopOf(network, k) {
+  for (const round of sessionsOf(network).length ? sessionsOf(network) : network.visit ? [network.visit] : []) {
+    const stop = round.order.indexOf(k);
+    if (stop >= 0) return { session: round.day ? sessionName(round) : null, stop: stop + 1, of: round.order.length, walk: round.legs_m[stop].toFixed(1) };
+  }
+  return null;
+}
+
 // By their place in the round, the others behind them.
 function visitingOrder(network) {
   const order = network.visit ? [...network.visit.order] : [], visited = new Set(order);
@@ -106,7 +123,7 @@ function visitingOrder(network) {
 }
 
 function stationTable(holder, network, pick, order = visitingOrder(network)) {
-  const place = new Map((network.visit ? network.visit.order : []).map((k, stop) => [k, stop]));
+  const round = network.visit && network.visit.order.length > 0, sessions = sessionsOf(network).length > 0;
   const targets = network.targets.length > 0;
   const seen = (k) => network.targets.filter((t) => t.stations.includes(k)).map((t) => t.name).join(', ') || null;
   const row = (k) => {
@@ -116,10 +133,13 @@ function stationTable(holder, network, pick, order = visitingOrder(network)) {
     const cells = [name, ...(s.position || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
       s.points_on_surveyed === null ? null : grouped(s.points_on_surveyed), s.linked === undefined ? null : s.linked];
     if (targets) cells.push(seen(k));
-    if (place.size) cells.push(place.has(k) ? place.get(k) + 1 : null, place.has(k) ? network.visit.legs_m[place.get(k)].toFixed(1) : null);
+    if (round) {
+      const at = stopOf(network, k) || { session: null, stop: null, walk: null };
+      cells.push(...(sessions ? [at.session] : []), at.stop, at.walk);
+    }
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
-  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
+  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(sessions ? ['Session'] : []), ...(round ? ['Stop', 'Walk (m)'] : []), ''];
   holder.replaceChildren(...foldedTable(titles, order.map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
 }
 
@@ -147,10 +167,19 @@ function roomTable(holder, rooms) {
 
 // The round in a sentence.
 function roundWords(network) {
+  if (sessionsOf(network).length) return 'Each session begins and ends at the entrance; stops and walks below are of the sessions.';
   if (!network.visit) return '';
   const { order, walk_m: walk, ways } = network.visit, kNamed = 40;
   const names = order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ');
   return `The round${ways.length && ways[0].length > 3 ? ' from the entrance' : ''}: ${names}${order.length > kNamed ? ` → … ${order.length} stations in all` : ''}, and back: ${walk.toFixed(0)} m on foot.`;
+}
+
+function sessionTable(holder, network) {
+  const sessions = sessionsOf(network), kNamed = 12;
+  const names = ({ order }) => order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ') + (order.length > kNamed ? ` → … ${order.length} in all` : '');
+  holder.hidden = !sessions.length;
+  holder.replaceChildren(table(['Session', 'Stations', 'At stations', 'Walking', 'In all', 'Links'], sessions.map((s) => [sessionName(s), names(s),
+    duration(60 * (s.minutes - s.walk_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, duration(60 * s.minutes), s.links]), [0, 1, 5]));
 }
 
 function linkTable(holder, wordsHolder, network) {
@@ -247,8 +276,8 @@ function stationCard(holder, network, k, only, { pick, stand }) {
   }
   if (s.points_on_surveyed !== null) fact('Points', `${grouped(s.points_on_surveyed)} on the site`);
   if (only !== null) fact('Only it sees', percent(only) + ' of the site');
-  const stop = network.visit ? network.visit.order.indexOf(k) : -1;
-  if (stop >= 0) fact('Stop', `${stop + 1} of ${network.visit.order.length}, after ${network.visit.legs_m[stop].toFixed(1)} m on foot`);
+  const stop = stopOf(network, k);
+  if (stop) fact('Stop', `${stop.stop} of ${stop.of}${stop.session ? ` of ${stop.session[0].toLowerCase() + stop.session.slice(1)}` : ''}, after ${stop.walk} m on foot`);
   if (s.existing) fact('', 'was there before');
   if (s.fault) fact('Mind', s.fault);
   parts.push(facts);

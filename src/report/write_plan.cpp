@@ -55,9 +55,10 @@ constexpr Part kMap{"map", 0, 0.2}, kDraw{"draw", 0.2, 0.5}, kMissed{"missed", 0
 
 // Removes the files of an earlier plan that this one need not have.
 void remove_earlier_plan(const std::filesystem::path& folder) {
-  remove_earlier(folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
-                          "history.png", "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg",
-                          "missed.csv", "missed.ply", "missed.png", "rooms.csv", "report.html", "report.pdf"});
+  remove_earlier(
+      folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg", "history.png",
+               "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg", "missed.csv", "missed.ply",
+               "missed.png", "rooms.csv", "sessions.csv", "report.html", "report.pdf"});
   std::vector<std::string> levels;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
@@ -139,6 +140,7 @@ class FolderWriter {
     write_history_csv(folder_ / "history.csv", result_);
     write_fronts_csv(folder_ / "fronts.csv", result_);
     write_stations_csv(folder_ / "stations.csv", entry_.stations, site_.scanners(), entry_.names);
+    if (entry_.visit && !entry_.visit->sessions.empty()) write_sessions_csv(folder_ / "sessions.csv", entry_);
     if (entry_.exact) write_overlap_csv(folder_ / "overlap.csv", entry_.overlap_matrix);
     if (!entry_.targets.empty()) write_targets_csv(folder_ / "targets.csv", entry_.targets, names_);
     write_station_files(folder_, {entry_.stations, names_, entry_.targets}, links_, site_);

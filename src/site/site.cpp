@@ -412,6 +412,8 @@ Evaluation Site::evaluate(std::span<const PlacedStation> stations, const Evaluat
                           const OnSiteOptions& options_on_site, const Progress& progress) {
   std::optional<OnSite> walk;
   if (has_area()) walk = on_site(options_on_site);
+  if (!walk && options_on_site.day_min)
+    throw Error(Errc::invalid_argument, "day: there is no ground in the model for a round that sessions are made of");
   return evaluate_stations({.simulator = simulator(),
                             .surroundings = options.overlap ? &surroundings() : nullptr,
                             .on_site = walk ? &*walk : nullptr,

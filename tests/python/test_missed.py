@@ -44,6 +44,15 @@ class AfterASearch(unittest.TestCase):
         self.assertAlmostEqual(visit.minutes, visit.scan_min + visit.set_up_min + visit.walk_min)
         straight = np.linalg.norm(np.subtract(BEFORE_EACH_WALL[0], BEFORE_EACH_WALL[2]))
         self.assertGreaterEqual(on_site.way_m((8, 0, 0), (0, 8, 0)), straight - 0.5)
+        self.assertEqual((visit.day_min, visit.sessions), (0, []))
+        day = visit.minutes * 0.7
+        split = vantage.OnSite(self.site, vantage.OnSiteOptions(set_up_min=5, walking_m_per_s=1, entrance=(0, 0, 0), day_min=day, crews=2)).visit(BEFORE_EACH_WALL)
+        self.assertEqual([(s.day, s.crew, s.parts, s.linked) for s in split.sessions], [(1, 1, 1, True), (1, 2, 1, True)])
+        self.assertEqual(sum((s.order for s in split.sessions), []), split.order)
+        self.assertTrue(all(s.minutes <= day for s in split.sessions))
+        self.assertEqual(len(split.sessions[1].paths), len(split.sessions[1].order) + 1)
+        with self.assertRaisesRegex(vantage.Error, "too short for one station"):
+            vantage.OnSite(self.site, vantage.OnSiteOptions(day_min=1))
         problem = vantage.SurveyProblem(objectives=["time"], on_site=options)
         self.assertEqual(problem.on_site.set_up_min, 5)
 

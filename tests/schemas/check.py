@@ -27,6 +27,7 @@ PLANS = {
     "kept": ["--problem", "coverage-fix", "--stations", "2", "--keep", "x=8,y=3,z=1.5,heading=30,tilt=80,scanner=rtc360,step=2.5", *SEARCH],
     "survey": ["--capture", "0.5", "--max-time", "5s"],
     "paying": ["--max-time", "5s"],
+    "days": ["--problem", "coverage-fix", "--stations", "4", "--keep", "8,0,1.5", "--day", "8min", "--crews", "2", *SEARCH],
     "targets": ["--problem", "coverage-fix", "--stations", "1", "--keep", "7,1,1.5", "--keep", "7.5,-1,1.5", "--targets", "2", "--targets-from",
                 "have.csv", *SEARCH],
 }
@@ -90,6 +91,21 @@ def check_tables(folder, written):
     assert len(rows(os.path.join(folder, "targets/targets.csv"), TEXTS | {"stations"})) == len(entry["targets"])
 
 
+def check_sessions(folder, written):
+    """Sessions in front.json and sessions.csv are the round, cut."""
+    entry = written["front"][written["answer"] - 1]
+    sessions, table = entry["on_site"]["sessions"], rows(os.path.join(folder, "days/sessions.csv"))
+    assert len(sessions) > 1 and [[s["day"], s["crew"]] for s in sessions[:3]] == [[1, 1], [1, 2], [2, 1]][:len(sessions)]
+    assert sum((session["order"] for session in sessions), []) == entry["on_site"]["order"]
+    assert [row["station"] for row in table] == entry["on_site"]["order"]
+    assert all(session["minutes"] <= 8 for session in sessions)
+    holds = validator(os.path.join(SCHEMAS, "sessions.schema.json"))
+    for row in table:
+        require(holds, row, "sessions.csv")
+        assert row["name"] == entry["stations"][row["station"] - 1]["name"]
+    assert not holds.is_valid({**table[0], "day": 0}) and not holds.is_valid({**table[0], "more": 1})
+
+
 def check_files(folder):
     front, stations, after = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations", "next"))
     config = validator(os.path.join(MANUAL, "schemas/config.schema.json"))
@@ -114,6 +130,8 @@ def check_files(folder):
             assert not front.is_valid(broken)
         if name == "targets":
             check_tables(folder, written)
+        if name == "days":
+            check_sessions(folder, written)
     run(folder, "scan", "walls.glb", *COARSE, "--station", "8,0,1.5", "-o", "day.e57")
     run(folder, "next", "walls.glb", *COARSE, "--scans", "day.e57", "--stations", "survey/front.json", "--link", "0", expected=(0, 3))
     with open(os.path.join(folder, "next/next.json"), encoding="utf-8") as file:
@@ -135,7 +153,7 @@ def check_json(folder):
         "info": [["info"], ["info", "--measure", "walls.glb"]],
         "import": [["import", "wall.obj", "-o", "wall.glb"]],
         "scan": [["scan", *station], ["scan", *station, "--returns", "all", "--beam", "0.3,6", "-o", "scan.ply"]],
-        "evaluate": [["evaluate", *station], ["evaluate", *station, "--station", "-8,0,1.5", "--registration", "--attainable", "--sample", "200"]],
+        "evaluate": [["evaluate", *station, "--day", "4h"], ["evaluate", *station, "--station", "-8,0,1.5", "--registration", "--attainable", "--sample", "200"]],
         "bound": [["bound", "walls.glb", *COARSE, "--stations", "1", "--capture", "0.5", "--candidates", "8", "--sample", "100"]],
     }
     for name, commands in printed.items():

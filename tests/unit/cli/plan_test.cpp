@@ -125,6 +125,72 @@ TEST_F(Plan, ChoosesAStepForEachStation) {
   expect_refused(run_program(plan("other", {"--stations", "2", "--search-step", "1,3mm"})), 2, "a scanner's preset");
 }
 
+TEST_F(Plan, SplitsARoundThatIsLongerThanADay) {
+  const std::vector<std::string> what{"--problem", "coverage-fix", "--stations", "5"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), what.begin(), what.end());
+    return more;
+  };
+  const auto front = json_of(plan("plan", with({"--day", "8min", "--crews", "2"})));
+  const auto& on_site = front["front"][front["answer"].get<std::size_t>() - 1]["on_site"];
+  ASSERT_TRUE(on_site.contains("sessions"));
+  const auto& sessions = on_site["sessions"];
+  ASSERT_GE(sessions.size(), 3u) << "two stations of three minutes fit eight at most";
+  nlohmann::json order = nlohmann::json::array();
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    EXPECT_EQ(sessions[s]["day"], s / 2 + 1);
+    EXPECT_EQ(sessions[s]["crew"], s % 2 + 1);
+    EXPECT_LE(sessions[s]["minutes"].get<double>(), 8);
+    for (const auto& station : sessions[s]["order"]) order.push_back(station);
+  }
+  EXPECT_EQ(order, on_site["order"]);
+  std::string told;
+  for (const auto& line : front["summary"])
+    if (line["heading"] == "on site") told = line["text"];
+  EXPECT_TRUE(told.starts_with(std::to_string(sessions.size()) +
+                               " sessions of at most 8 min: 2 days with 2 crews; the longest takes "))
+      << told;
+  const std::string table = read("plan/sessions.csv");
+  EXPECT_TRUE(table.starts_with("session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min\n1,1,1,1,"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 6);
+  EXPECT_EQ(front["parameters"]["plan"]["day"], "8min");
+
+  // Evaluation makes the same of the same stations, by the plan's own configuration.
+  const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
+                              "--stations", path("plan/front.json"), "--sessions", path("again.csv")});
+  EXPECT_EQ(again["sessions"], sessions);
+  EXPECT_EQ(read("again.csv"), table);
+
+  // Nothing of it without a day, and no file of an earlier plan.
+  const auto whole = json_of(plan("plan", with({"--force"})));
+  EXPECT_FALSE(whole["front"][0]["on_site"].contains("sessions"));
+  EXPECT_FALSE(whole["parameters"]["plan"].contains("day"));
+  EXPECT_EQ(whole["front"][0]["stations"], front["front"][0]["stations"]) << "the search is the same";
+  EXPECT_FALSE(std::filesystem::exists(path("plan/sessions.csv")));
+}
+
+TEST_F(Plan, RefusesDaysThatCannotBe) {
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& words) {
+    std::vector<std::string> all{"--problem", "coverage-fix", "--stations", "2"};
+    all.insert(all.end(), more.begin(), more.end());
+    expect_refused(run_program(plan("plan", all)), 2, words);
+    EXPECT_FALSE(std::filesystem::exists(path("plan/front.json")));
+  };
+  refused({"--crews", "2"}, "give the length of a day too");
+  refused({"--day", "8h", "--crews", "0"}, "crews");
+  refused({"--day", "tomorrow"}, "is no time");
+  refused({"--day", "2min"}, "day: 2.0 min are too short for one station, which takes 3.0 min");
+  const auto evaluated = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"--station", "8,0,1.5", "--station", "-8,0,1.5"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_program(coarse("evaluate", all));
+  };
+  expect_refused(evaluated({"--sessions", path("sessions.csv")}), 2, "--sessions: a round is split by --day");
+  expect_refused(evaluated({"--day", "1h", "--sessions", path("sessions.txt")}), 2, "must end with .csv");
+  expect_refused(evaluated({"--day", "3.1min"}), 2, "takes");
+  EXPECT_FALSE(std::filesystem::exists(path("sessions.csv")));
+}
+
 TEST_F(Plan, ChoosesAStepForEachStationOfTheFewest) {
   const auto front =
       json_of(plan("plan", {"--capture", "0.5", "--link", "0.05", "--stations", "1..6", "--search-step", "1,0.5"}));

@@ -350,18 +350,17 @@ TEST(OnSite, LinksTakeNoRoundThatIsMuchLonger) {
     const double least = rounds.least();
     const Visit plain = on_site.visit(stations_at(grounds)), along = on_site.visit(stations_at(grounds), link);
     EXPECT_LE(along.walk_m, 1.3 * least) << trial;
-    const auto unlinked = [&](const Visit& visit) {
+    const auto unlinked = [&](const std::vector<std::size_t>& order) {
       std::size_t count = 0;
-      for (std::size_t k = 0; k + 1 < visit.order.size(); ++k)
-        count += strength[visit.order[k]][visit.order[k + 1]] == 0;
+      for (std::size_t k = 0; k + 1 < order.size(); ++k) count += strength[order[k]][order[k + 1]] == 0;
       return count;
     };
-    EXPECT_EQ(along.unlinked, unlinked(along));
-    EXPECT_LE(unlinked(along), unlinked(plain)) << trial;
+    EXPECT_EQ(along.unlinked, unlinked(along.order));
+    EXPECT_LE(unlinked(along.order), unlinked(plain.order)) << trial;
     // The fewest that any walk allows which is no longer than 1.2 times the shortest.
     std::size_t fewest = 7;
     rounds.for_each([&](const auto& order) {
-      if (rounds.length(order) <= 1.2 * least) fewest = std::min(fewest, unlinked({.order = order}));
+      if (rounds.length(order) <= 1.2 * least) fewest = std::min(fewest, unlinked(order));
     });
     EXPECT_LE(along.unlinked, fewest == 0 ? 0 : fewest + 1) << trial;
     all_linked += fewest == 0;
@@ -384,6 +383,119 @@ TEST(OnSite, ATunnelIsWalkedOnceInAndOnceOut) {
   for (std::size_t k = 0; k + 1 < visit.order.size(); ++k)
     EXPECT_NEAR(grounds[visit.order[k + 1]].x - grounds[visit.order[k]].x, 4.5, 1e-9) << k;
   EXPECT_LE(visit.walk_m, 1.05 * 2 * (2 + 4.5 * 7 - 0.5));
+}
+
+// Eight stations along a corridor, each linked to the next, the entrance at its end; a minute of scanning and two of
+// setting up at each.
+class Corridor {
+ public:
+  static constexpr Vec3 kEntrance{0.5, 20, 0};
+  Corridor() {
+    std::vector<Vec3> grounds;
+    for (const int k : {5, 2, 7, 0, 3, 6, 1, 4}) place.push_back(k), grounds.push_back({2 + 4.5 * k, 20, 0});
+    stations = stations_at(grounds);
+  }
+  LinkStrength chain() const {
+    return [this](std::size_t a, std::size_t b) { return std::abs(place[a] - place[b]) == 1 ? 0.5 : 0.0; };
+  }
+  Visit visit(double day_min, std::size_t crews, const LinkStrength& link, const LinkStrength& of_sessions) const {
+    const OnSite on_site = Yard().on_site(
+        {.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = kEntrance, .day_min = day_min, .crews = crews});
+    Visit visit = on_site.visit(stations, link);
+    visit.sessions = on_site.sessions(stations, visit, of_sessions);
+    return visit;
+  }
+  std::vector<int> place;  // along the corridor
+  std::vector<PlacedStation> stations;
+};
+
+TEST(Sessions, ADayTakesAsManyStationsOfACorridorAsFit) {
+  const Corridor corridor;
+  // The last pair stands 31 m from the entrance, two minutes there and back with six for the pair.
+  const Visit visit = corridor.visit(8.5, 2, corridor.chain(), corridor.chain());
+  ASSERT_EQ(visit.sessions.size(), 4u);
+  std::vector<std::size_t> all;
+  for (std::size_t s = 0; s < visit.sessions.size(); ++s) {
+    const Session& one = visit.sessions[s];
+    EXPECT_EQ(one.day, s / 2 + 1);
+    EXPECT_EQ(one.crew, s % 2 + 1);
+    ASSERT_EQ(one.order.size(), 2u);
+    all.insert(all.end(), one.order.begin(), one.order.end());
+    const double far = corridor.stations[one.order.back()].ground.x - Corridor::kEntrance.x;
+    EXPECT_NEAR(one.walk_m, 2 * far, 1);
+    EXPECT_LE(one.minutes, 8.5);
+    EXPECT_NEAR(one.minutes, 2 * 3 + one.walk_m / 0.5 / 60, 1e-9);
+    EXPECT_EQ(one.paths.front().front(), Corridor::kEntrance);
+    EXPECT_EQ(one.paths.back().back(), Corridor::kEntrance);
+    ASSERT_EQ(one.arrive_min.size(), 2u);
+    EXPECT_NEAR(one.arrive_min[1], one.arrive_min[0] + 3 + 4.5 / 0.5 / 60, 0.03);
+    EXPECT_NEAR(one.minutes, one.arrive_min[1] + one.stay_min[1] + one.legs_m.back() / 0.5 / 60, 1e-9);
+    EXPECT_EQ(one.parts, 1u);
+    EXPECT_TRUE(one.linked);
+    EXPECT_EQ(one.unlinked, 0u);
+  }
+  EXPECT_EQ(all, visit.order) << "parts of the visiting order";
+
+  const Visit whole = corridor.visit(60, 3, corridor.chain(), corridor.chain());
+  ASSERT_EQ(whole.sessions.size(), 1u);
+  EXPECT_EQ(whole.sessions[0].order, whole.order);
+  EXPECT_NEAR(whole.sessions[0].minutes, whole.minutes, 1e-9);
+  EXPECT_TRUE(whole.sessions[0].linked);
+}
+
+TEST(Sessions, AreCutWhereLinksAllowItAndTellWhereTheyDoNot) {
+  const Corridor corridor;
+  // Five would fit a day, but the corridor falls apart after the third station.
+  const auto broken = [&](std::size_t a, std::size_t b) {
+    const int low = std::min(corridor.place[a], corridor.place[b]);
+    return low == 2 ? 0 : corridor.chain()(a, b);
+  };
+  const Visit visit = corridor.visit(17.5, 1, corridor.chain(), broken);
+  ASSERT_EQ(visit.sessions.size(), 2u);
+  EXPECT_EQ(visit.sessions[0].order.size(), 3u);
+  for (const Session& one : visit.sessions) {
+    EXPECT_EQ(one.parts, 1u);
+    EXPECT_FALSE(one.linked) << "no scan of it is linked to the other session";
+  }
+  const Visit apart = corridor.visit(17.5, 1, corridor.chain(), [](std::size_t, std::size_t) { return 0.0; });
+  ASSERT_EQ(apart.sessions.size(), 2u);
+  EXPECT_EQ(apart.sessions[0].parts + apart.sessions[1].parts, 8u);
+  EXPECT_EQ(apart.sessions[0].unlinked + apart.sessions[1].unlinked, 6u);
+}
+
+TEST(Sessions, ADayThatIsTooShortIsOneError) {
+  const Corridor corridor;
+  const auto refusal = [&](double day_min) -> std::string {
+    try {
+      corridor.visit(day_min, 1, {}, {});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::invalid_argument);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(2.9),
+            "day: 2.9 min are too short for one station, which takes 3.0 min with setting up. Give a longer day");
+  // Station 3 is the farthest: 33 m, 2.2 minutes there and back.
+  EXPECT_EQ(refusal(5),
+            "day: station 3 takes 5.2 min from the entrance and back, 3.0 of them at the station; a day has 5.0. Give "
+            "a longer day");
+  EXPECT_EQ(refusal(5.5), "");
+  EXPECT_THROW(Yard().on_site({.crews = 2}), Error) << "crews share days";
+  EXPECT_THROW(Yard().on_site({.day_min = 60, .crews = 0}), Error);
+  EXPECT_THROW(Yard().on_site({.day_min = 0}), Error);
+}
+
+TEST(Sessions, BeginAtTheFirstStationWhereNoEntranceIsKnown) {
+  const Corridor corridor;
+  const OnSite on_site = Yard().on_site({.set_up_min = 2, .day_min = 14});
+  const Visit visit = on_site.visit(corridor.stations);
+  const std::vector<Session> sessions = on_site.sessions(corridor.stations, visit);
+  ASSERT_GE(sessions.size(), 2u);
+  EXPECT_EQ(sessions[0].legs_m.front(), 0);
+  EXPECT_TRUE(sessions[0].paths.front().empty());
+  EXPECT_EQ(sessions[1].paths.front().front(), corridor.stations[visit.order[0]].ground);
+  EXPECT_TRUE(on_site.sessions({}, {}).empty());
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ TEST(Report, NationalCoordinatesAreWholeOnSheets) {
   }
   Evaluation found = site.evaluate(stations, {.field = true});
   ASSERT_TRUE(found.visit);
-  found.visit->set_up_min = found.visit->minutes = 97;
+  found.visit->arrive_min.back() = 97;
   write_report(folder / "report.pdf", found, site, {});
   const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
   ASSERT_GE(sheets.size(), 3u);
@@ -251,13 +251,68 @@ TEST(Report, TellsWhatAScanIsRegisteredToIfNotToTheOneBefore) {
   found.scan_overlap_matrix = ScanOverlapMatrix(4);
   found.scan_overlap_matrix.set(0, 1, 0.6), found.scan_overlap_matrix.set(0, 2, 0.4);
   found.link = 0.3;
-  found.visit = Visit{.order = {0, 1, 2, 3}, .legs_m = {0, 1, 1, 1, 1}};
+  Visit visit;
+  visit.order = {0, 1, 2, 3}, visit.legs_m = {0, 1, 1, 1, 1};
+  visit.arrive_min = {0, 4, 8, 12}, visit.stay_min = {3, 3, 3, 3};
+  found.visit = visit;
   const Report report = report_of(found, survey.site, {});
   const auto facts = station_facts(report, survey.site.simulator());
   EXPECT_EQ(facts[0].register_to, "");
   EXPECT_EQ(facts[1].register_to, "");
   EXPECT_EQ(facts[2].register_to, "register to S1");
   EXPECT_EQ(facts[3].register_to, "no link to a station before it");
+  // A session begins without the scan before.
+  for (const std::size_t first : {0, 1}) {
+    Session one;
+    one.day = first + 1, one.order = {2 * first, 2 * first + 1}, one.legs_m = {1, 1, 1};
+    one.arrive_min = {1, 5}, one.stay_min = {3, 3};
+    found.visit->sessions.push_back(one);
+  }
+  found.scan_overlap_matrix.set(2, 3, 0.5);
+  const auto by_session = station_facts(report_of(found, survey.site, {}), survey.site.simulator());
+  EXPECT_EQ(by_session[2].register_to, "register to S1");
+  EXPECT_EQ(by_session[3].register_to, "");
+  EXPECT_EQ(by_session[2].visit, 3u);
+  EXPECT_EQ(by_session[2].stop, 1u);
+  EXPECT_EQ(by_session[3].done_min, 8);
+}
+
+TEST(Report, EachSessionHasItsMapAndItsList) {
+  const test::TemporaryFolder folder;
+  Survey survey;
+  std::vector<PlacedStation> stations;
+  for (int k = 0; k < 12; ++k) {
+    const Vec3 ground{-8 + 1.4 * k, -2 + 0.3 * k, -1.5};
+    stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+  }
+  const Evaluation found = survey.site.evaluate(stations, {.field = true}, {.day_min = 19, .crews = 2});
+  ASSERT_TRUE(found.visit);
+  const std::vector<Session>& sessions = found.visit->sessions;
+  ASSERT_EQ(sessions.size(), 3u) << "some four to six stations each";
+  write_report(folder / "report.pdf", found, survey.site, {});
+  const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
+  const auto has = [&](const std::vector<Word>& sheet, const std::vector<std::string>& words) {
+    return std::ranges::all_of(words, [&](const std::string& word) { return find(sheet, word) != nullptr; });
+  };
+  // A sheet for each session, after the front page, with its own stations alone in its list.
+  ASSERT_GE(sheets.size(), 5u);
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    const auto& sheet = sheets[1 + s];
+    EXPECT_TRUE(has(sheet, {"Day", std::to_string(sessions[s].day) + ",", "crew"})) << s;
+    for (std::size_t k = 0; k < stations.size(); ++k)
+      EXPECT_EQ(find(sheet, "S" + std::to_string(k + 1)) != nullptr, std::ranges::count(sessions[s].order, k) == 1)
+          << "sheet of session " << s + 1 << ", station " << k + 1;
+    EXPECT_TRUE(find(sheet, "1.") && find(sheet, std::to_string(sessions[s].order.size()) + ".")) << "its own stops";
+  }
+  EXPECT_TRUE(std::ranges::any_of(sheets, [&](const auto& sheet) { return has(sheet, {"Sessions", "Walking"}); }));
+
+  const auto visit = report_json(report_of(found, survey.site, {}))["networks"][0]["visit"];
+  ASSERT_EQ(visit["sessions"].size(), 3u);
+  EXPECT_TRUE(visit["ways"].empty()) << "nobody walks the whole round";
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    EXPECT_EQ(visit["sessions"][s]["order"].size(), sessions[s].order.size());
+    EXPECT_EQ(visit["sessions"][s]["ways"].size(), sessions[s].paths.size());
+  }
 }
 
 TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {

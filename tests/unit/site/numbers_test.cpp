@@ -251,6 +251,7 @@ TEST(Bounds, OfTheProgramHoldForMembersToo) {
         }},
        {"set-up", [](SurveyQuestion& q, double v) { q.on_site.set_up_min = v; }},
        {"walking", [](SurveyQuestion& q, double v) { q.on_site.walking_m_per_s = v; }},
+       {"day", [](SurveyQuestion& q, double v) { q.on_site.day_min = v; }},
        {"registration-rho", [](SurveyQuestion& q, double v) { q.registration.model.rho_m = v; }},
        {"registration-heading", [](SurveyQuestion& q, double v) { q.registration.heading = Angle::degrees(v); }},
        {"target-diameter", [](SurveyQuestion& q, double v) { q.target.diameter_m = v; }}},
