@@ -5,8 +5,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/place_discs.hpp"
@@ -470,128 +473,180 @@ class SheetPanel {
   double x_, y_, cut_over_ = 0;
 };
 
+// What all sheets are drawn of. Borrows it.
+struct Drawing {
+  const Report& report;
+  const std::vector<StationFacts>& facts;
+  const std::vector<TargetFacts>& of_targets;
+  const Scene& scene;
+  const SearchArea& area;
+  std::vector<std::size_t> order;       // of visiting
+  std::vector<std::uint32_t> surfaces;  // that a section cuts; none where no level has one
+
+  const Evaluation& network() const { return report.shown(); }
+  const std::vector<PlacedStation>& stations() const { return network().stations; }
+};
+
+// The stations that sheets are of, and those that they only mark.
+struct ShownRound {
+  const Round* walked = nullptr;
+  std::vector<bool> own, others;
+};
+
+// A sheet of a layout that is to be drawn.
+struct PlannedSheet {
+  std::shared_ptr<const SheetLayout> layout;
+  std::size_t number;
+  const PlanLevel& level;
+  std::shared_ptr<const ShownRound> round;
+  std::string name;
+  std::shared_ptr<const SheetLayout> sheets = {};  // an overview of these, where it is one
+};
+
+struct DrawnSheet {
+  std::optional<Sheet> sheet;                              // none once it was stopped
+  std::vector<std::pair<std::size_t, double>> off_middle;  // its stations, in metres from the middle of a map
+};
+
+DrawnSheet draw_sheet(const Drawing& of, const PlannedSheet& planned) {
+  const auto& [layout, number, level, round, name, overview] = planned;
+  const std::vector<PlacedStation>& stations = of.stations();
+  const std::vector<Target>& targets = of.network().targets;
+  DrawnSheet drawn{.sheet = Sheet(layout->paper), .off_middle = {}};
+  Sheet& sheet = *drawn.sheet;
+  std::vector<std::size_t> shown;
+  std::vector<bool> here(stations.size(), false);
+  bool target_here = false, control_here = false;
+  for (const MapTile& tile : layout->tiles) {
+    if (tile.sheet != number) continue;
+    MapOnSheet map(sheet, *layout, tile, level);
+    map.clip();
+    map.site(of.scene, of.area, stations, of.surfaces);
+    if (!level.cut) map.walls(of.scene.data());
+    if (layout->strips) map.name(tile.name + " of " + std::to_string(layout->tiles.size()));
+    if (overview) {
+      map.tiles(overview->tiles);
+      map.dots(stations, round->own);
+    } else {
+      if (round->walked) map.route(*round->walked);
+      map.dots(stations, round->others);
+      map.stations(stations, of.facts, round->own);
+      map.targets(targets, of.of_targets);
+    }
+    map.rooms(of.scene.rooms());
+    map.unclip();
+    map.grid();
+    if (overview) continue;
+    for (std::size_t k = 0; k < stations.size(); ++k) {
+      const PlacedStation& s = stations[k];
+      if (!round->own[k] || !stands_on(s, level) || !map.holds(s.ground)) continue;
+      here[k] = true;
+      const Vec3 away = s.ground - tile.window.centre();
+      drawn.off_middle.emplace_back(k, std::hypot(away.x, away.y));
+    }
+    for (const Target& target : targets)
+      if (stands_on(target, level) && map.holds(target.centre))
+        (target.control_m > 0 ? control_here : target_here) = true;
+  }
+  std::ranges::copy_if(of.order, std::back_inserter(shown), [&](std::size_t k) { return here[k]; });
+  SheetPanel panel(sheet, *layout);
+  panel.head(of.report.options.title, name, of.report.options);
+  panel.scale_and_north(of.report.crs);
+  if (level.cut) panel.cut_over(*level.cut - level.floor);
+  const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
+  if (!overview)
+    panel.legend(level.cut.has_value(), round->walked != nullptr,
+                 any([&](std::size_t k) { return !of.facts[k].corners.empty(); }),
+                 any([&](std::size_t k) { return stations[k].existing; }),
+                 any([&](std::size_t k) { return !active(stations[k]); }), target_here, control_here);
+  panel.list(shown, of.facts, stations);
+  return drawn;
+}
+
+// The sheets of a level, with an overview before them if they are several. `name`: the level's.
+void plan_level(std::vector<PlannedSheet>& sheets, const Drawing& of, const PlanLevel& level, std::string name,
+                const std::shared_ptr<const ShownRound>& round) {
+  const std::vector<PlacedStation>& stations = of.stations();
+  std::vector<Vec3> spots;
+  std::vector<WallCorner> corners;
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    if (!round->own[s] || !stands_on(stations[s], level)) continue;
+    spots.push_back(stations[s].ground);
+    corners.insert(corners.end(), of.facts[s].corners.begin(), of.facts[s].corners.end());
+  }
+  if (spots.empty()) return;
+  name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
+  for (const Target& target : of.network().targets)
+    if (stands_on(target, level)) spots.push_back(target.centre);
+  const auto layout = std::make_shared<const SheetLayout>(layout_of(level, of.area.mesh(), spots, corners));
+  if (layout->sheets() > 1) {
+    Box box;
+    for (const MapTile& tile : layout->tiles) box.extend(tile.window.min), box.extend(tile.window.max);
+    sheets.push_back({.layout = std::make_shared<const SheetLayout>(lay_out_overview(grown(box, 1), kPanelWidth)),
+                      .number = 0,
+                      .level = level,
+                      .round = round,
+                      .name = name + ": where the sheets lie",
+                      .sheets = layout});
+  }
+  for (std::size_t sheet = 0; sheet < layout->sheets(); ++sheet) {
+    const auto on_it = [&](const MapTile& tile) { return tile.sheet == sheet; };
+    const auto first = std::ranges::find_if(layout->tiles, on_it);
+    const auto count = std::ranges::count_if(layout->tiles, on_it);
+    std::string part;
+    if (layout->strips)
+      part = ", in strips from " +
+             std::string(layout->tiles[0].window.min.x < layout->tiles[1].window.min.x ? "west to east"
+                                                                                       : "north to south") +
+             (layout->sheets() > 1 ? ": " + first->name + " to " + (first + count - 1)->name : "");
+    else if (!first->name.empty())
+      part = ": sheet " + first->name;
+    sheets.push_back({.layout = layout, .number = sheet, .level = level, .round = round, .name = name + part});
+  }
+}
+
 }  // namespace
 
 FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
                          const std::vector<TargetFacts>& of_targets, Site& site, const std::stop_token& stop) {
-  const Scene& scene = site.scene();
-  const Evaluation& network = report.shown();
-  const std::vector<PlacedStation>& stations = network.stations;
-  const std::vector<PlanLevel> levels = cut_levels(scene, site.area().mesh(), stations);
-  const std::vector<std::size_t> order = visiting_order(facts);
+  const std::vector<PlacedStation>& stations = report.shown().stations;
+  const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), stations);
   const bool any_cut = std::ranges::any_of(levels, [](const PlanLevel& level) { return level.cut.has_value(); });
-  const std::vector<std::uint32_t> surfaces = any_cut ? surfaces_of(scene.data()) : std::vector<std::uint32_t>();
-  FieldSheets all{.of_station = std::vector<std::size_t>(stations.size(), 0)};
-  std::vector<double> off_middle(stations.size(), std::numeric_limits<double>::max());
-  const std::vector<SheetRound> rounds = sheet_rounds(network);
-  const Round* walked = nullptr;
-  std::vector<bool> own, others;
-
-  // A sheet of a layout, of the stations that are `own`; `overview`: where the tiles of another lie.
-  const auto draw = [&](const SheetLayout& layout, std::size_t number, const PlanLevel& level, const std::string& name,
-                        const std::vector<MapTile>* overview) {
-    if (stop.stop_requested()) return;
-    Sheet sheet(layout.paper);
-    std::vector<std::size_t> shown;
-    std::vector<bool> here(stations.size(), false);
-    bool target_here = false, control_here = false;
-    for (const MapTile& tile : layout.tiles) {
-      if (tile.sheet != number) continue;
-      MapOnSheet map(sheet, layout, tile, level);
-      map.clip();
-      map.site(scene, site.area(), stations, surfaces);
-      if (!level.cut) map.walls(scene.data());
-      if (layout.strips) map.name(tile.name + " of " + std::to_string(layout.tiles.size()));
-      if (overview) {
-        map.tiles(*overview);
-        map.dots(stations, own);
-      } else {
-        if (walked) map.route(*walked);
-        map.dots(stations, others);
-        map.stations(stations, facts, own);
-        map.targets(network.targets, of_targets);
-      }
-      map.rooms(scene.rooms());
-      map.unclip();
-      map.grid();
-      if (overview) continue;
-      for (std::size_t k = 0; k < stations.size(); ++k) {
-        const PlacedStation& s = stations[k];
-        if (!own[k] || !stands_on(s, level) || !map.holds(s.ground)) continue;
-        here[k] = true;
-        const Vec3 away = s.ground - tile.window.centre();
-        if (const double off = std::hypot(away.x, away.y); off < off_middle[k])
-          off_middle[k] = off, all.of_station[k] = all.sheets.size() + 1;
-      }
-      for (const Target& target : network.targets)
-        if (stands_on(target, level) && map.holds(target.centre))
-          (target.control_m > 0 ? control_here : target_here) = true;
-    }
-    std::ranges::copy_if(order, std::back_inserter(shown), [&](std::size_t k) { return here[k]; });
-    SheetPanel panel(sheet, layout);
-    panel.head(report.options.title, name, report.options);
-    panel.scale_and_north(report.crs);
-    if (level.cut) panel.cut_over(*level.cut - level.floor);
-    const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
-    if (!overview)
-      panel.legend(level.cut.has_value(), walked != nullptr,
-                   any([&](std::size_t k) { return !facts[k].corners.empty(); }),
-                   any([&](std::size_t k) { return stations[k].existing; }),
-                   any([&](std::size_t k) { return !active(stations[k]); }), target_here, control_here);
-    panel.list(shown, facts, stations);
-    all.sheets.push_back(std::move(sheet));
-    all.names.push_back(name);
-  };
-
-  const auto draw_level = [&](std::size_t k, const std::string& of_round) {
-    const PlanLevel& level = levels[k];
-    std::vector<Vec3> spots;
-    for (std::size_t s = 0; s < stations.size(); ++s)
-      if (own[s] && stands_on(stations[s], level)) spots.push_back(stations[s].ground);
-    if (spots.empty()) return;
-    std::string name = of_round;
-    name += levels.size() > 1 ? "Storey " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
-                                    ", floor at z = " + fixed(level.floor, 2) + " m"
-                              : "Map of the stations";
-    name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
-    std::vector<Vec3> marks = spots;
-    for (const Target& target : network.targets)
-      if (stands_on(target, level)) marks.push_back(target.centre);
-    std::vector<WallCorner> corners;
-    for (std::size_t s = 0; s < stations.size(); ++s)
-      if (own[s] && stands_on(stations[s], level))
-        corners.insert(corners.end(), facts[s].corners.begin(), facts[s].corners.end());
-    const SheetLayout layout = layout_of(level, site.area().mesh(), marks, corners);
-    if (layout.sheets() > 1) {
-      Box box;
-      for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);
-      const SheetLayout overview = lay_out_overview(grown(box, 1), kPanelWidth);
-      draw(overview, 0, level, name + ": where the sheets lie", &layout.tiles);
-    }
-    for (std::size_t sheet = 0; sheet < layout.sheets(); ++sheet) {
-      const auto on_it = [&](const MapTile& tile) { return tile.sheet == sheet; };
-      const auto first = std::ranges::find_if(layout.tiles, on_it);
-      const auto count = std::ranges::count_if(layout.tiles, on_it);
-      std::string part;
-      if (layout.strips)
-        part = ", in strips from " +
-               std::string(layout.tiles[0].window.min.x < layout.tiles[1].window.min.x ? "west to east"
-                                                                                       : "north to south") +
-               (layout.sheets() > 1 ? ": " + first->name + " to " + (first + count - 1)->name : "");
-      else if (!first->name.empty())
-        part = ": sheet " + first->name;
-      draw(layout, sheet, level, name + part, nullptr);
-    }
-  };
-
+  const Drawing of{.report = report,
+                   .facts = facts,
+                   .of_targets = of_targets,
+                   .scene = site.scene(),
+                   .area = site.area(),
+                   .order = visiting_order(facts),
+                   .surfaces = any_cut ? surfaces_of(site.scene().data()) : std::vector<std::uint32_t>()};
+  std::vector<PlannedSheet> planned;
+  const std::vector<SheetRound> rounds = sheet_rounds(report.shown());
   for (const SheetRound& round : rounds) {
-    walked = round.round;
-    own = own_stations(round, rounds.size() > 1, stations.size());
-    others.assign(stations.size(), false);
-    for (std::size_t s = 0; s < stations.size(); ++s) others[s] = !own[s] && active(stations[s]);
-    const std::string of_round =
-        round.name.empty() ? "" : round.name + " (" + minutes_text(round.round->minutes) + "): ";
-    for (std::size_t k = 0; k < levels.size(); ++k) draw_level(k, of_round);
+    ShownRound shown{.walked = round.round,
+                     .own = own_stations(round, rounds.size() > 1, stations.size()),
+                     .others = std::vector<bool>(stations.size())};
+    for (std::size_t s = 0; s < stations.size(); ++s) shown.others[s] = !shown.own[s] && active(stations[s]);
+    const auto shared = std::make_shared<const ShownRound>(std::move(shown));
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      std::string name = round.name.empty() ? "" : round.name + " (" + minutes_text(round.round->minutes) + "): ";
+      name += levels.size() > 1 ? "Storey " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
+                                      ", floor at z = " + fixed(levels[k].floor, 2) + " m"
+                                : "Map of the stations";
+      plan_level(planned, of, levels[k], std::move(name), shared);
+    }
+  }
+  std::vector<DrawnSheet> drawn(planned.size());
+  parallel::for_all(std::size_t{0}, planned.size(), [&](std::size_t k) {
+    if (!stop.stop_requested()) drawn[k] = draw_sheet(of, planned[k]);
+  });
+  FieldSheets all{.of_station = std::vector<std::size_t>(stations.size(), 0)};
+  std::vector<double> nearest(stations.size(), std::numeric_limits<double>::max());
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    if (!drawn[k].sheet) continue;
+    all.sheets.push_back(std::move(*drawn[k].sheet));
+    all.names.push_back(std::move(planned[k].name));
+    for (const auto& [station, off] : drawn[k].off_middle)
+      if (off < nearest[station]) nearest[station] = off, all.of_station[station] = all.sheets.size();
   }
   return all;
 }

@@ -51,6 +51,7 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
     report.facts.insert(report.facts.begin(), {"planned", std::move(planned)});
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
+  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
   return report;
 }
 
@@ -67,6 +68,7 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
   report.facts = report_facts(report, site.simulator());
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
+  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
   return report;
 }
 

@@ -64,5 +64,9 @@ std::vector<std::pair<std::string, std::string>> report_facts(const Report& repo
 // False, and no file, if stopped before the page or the sheets were made.
 bool write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
 bool write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site, const std::stop_token& stop);
+// report.html and report.pdf of a plan, side by side. Returns the names of those that a stop left out.
+// Throws Error invalid_argument if there is no report in this build.
+std::vector<std::string> write_reports(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                                       const ReportOptions& options, const Progress& progress);
 
 }  // namespace vantage

@@ -17,6 +17,7 @@
 #include "export/station_files.hpp"
 #include "export/tables.hpp"
 #include "plan/why_missed.hpp"
+#include "report/report.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
@@ -220,11 +221,8 @@ class FolderWriter {
     shown.field = field;
     shown.missed = written_.missed ? &*written_.missed : nullptr;
     const Deadline due(seconds(), watch_.stop);
-    const auto write = [&](const char* name, const Progress& told) {
-      if (!write_report(folder_ / name, result_, site_, shown, told)) leave_out(name);
-    };
-    parallel::beside([&] { write("report.pdf", {.report = {}, .stop = due.stop()}); },
-                     [&] { write("report.html", progress(kReport, 0, 1, due)); });
+    for (const std::string& name : write_reports(folder_, result_, site_, shown, progress(kReport, 0, 1, due)))
+      leave_out(name);
   }
 
   const std::filesystem::path& folder_;

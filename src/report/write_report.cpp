@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/parallel.hpp"
 #include "report/report.hpp"
 #include "report/station_pictures.hpp"
 #include "vantage/error.hpp"
@@ -6,15 +7,15 @@
 namespace vantage {
 namespace {
 
-bool write(const std::filesystem::path& file, Report report, Site& site, const Progress& progress) {
+bool write(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress) {
   if (progress.stop.stop_requested()) return false;
-  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
   if (file.extension() == ".pdf") return write_report_pdf(file, report, site, progress.stop);
   if (file.extension() != ".html")
     throw Error(Errc::invalid_argument, "report: " + file.string() + " ends with neither .html nor .pdf");
-  if (report.options.pictures)
-    report.pictures = station_pictures(site.simulator(), report.shown().stations, progress.stop);
-  return write_report_html(file, report, site, progress);
+  if (!report.options.pictures) return write_report_html(file, report, site, progress);
+  Report pictured = report;
+  pictured.pictures = station_pictures(site.simulator(), report.shown().stations, progress.stop);
+  return write_report_html(file, pictured, site, progress);
 }
 
 }  // namespace
@@ -29,6 +30,18 @@ bool write_report(const std::filesystem::path& file, const PlanResult& result, S
 bool write_report(const std::filesystem::path& file, const Evaluation& evaluation, Site& site,
                   const ReportOptions& options, const Progress& progress) {
   return write(file, report_of(evaluation, site, options), site, progress);
+}
+
+std::vector<std::string> write_reports(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                                       const ReportOptions& options, const Progress& progress) {
+  const Report report = report_of(result, site, options);
+  bool page = false, sheets = false;
+  parallel::beside([&] { sheets = write(folder / "report.pdf", report, site, {.report = {}, .stop = progress.stop}); },
+                   [&] { page = write(folder / "report.html", report, site, progress); });
+  std::vector<std::string> left_out;
+  if (!page) left_out.emplace_back("report.html");
+  if (!sheets) left_out.emplace_back("report.pdf");
+  return left_out;
 }
 
 }  // namespace vantage

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces the report in builds without its libraries.
+#include "report/report.hpp"
 #include "vantage/error.hpp"
-#include "vantage/report.hpp"
 
 namespace vantage {
 
@@ -15,6 +15,11 @@ bool write_report(const std::filesystem::path&, const PlanResult&, Site&, const 
 }
 
 bool write_report(const std::filesystem::path&, const Evaluation&, Site&, const ReportOptions&, const Progress&) {
+  throw Error(Errc::invalid_argument, "report: " + why_no_report());
+}
+
+std::vector<std::string> write_reports(const std::filesystem::path&, const PlanResult&, Site&, const ReportOptions&,
+                                       const Progress&) {
   throw Error(Errc::invalid_argument, "report: " + why_no_report());
 }
 

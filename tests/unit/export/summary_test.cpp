@@ -107,7 +107,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   network.values["coverage"].standard_error = 0.004;
   network.values["capture"] = {0.92, 0.01};
   network.values["registration"] = {1.234, 0};
-  network.visit = Visit{.minutes = 3 * 60 + 25 + 20 / 60.0};
+  network.visit.emplace().minutes = 3 * 60 + 25 + 20 / 60.0;
   EXPECT_EQ(
       summary_text(network),
       "captured   92.0 % ± 1.0 % of what is attainable; 71.2 % ± 0.4 % of the site\n"
