@@ -192,15 +192,11 @@ std::size_t NetworkLinks::joined(const Components& components, std::size_t candi
       if (place != without) bits |= std::uint64_t{1} << components.of[place];
     return static_cast<std::size_t>(std::popcount(bits));
   }
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    if (places[k] == without) continue;
-    const auto same = [&](std::uint32_t before) {
-      return before != without && components.of[before] == components.of[places[k]];
-    };
-    if (std::ranges::none_of(places.first(k), same)) ++found;
-  }
-  return found;
+  std::vector<std::size_t> found;
+  for (const std::uint32_t place : places)
+    if (place != without && std::ranges::find(found, components.of[place]) == found.end())
+      found.push_back(components.of[place]);
+  return found.size();
 }
 
 double violation(const CoverProblem& problem, double coverage, std::size_t components) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -81,19 +82,25 @@ void take_off(RegistrationSums& rest, const RegistrationSums& group) {
   subtract(rest.instrument, group.instrument);
 }
 
-// `of` each delete-one-group replicate; empty if there are fewer than two groups.
+// `of` each delete-one-group replicate, in parallel and with `whole` beside them; empty if there are fewer than two
+// groups.
 template <class Value>
-std::vector<Value> replicates(const NetworkCounts& counts, Sums sums,
-                              const std::function<Value(const NetworkCounts&)>& of) {
+std::vector<Value> replicates(
+    const NetworkCounts& counts, Sums sums, const std::function<Value(const NetworkCounts&)>& of,
+    const std::function<void()>& whole = [] {}) {
   const bool registered = sums == Sums::registration;
   const std::vector<RegistrationSums>& parts = counts.registration.groups;
   std::vector<std::size_t> groups;
   for (std::size_t g = 0; g < (registered ? parts.size() : counts.groups.size()); ++g)
     if ((registered ? parts[g].voxels : counts.groups[g].voxels) > 0) groups.push_back(g);
-  if (groups.size() < 2) return {};
+  if (groups.size() < 2) {
+    whole();
+    return {};
+  }
   std::vector<Value> found(groups.size());
   const NetworkCounts all = without_groups(counts, sums);
-  parallel::for_all(std::size_t{0}, groups.size(), [&](std::size_t k) {
+  parallel::for_all(std::size_t{0}, groups.size() + 1, [&](std::size_t k) {
+    if (k == groups.size()) return whole();
     const std::size_t g = groups[k];
     NetworkCounts rest = all;
     if (registered) take_off(rest.registration, parts[g]);
@@ -194,44 +201,51 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   require_whole(measured.counts, objective.name.c_str());
   if (measured.surroundings) require_whole(*measured.surroundings, objective.name.c_str());
-  Estimate estimate{number_of(objective, measured), 0};
+  Estimate estimate;
+  const auto whole = [&] { estimate.value = number_of(objective, measured); };
   const double scale = objective.scale.width();
   const NetworkCounts& counts = measured.counts;
   double variance = 0;
   const auto add = [&](double error) { variance += error * error; };
   // On voxels of its own, whatever else was counted.
   if (objective.needs.attainable && objective.standard_error) add(objective.standard_error(measured));
-  const Sums sums = objective.needs.registration ? Sums::registration : Sums::none;
-  if (const double unsampled = unsampled_share(counts, measured.voxels, sums);
-      objective.needs.counts && unsampled > 0) {
-    if (objective.standard_error) {
-      add(objective.standard_error(measured));
+  const bool registered = objective.needs.registration.has_value();
+  const Sums sums = registered ? Sums::registration : Sums::none;
+  const double unsampled = objective.needs.counts ? unsampled_share(counts, measured.voxels, sums) : 0;
+  if (unsampled == 0 || objective.standard_error) whole();
+  if (unsampled > 0 && objective.standard_error) {
+    add(objective.standard_error(measured));
+  } else if (unsampled > 0) {
+    const auto of = [&](const NetworkCounts& rest) {
+      return objective.value({.counts = rest,
+                              .stations = measured.stations,
+                              .existing = measured.existing,
+                              .goal_density = measured.goal_density,
+                              .voxels = measured.voxels,
+                              .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
+                              .visible_parts = measured.visible_parts,
+                              .surroundings = measured.surroundings,
+                              .surroundings_voxels = measured.surroundings_voxels,
+                              .minutes_on_site = measured.minutes_on_site,
+                              .scene = measured.scene});
+    };
+    if (objective.needs.pairs && !registered) {
+      whole();
+      const Estimate own = of_pairs(estimate.value, counts, unsampled, scale, of);
+      estimate.value = own.value;
+      add(own.standard_error);
     } else {
-      const auto of = [&](const NetworkCounts& rest) {
-        return objective.value({.counts = rest,
-                                .stations = measured.stations,
-                                .existing = measured.existing,
-                                .goal_density = measured.goal_density,
-                                .voxels = measured.voxels,
-                                .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
-                                .visible_parts = measured.visible_parts,
-                                .surroundings = measured.surroundings,
-                                .surroundings_voxels = measured.surroundings_voxels,
-                                .minutes_on_site = measured.minutes_on_site,
-                                .scene = measured.scene});
-      };
-      const Estimate own = objective.needs.pairs && !objective.needs.registration
-                               ? of_pairs(estimate.value, counts, unsampled, scale, of)
-                               : jackknifed(estimate.value, replicates<double>(counts, sums, of), unsampled, scale);
+      const std::vector<double> values = replicates<double>(counts, sums, of, whole);
+      const Estimate own = jackknifed(estimate.value, values, unsampled, scale);
       // As `registration_estimate`: no registration is without error.
-      estimate.value = objective.needs.registration ? std::max(own.value, least_unbiased * estimate.value) : own.value;
+      estimate.value = registered ? std::max(own.value, least_unbiased * estimate.value) : own.value;
       add(own.standard_error);
     }
   }
   // The surroundings are another sample, of other voxels: its error adds.
   if (objective.needs.surroundings && measured.surroundings) {
     const Sums around = objective.needs.surroundings_registration ? Sums::registration : Sums::none;
-    const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels, around);
+    const double unseen = unsampled_share(*measured.surroundings, measured.surroundings_voxels, around);
     const auto of = [&](const NetworkCounts& rest) {
       MeasuredNetwork without{.counts = counts, .stations = measured.stations};
       without.existing = measured.existing, without.goal_density = measured.goal_density,
@@ -241,7 +255,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       without.minutes_on_site = measured.minutes_on_site, without.scene = measured.scene;
       return objective.value(without);
     };
-    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, around, of), unsampled, scale));
+    if (unseen > 0) add(jackknife_error(replicates<double>(*measured.surroundings, around, of), unseen, scale));
   }
   estimate.standard_error = std::sqrt(variance);
   return estimate;
@@ -261,23 +275,28 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   const auto error = [&](const NetworkCounts& surveyed, const NetworkCounts* around) {
     return registration_error(surveyed, voxels, options, around, surroundings_voxels, targets).rms_m;
   };
-  const double seen = error(counts, surroundings);
+  double seen = 0;
+  const auto whole = [&] { seen = error(counts, surroundings); };
+  std::vector<std::pair<std::vector<double>, double>> sampled;  // replicates, and the share that is not in the sample
+  if (const double unsampled = unsampled_share(counts, voxels, Sums::registration); unsampled > 0)
+    sampled.emplace_back(
+        replicates<double>(
+            counts, Sums::registration, [&](const NetworkCounts& rest) { return error(rest, surroundings); }, whole),
+        unsampled);
+  else
+    whole();
+  if (options.surfaces == RegistrationSurfaces::all)
+    if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels, Sums::registration); unsampled > 0)
+      sampled.emplace_back(replicates<double>(*surroundings, Sums::registration,
+                                              [&](const NetworkCounts& rest) { return error(counts, &rest); }),
+                           unsampled);
   Estimate estimate{seen, 0};
-  const auto add = [&](const std::vector<double>& values, double unsampled) {
+  for (const auto& [values, unsampled] : sampled) {
     // No error exceeds the prior.
     const double own = jackknife_error(values, unsampled, 2 * options.position_m);
     estimate.value -= within_error(jackknife_bias(seen, values, unsampled), own);
     estimate.standard_error = std::hypot(estimate.standard_error, own);
-  };
-  if (const double unsampled = unsampled_share(counts, voxels, Sums::registration); unsampled > 0)
-    add(replicates<double>(counts, Sums::registration,
-                           [&](const NetworkCounts& rest) { return error(rest, surroundings); }),
-        unsampled);
-  if (options.surfaces == RegistrationSurfaces::all)
-    if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels, Sums::registration); unsampled > 0)
-      add(replicates<double>(*surroundings, Sums::registration,
-                             [&](const NetworkCounts& rest) { return error(counts, &rest); }),
-          unsampled);
+  }
   // A bias that seems larger means that the weakest link rests on voxels of one group; the sample cannot tell its size.
   // But no registration is without error.
   estimate.value = std::max(estimate.value, least_unbiased * seen);

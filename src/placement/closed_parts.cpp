@@ -2,6 +2,7 @@
 // Parts of the ground that something bars the way to: what it is, and whether they are entered nevertheless.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -268,20 +269,20 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
     }
   }
   const std::size_t stride = std::max<std::size_t>(1, rims.size() / kMost);
-  std::size_t looked = 0, steep = 0;
-  for (std::size_t k = 0; k < rims.size(); k += stride) {
-    const auto& [sample, out, bare] = rims[k];
-    const glm::dvec2 p = middle(column_[sample]);
+  const std::size_t looked = (rims.size() + stride - 1) / stride;
+  std::atomic<std::size_t> steep = 0;
+  parallel::for_all(std::size_t{0}, looked, [&](std::size_t k) {
+    const Rim& rim = rims[k * stride];
+    const glm::dvec2 p = middle(column_[rim.sample]);
     // Beyond a parapet, or beside the bare edge; under eaves.
-    const double beyond = bare ? 2 * cell_ : 3.3 * radius_, under = 3 * radius_;
+    const double beyond = rim.bare ? 2 * cell_ : 3.3 * radius_, under = 3 * radius_;
     const auto met = [&](double above, double from, double to) {
-      const glm::dvec3 at{p.x, p.y, z_[sample] + above * height_};
-      return tree.between(at + out * from, at + out * to);
+      const glm::dvec3 at{p.x, p.y, z_[rim.sample] + above * height_};
+      return tree.between(at + rim.out * from, at + rim.out * to);
     };
-    ++looked;
-    if (!met(0.8, 0, beyond)) steep += met(-0.25, beyond, -under) && met(-0.8, beyond, -under);
-  }
-  return looked > 0 && static_cast<double>(steep) > kMostFaces * static_cast<double>(looked);
+    if (!met(0.8, 0, beyond) && met(-0.25, beyond, -under) && met(-0.8, beyond, -under)) ++steep;
+  });
+  return looked > 0 && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(looked);
 }
 
 double GroundField::open_ground_area(const MeshTree& tree) const {

@@ -433,9 +433,8 @@ bool GroundField::is_layer(std::uint32_t sample) const {
          z_[above] - z_[sample] < static_cast<float>(height_);
 }
 
-// The first sample of each sample's part, which is its own for what is taken.
-std::vector<std::uint32_t> GroundField::first_of_parts() const {
-  std::vector<std::uint32_t> before(z_.size());  // of the same part, or itself
+std::vector<std::uint32_t> GroundField::first_of_connected(std::uint8_t taken) const {
+  std::vector<std::uint32_t> before(z_.size());  // a connected one, or itself
   std::iota(before.begin(), before.end(), 0U);
   const auto of = [&](std::uint32_t s) { return std::atomic_ref<std::uint32_t>(before[s]); };
   const auto first = [&](std::uint32_t s) {
@@ -456,9 +455,9 @@ std::vector<std::uint32_t> GroundField::first_of_parts() const {
     }
   };
   parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
-    if (taken_[s] & kObstacles) return;
+    if (taken_[s] & taken) return;
     for_neighbours(s, [&](std::uint32_t n) {
-      if (n < s && !(taken_[n] & kObstacles)) unite(s, n);
+      if (n < s && !(taken_[n] & taken)) unite(s, n);
     });
   });
   parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()),
@@ -467,7 +466,7 @@ std::vector<std::uint32_t> GroundField::first_of_parts() const {
 }
 
 void GroundField::find_parts() {
-  const std::vector<std::uint32_t> first = first_of_parts();
+  const std::vector<std::uint32_t> first = first_of_connected(kObstacles);
   part_.assign(z_.size(), nowhere);
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (taken_[s] & kObstacles) continue;
@@ -811,23 +810,14 @@ Access GroundField::at(const glm::dvec3& place) const {
 }
 
 double GroundField::ground_area(double highest_z) const {
-  std::vector<char> seen(z_.size(), 0);
-  std::vector<std::uint32_t> open;
+  const std::vector<std::uint32_t> first = first_of_connected(0);
+  std::vector<char> reached(z_.size(), 0);  // by the first of those connected
   for (std::uint32_t s = 0; s < z_.size(); ++s)
-    if (part_[s] != nowhere && access_[part_[s]] == Access::reached) seen[s] = 1, open.push_back(s);
-  while (!open.empty()) {
-    const std::uint32_t s = open.back();
-    open.pop_back();
-    for_neighbours(s, [&](std::uint32_t n) {
-      if (seen[n]) return;
-      seen[n] = 1;
-      open.push_back(n);
-    });
-  }
+    if (part_[s] != nowhere && access_[part_[s]] == Access::reached) reached[first[s]] = 1;
   std::uint64_t columns = 0;
   std::uint32_t last = nowhere;
   for (std::uint32_t s = 0; s < z_.size(); ++s)
-    if (seen[s] && z_[s] <= highest_z && column_[s] != last) ++columns, last = column_[s];
+    if (reached[first[s]] && z_[s] <= highest_z && column_[s] != last) ++columns, last = column_[s];
   return static_cast<double>(columns) * cell_ * cell_;
 }
 

@@ -126,7 +126,9 @@ class GroundField {
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
   void find_samples(const SceneData& scene, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
-  std::vector<std::uint32_t> first_of_parts() const;
+  // The first of the samples that each one is connected with, by neighbours of which the bits of `taken` are clear;
+  // itself for those of which they are not.
+  std::vector<std::uint32_t> first_of_connected(std::uint8_t taken) const;
   void find_parts();
   bool is_layer(std::uint32_t sample) const;
   // Level lines of sight, at knee and head height, that lead out of the model from the edge of the part.
