@@ -3,9 +3,11 @@
 // samples, chapter 4 for the jackknife), with the finite-population correction 1 − n/N.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -157,12 +159,13 @@ double halving_bias(double estimate, const NetworkCounts& counts, double unsampl
                     const std::function<double(const NetworkCounts&)>& of) {
   constexpr std::size_t halvings = kHalvedGroups - 1;
   const NetworkCounts all = without_groups(counts, Sums::none);
-  double sum = 0;
-  for (std::size_t r = 0; r < halvings; ++r) {
+  std::array<double, halvings> excess{};
+  parallel::for_all(std::size_t{0}, halvings, [&](std::size_t r) {
     NetworkCounts half = all, other = all;
     for (std::size_t g = 0; g < kHalvedGroups; ++g) take_off(in_half(r, g) ? half : other, counts.groups[g]);
-    sum += (of(half) - estimate) + (of(other) - estimate);
-  }
+    excess[r] = (of(half) - estimate) + (of(other) - estimate);
+  });
+  const double sum = std::accumulate(excess.begin(), excess.end(), 0.0);
   return unsampled * sum / (2.0 * halvings);
 }
 

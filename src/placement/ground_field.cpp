@@ -688,16 +688,18 @@ void GroundField::tell_apart() {
   // across a wall and the margins on both sides
   const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));
   std::vector<std::int64_t> level(parts_.size(), 0);  // votes for minus votes against
-  for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (part_[s] == nowhere || access_[part_[s]] == Access::reached) continue;
+  parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
+    if (part_[s] == nowhere || access_[part_[s]] == Access::reached) return;
+    std::int64_t votes = 0;
     for_columns_beside(column_[s], far, [&](std::uint32_t other) {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
         if (part_[n] == nowhere || access_[part_[n]] != Access::reached) continue;
         const double step = std::abs(double{z_[n]} - z_[s]);
-        level[part_[s]] += step <= climb_ ? 1 : step <= height_ ? -1 : 0;
+        votes += step <= climb_ ? 1 : step <= height_ ? -1 : 0;
       }
     });
-  }
+    if (votes != 0) std::atomic_ref<std::int64_t>(level[part_[s]]).fetch_add(votes, std::memory_order_relaxed);
+  });
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (access_[i] != Access::reached && parts_[i].area(cell_) >= room() && level[i] >= 0 &&
         2 * parts_[i].in_the_sky <= parts_[i].samples)
@@ -713,17 +715,19 @@ void GroundField::look_beyond_high_steps() {
   };
   const double highest = 2 * climb_, hall = 10 * room();
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
-  std::vector<Edge> edges;
-  for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (part_[s] == nowhere) continue;
+  tbb::enumerable_thread_specific<std::vector<Edge>> found;
+  parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
+    if (part_[s] == nowhere) return;
     for_columns_beside(column_[s], across, [&](std::uint32_t other) {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
         const double step = std::abs(double{z_[n]} - z_[s]);
         if (part_[n] != nowhere && part_[n] != part_[s] && step > climb_ && step <= highest)
-          edges.push_back({part_[s], part_[n], step});
+          found.local().push_back({part_[s], part_[n], step});
       }
     });
-  }
+  });
+  std::vector<Edge> edges;
+  for (const std::vector<Edge>& some : found) edges.insert(edges.end(), some.begin(), some.end());
   const auto by_parts = [](const Edge& a, const Edge& b) {
     return std::tie(a.from, a.to, a.step) < std::tie(b.from, b.to, b.step);
   };
