@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/add_saturating.hpp"
+#include "core/parallel.hpp"
 #include "core/part_of.hpp"
 #include "trace/field_counts.hpp"
 #include "trace/registration_sums.hpp"
@@ -34,7 +35,7 @@ std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_
 }
 
 void add(std::vector<std::uint32_t>& counts, std::span<const std::uint32_t> more) {
-  for (std::size_t k = 0; k < counts.size(); ++k) add_saturating(counts[k], more[k]);
+  parallel::for_all(std::size_t{0}, counts.size(), [&](std::size_t k) { add_saturating(counts[k], more[k]); });
 }
 
 // Copies a pass's per-station figures to their places among all stations.

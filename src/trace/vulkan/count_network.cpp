@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/parallel.hpp"
 #include "trace/vulkan/count_schedule.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
@@ -236,11 +237,19 @@ class VulkanTracer::ExactCount {
   void read_field(PassField& field) {
     field.count.resize(voxels_);
     t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * word);
-    field.stations.assign(options_.masks ? voxels_ : 0, 0);
-    std::vector<std::uint32_t> bits(voxels_);
-    for (std::uint32_t w = 0; w < mask_words_; ++w) {
-      t_.commands_.download(t_.sums_.masks, bits.data(), voxels_ * word, std::uint64_t{w} * voxels_ * word);
-      for (std::uint32_t v = 0; v < voxels_; ++v) field.stations[v] |= std::uint64_t{bits[v]} << (32 * w);
+    field.stations.resize(options_.masks ? voxels_ : 0);
+    constexpr std::uint32_t kTogether = 1 << 22;  // voxels whose masks are on their way at once
+    std::array<std::vector<std::uint32_t>, 2> bits;
+    for (std::uint32_t first = 0; mask_words_ > 0 && first < voxels_; first += std::min(kTogether, voxels_ - first)) {
+      const std::uint32_t count = std::min(kTogether, voxels_ - first);
+      for (std::uint32_t w = 0; w < mask_words_; ++w) {
+        bits[w].resize(count);
+        t_.commands_.download(t_.sums_.masks, bits[w].data(), count * word,
+                              (std::uint64_t{w} * voxels_ + first) * word);
+      }
+      parallel::for_all(std::uint32_t{0}, count, [&](std::uint32_t v) {
+        field.stations[first + v] = bits[0][v] | (mask_words_ > 1 ? std::uint64_t{bits[1][v]} << 32 : 0);
+      });
     }
   }
 
