@@ -3,6 +3,7 @@
 import { Glb } from "./glb.mjs";
 import { determinant, identity, inverse, product, transformed } from "./matrix.mjs";
 import { box, footprint } from "./rooms.mjs";
+import { taken } from "./step.mjs";
 
 // Products without a body: openings, air, drawings.
 const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoidingFeature", "IfcSpace", "IfcSpatialZone",
@@ -14,8 +15,6 @@ const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7]
 
 // Share of a solid's surface that may be missing: rounding.
 const OPEN = 1e-4;
-
-const each = (ids, visit) => { for (let i = 0; i < ids.size(); ++i) visit(ids.get(i)); };
 
 // What several models become together.
 export class Site {
@@ -92,14 +91,11 @@ export class Building {
   // Adds a product. `parts`: lists of geometries, one of each of which must have a surface; `isClosed` tells
   // geometries that have to be. Returns how many have no surface, and how many are open; null if the product is in the site already.
   add(id, parts, isClosed) {
-    const guid = this.step.args(id)[0], pieces = [];
+    const guid = this.step.args(id)[0];
     let index = -1, place = null, shown = new Map();
     const take = (mesh) => {
-      each(mesh.geometries, (part) => pieces.push({
-        geometry: part.geometryExpressID, colour: [part.color.x, part.color.y, part.color.z, part.color.w],
-        place: Array.from(part.flatTransformation),
-      }));
-      const sound = pieces.filter((part) => part.place.every(Number.isFinite));
+      const sound = taken(mesh.geometries).filter((part) => part.flatTransformation.every(Number.isFinite))
+        .map(({ geometryExpressID, color: { x, y, z, w }, flatTransformation }) => ({ geometry: geometryExpressID, colour: [x, y, z, w], place: flatTransformation }));
       if (sound.length === 0) return;
       // Equal products share a mesh if their parts lie equally to the first.
       const back = inverse(sound[0].place);
@@ -213,7 +209,7 @@ export class Building {
   #geometry(id, place, turned = false) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
     const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
-    const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
+    const indices = api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize());
     const positions = new Float64Array(3 * count), m = Float64Array.from(place);
     let sound = true;
     for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
@@ -235,11 +231,11 @@ export class Building {
       const guid = this.step.args(id)[0], triangles = [];
       if (guid && this.site.shown.has(guid)) continue;  // in another file, too
       this.site.shown.add(guid);
-      each(this.api.GetFlatMesh(this.model, id).geometries, (part) => {
-        const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, Array.from(part.flatTransformation)));
+      for (const part of taken(this.api.GetFlatMesh(this.model, id).geometries)) {
+        const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, part.flatTransformation));
         for (let i = 0; i + 2 < indices.length; i += 3)
           triangles.push([0, 1, 2].map((k) => Array.from(positions.subarray(3 * indices[i + k], 3 * indices[i + k] + 3))));
-      });
+      }
       const { vantage } = this.site.nodes[this.node(id)].extras;
       if (triangles.length > 0) Object.assign(vantage, { box: box(triangles), footprint: footprint(triangles) });
     }
