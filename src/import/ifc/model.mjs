@@ -106,7 +106,7 @@ export function read(site, { schema, step, metres, given, length, angle, types, 
   plain.styleCopies();
   const skins = attempt(() => new Skins(step, plain.axes, plain.solids, metres).mend(), null) ?? part("openings") ?? [];
 
-  const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];
+  const building = new Building(site, step, opened, place), incomplete = [], lost = [], bodiless = [];
   for (const id of products) {
     if (!building.hasBody(id)) continue;
     const { parts, problems, left } = made.get(id), isClosed = (one) => plain.cut.has(one) || (opened.has(id) && plain.solid.has(one));

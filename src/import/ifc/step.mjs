@@ -14,9 +14,13 @@ export function taken(list) {
   return all;
 }
 
+// Lists become their values in place.
 const decode = (token) => {
   if (token === null || token === undefined) return null;
-  if (Array.isArray(token)) return token.map(decode);
+  if (Array.isArray(token)) {
+    for (let i = 0; i < token.length; ++i) token[i] = decode(token[i]);
+    return token;
+  }
   switch (token.type) {
     case REF: return { ref: token.value };
     case REAL: return Number(token.value);
