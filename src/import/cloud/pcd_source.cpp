@@ -20,6 +20,8 @@ class PcdSource final : public PointSource {
     read_header();
     for (const char* name : {"x", "y", "z"}) place_.push_back(index_of(name));
     normal_ = find_fields(fields_, {"normal_x", "normal_y", "normal_z"});
+    used_ = place_;
+    used_.insert(used_.end(), normal_.begin(), normal_.end());
     data_at_ = file_.place();
     CloudScan scan;
     // The viewpoint that writers put when they know none is that of a merged cloud.
@@ -155,8 +157,7 @@ class PcdSource final : public PointSource {
     std::vector<double> values(fields_.size());
     for (std::uint64_t k = 0; k < count_; ++k) {
       const char* record = file_.take(record_);
-      for (const auto& list : {place_, normal_})
-        for (const std::size_t f : list) values[f] = fields_[f].value(record, false);
+      for (const std::size_t f : used_) values[f] = fields_[f].value(record, false);
       add(points, values);
     }
   }
@@ -173,13 +174,10 @@ class PcdSource final : public PointSource {
     const std::string columns = unpack_lzf({file_.take(packed), packed}, bytes);
     std::vector<double> values(fields_.size());
     for (std::uint64_t k = 0; k < count_; ++k) {
-      for (const auto& list : {place_, normal_})
-        for (const std::size_t f : list) {
-          ScalarField field = fields_[f];
-          const char* column = columns.data() + count_ * field.at;
-          field.at = 0;
-          values[f] = field.value(column + k * field.bytes, false);
-        }
+      for (const std::size_t f : used_) {
+        const ScalarField& field = fields_[f];
+        values[f] = field.read(columns.data() + count_ * field.at + k * field.bytes, false);
+      }
       add(points, values);
     }
   }
@@ -187,7 +185,7 @@ class PcdSource final : public PointSource {
   ByteFile file_;
   std::vector<ScalarField> fields_;
   std::vector<std::uint64_t> times_;
-  std::vector<std::size_t> place_, normal_;
+  std::vector<std::size_t> place_, normal_, used_;  // fields; the last are both others
   std::string data_;
   std::uint64_t count_ = 0, data_at_ = 0;
   std::size_t record_ = 0;

@@ -44,6 +44,8 @@ class PlySource final : public PointSource {
       if (elements_[k].lists) throw Refused("it has lists before or in its vertices; export its points alone");
     for (const char* name : {"x", "y", "z"}) place_.push_back(index_of(name));
     normal_ = find_fields(elements_[vertex_].fields, {"nx", "ny", "nz"});
+    used_ = place_;
+    used_.insert(used_.end(), normal_.begin(), normal_.end());
     data_ = file_.place();
     scans_.push_back({});
   }
@@ -75,8 +77,7 @@ class PlySource final : public PointSource {
         }
       } else {
         const char* record = file_.take(element.bytes);
-        for (const auto& list : {place_, normal_})
-          for (const std::size_t f : list) values[f] = element.fields[f].value(record, big_endian_);
+        for (const std::size_t f : used_) values[f] = element.fields[f].value(record, big_endian_);
       }
       Eigen::Vector3f normal = Eigen::Vector3f::Zero();
       if (!normal_.empty())
@@ -163,7 +164,7 @@ class PlySource final : public PointSource {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // added to what the points hold
   std::vector<Element> elements_;
   std::size_t vertex_ = 0;
-  std::vector<std::size_t> place_, normal_;
+  std::vector<std::size_t> place_, normal_, used_;  // fields; the last are both others
   std::uint64_t data_ = 0;
 };
 

@@ -20,8 +20,9 @@ struct ScalarField {
   char kind = 'F';  // F: floating point, I: signed, U: unsigned
   std::size_t bytes = 4, at = 0;
 
-  double value(const char* record, bool big_endian) const {
-    const char* from = record + at;
+  double value(const char* record, bool big_endian) const { return read(record + at, big_endian); }
+
+  double read(const char* from, bool big_endian) const {
     if (kind == 'F') return bytes == 4 ? number<float>(from, big_endian) : number<double>(from, big_endian);
     switch (bytes) {
       case 1: return kind == 'I' ? number<std::int8_t>(from, big_endian) : number<std::uint8_t>(from, big_endian);

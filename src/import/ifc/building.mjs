@@ -3,6 +3,7 @@
 import { Glb } from "./glb.mjs";
 import { determinant, identity, inverse, product, transformed } from "./matrix.mjs";
 import { box, footprint } from "./rooms.mjs";
+import { taken } from "./step.mjs";
 
 // Products without a body: openings, air, drawings.
 const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoidingFeature", "IfcSpace", "IfcSpatialZone",
@@ -14,8 +15,6 @@ const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7]
 
 // Share of a solid's surface that may be missing: rounding.
 const OPEN = 1e-4;
-
-const each = (ids, visit) => { for (let i = 0; i < ids.size(); ++i) visit(ids.get(i)); };
 
 // What several models become together.
 export class Site {
@@ -75,13 +74,12 @@ export class Site {
 
 // Adds one model to a site.
 export class Building {
-  // `place` takes the model, in metres with Y up, to the site.
-  constructor(site, step, place = identity()) {
-    Object.assign(this, { site, step, place, ifc: step.ifc, api: step.api, model: step.model });
-    this.nodeOf = new Map();  // by express id
-    this.meshOf = new Map();  // by content: its index, and the items that have a surface
+  // `opened`: products with openings. `place` takes the model, in metres with Y up, to the site.
+  constructor(site, step, opened, place = identity()) {
+    Object.assign(this, { site, step, opened, place, ifc: step.ifc, api: step.api, model: step.model });
+    this.nodeOf = new Map();    // by express id
+    this.meshesOf = new Map();  // by their first geometry: what is known of them
     this.parents = this.#parents();
-    this.opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
     this.twice = [];
   }
 
@@ -92,14 +90,11 @@ export class Building {
   // Adds a product. `parts`: lists of geometries, one of each of which must have a surface; `isClosed` tells
   // geometries that have to be. Returns how many have no surface, and how many are open; null if the product is in the site already.
   add(id, parts, isClosed) {
-    const guid = this.step.args(id)[0], pieces = [];
+    const guid = this.step.args(id)[0];
     let index = -1, place = null, shown = new Map();
-    const take = (mesh) => {
-      each(mesh.geometries, (part) => pieces.push({
-        geometry: part.geometryExpressID, colour: [part.color.x, part.color.y, part.color.z, part.color.w],
-        place: Array.from(part.flatTransformation),
-      }));
-      const sound = pieces.filter((part) => part.place.every(Number.isFinite));
+    const take = ({ geometries }) => {
+      const sound = taken(geometries).filter((part) => part.flatTransformation.every(Number.isFinite))
+        .map(({ geometryExpressID, color: { x, y, z, w }, flatTransformation }) => ({ geometry: geometryExpressID, colour: [x, y, z, w], place: flatTransformation }));
       if (sound.length === 0) return;
       // Equal products share a mesh if their parts lie equally to the first.
       const back = inverse(sound[0].place);
@@ -111,8 +106,9 @@ export class Building {
       for (const part of sound) part.turned = mirrored.get(part.geometry) ?? false;
       for (const part of sound) part.place = product(toFirst, part.place);
       // An opening is cut out of the geometry itself: only products without one have it in common.
-      ({ index, shown } = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0));
-      this.#extend(index, place);
+      const mesh = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0);
+      ({ index, shown } = mesh);
+      if (index >= 0) this.#extend(mesh.bounds, place);
     };
     try {
       this.api.StreamMeshes(this.model, [id], take);
@@ -174,9 +170,11 @@ export class Building {
     return index;
   }
 
+  // `own`: the product that the parts' geometry is cut for, or 0.
   #mesh(parts, own) {
-    const key = own + " " + parts.map((part) => [part.geometry, part.turned, ...part.colour, ...part.place.map((v) => v.toFixed(6))].join(" ")).join();
-    if (this.meshOf.has(key)) return this.meshOf.get(key);
+    const first = parts[0].geometry, alike = this.meshesOf.get(first) ?? [];
+    const known = alike.find((one) => one.own === own && one.parts.length === parts.length && one.parts.every((part, i) => same(part, parts[i])));
+    if (known) return known;
     const { glb, meshes } = this.site, byMaterial = new Map(), shown = new Map();
     for (const part of parts) {
       const geometry = this.#geometry(part.geometry, part.place, part.turned);
@@ -193,16 +191,14 @@ export class Building {
       for (let c = 0; c < 3; ++c) bounds.min[c] = Math.min(bounds.min[c], min[c]), bounds.max[c] = Math.max(bounds.max[c], max[c]);
       return { attributes: { POSITION: accessor }, indices: glb.indices(indices), ...(material >= 0 ? { material } : {}) };
     });
-    const made = { index: primitives.length === 0 ? -1 : meshes.push({ primitives }) - 1, shown, bounds };
-    this.meshOf.set(key, made);
-    this.boundsOf ??= new Map();
-    this.boundsOf.set(made.index, bounds);
+    const made = { own, parts, index: primitives.length === 0 ? -1 : meshes.push({ primitives }) - 1, shown, bounds };
+    alike.push(made);
+    this.meshesOf.set(first, alike);
     return made;
   }
 
-  #extend(index, place) {
-    if (index < 0) return;
-    const { min, max } = this.boundsOf.get(index), { extent } = this.site, whole = product(this.place, place);
+  #extend({ min, max }, place) {
+    const { extent } = this.site, whole = product(this.place, place);
     for (let k = 0; k < 8; ++k) {
       const corner = transformed(whole, k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]);
       for (let c = 0; c < 3; ++c) extent.min[c] = Math.min(extent.min[c], corner[c]), extent.max[c] = Math.max(extent.max[c], corner[c]);
@@ -213,7 +209,7 @@ export class Building {
   #geometry(id, place, turned = false) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
     const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
-    const indices = Uint32Array.from(api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()));
+    const indices = api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize());
     const positions = new Float64Array(3 * count), m = Float64Array.from(place);
     let sound = true;
     for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
@@ -235,16 +231,20 @@ export class Building {
       const guid = this.step.args(id)[0], triangles = [];
       if (guid && this.site.shown.has(guid)) continue;  // in another file, too
       this.site.shown.add(guid);
-      each(this.api.GetFlatMesh(this.model, id).geometries, (part) => {
-        const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, Array.from(part.flatTransformation)));
+      for (const part of taken(this.api.GetFlatMesh(this.model, id).geometries)) {
+        const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, part.flatTransformation));
         for (let i = 0; i + 2 < indices.length; i += 3)
           triangles.push([0, 1, 2].map((k) => Array.from(positions.subarray(3 * indices[i + k], 3 * indices[i + k] + 3))));
-      });
+      }
       const { vantage } = this.site.nodes[this.node(id)].extras;
       if (triangles.length > 0) Object.assign(vantage, { box: box(triangles), footprint: footprint(triangles) });
     }
   }
 }
+
+// Whether two parts look the same, to a micrometre.
+const same = (a, b) => a.geometry === b.geometry && a.turned === b.turned && a.colour.every((v, i) => v === b.colour[i]) &&
+  a.place.every((v, i) => v === b.place[i] || (Math.abs(v - b.place[i]) < 2e-6 && v.toFixed(6) === b.place[i].toFixed(6)));
 
 // One list of vertices and triangles of several.
 function joined(geometries) {

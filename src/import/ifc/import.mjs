@@ -4,6 +4,7 @@
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
+import v8 from "node:v8";
 import { convert } from "./convert.mjs";
 import { Question } from "./model.mjs";
 
@@ -17,6 +18,8 @@ function fail(code, message) {
 const settings = process.argv.slice(2).filter((word) => word.startsWith("unit="));
 const files = process.argv.slice(2 + settings.length);
 if (files.length === 0) fail(USAGE, "usage: node import.mjs [unit=UNIT] FILE... >site.glb");
+// WebAssembly is optimized once it has run for a while: most models are read sooner than web-ifc would be compiled again.
+v8.setFlagsFromString("--wasm-tiering-budget=500000000");
 for (const talk of ["log", "info", "warn", "error", "debug"]) console[talk] = () => {};  // standard output is the GLB's
 
 let ifc;

@@ -19,12 +19,13 @@ export const identity = () => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 // Below 0 if it mirrors.
 export const determinant = (m) => m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 
+const OTHERS = [[1, 2], [0, 2], [0, 1]];
+
 // Null if it flattens space.
 export function inverse(m) {
   const minor = (i, j) => {  // of the upper left 3 by 3, row i and column j
-    const rows = [0, 1, 2].filter((r) => r !== i), columns = [0, 1, 2].filter((c) => c !== j);
-    const at = (r, c) => m[4 * columns[c] + rows[r]];
-    return ((i + j) % 2 ? -1 : 1) * (at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0));
+    const [a, b] = OTHERS[i], c = 4 * OTHERS[j][0], d = 4 * OTHERS[j][1];
+    return ((i + j) % 2 ? -1 : 1) * (m[c + a] * m[d + b] - m[d + a] * m[c + b]);
   };
   const determinant = m[0] * minor(0, 0) + m[4] * minor(0, 1) + m[8] * minor(0, 2);
   if (!(Math.abs(determinant) > 1e-12)) return null;

@@ -35,7 +35,7 @@ export function open(ifc, api, bytes, unit) {
     model = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: chords });
     step = new Step(ifc, api, model);
   }
-  const types = api.GetAllTypesOfModel(model);
+  const types = typesOf(api, model);
   return { schema, step, metres: metres ?? 1, given: unit ?? null, length, angle, mentions, types, unknown: unknownEntities(step, bytes, types), located: attempt(() => geolocation(step, metres ?? 1, mentions), { crs: "", name: "", place: null, notes: ["its map conversion is damaged, and not applied"] }) };
 }
 
@@ -46,11 +46,21 @@ function largestChords(step, metres) {
   return radius > CHORD_M ? Math.min(MOST_CHORDS, Math.ceil(Math.PI / Math.acos(1 - CHORD_M / radius))) : CHORDS;
 }
 
+// Number of a list of web-ifc's, which is freed.
+function sizeOf(list) {
+  const size = list.size();
+  list.delete();
+  return size;
+}
+
+// {code, name, count} of the classes of entities that a model has, names in capitals.
+const typesOf = (api, model) => api.GetIfcEntityList(model).map((code) => ({ code, count: sizeOf(api.GetLineIDsWithType(model, code)) }))
+  .filter(({ count }) => count > 0).map((type) => ({ ...type, name: api.GetNameFromTypeCode(type.code).toUpperCase() }));
+
 // Entities that the reader does not know, by name: how many, and the first ones.
 function unknownEntities(step, bytes, types) {
   const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map(), { api, model } = step;
-  const known = types.reduce((sum, { typeID }) => sum + api.GetLineIDsWithType(model, typeID).size(), 0);
-  if (known === api.GetAllLines(model).size()) return found;
+  if (types.reduce((sum, { count }) => sum + count, 0) === sizeOf(api.GetAllLines(model))) return found;
   for (let at = 0; at < bytes.length; at += BLOCK) {
     const text = bytes.latin1Slice(at, Math.min(bytes.length, at + BLOCK + OVERLAP));
     for (const match of text.matchAll(/#\d+\s*=\s*(IFC[A-Za-z0-9_]+)\s*\(/g)) {
@@ -86,8 +96,7 @@ export function read(site, { schema, step, metres, given, length, angle, types, 
   const { api, model } = step;
   if (given || !length || length.value !== 1) stateLength(step, metres);
   const plain = new Plain(step, CHORD_M / metres, angle.value);
-  const products = types.filter(({ typeID, typeName }) => api.IsIfcElement(typeID) && !DRAWN.test(typeName.toUpperCase()))
-    .flatMap(({ typeName }) => step.ids(typeName.toUpperCase()));
+  const products = step.ids(...types.filter(({ code, name }) => api.IsIfcElement(code) && !DRAWN.test(name)).map(({ name }) => name));
   const analysis = step.kinds("IFCSTRUCTURALITEM").filter((id) => step.args(id)[6]).length;
   const opened = new Set(step.ids("IFCRELVOIDSELEMENT").map((id) => step.args(id)[4]?.ref));
   const damaged = [], part = (name) => { damaged.push(name); return null; };
@@ -97,7 +106,7 @@ export function read(site, { schema, step, metres, given, length, angle, types, 
   plain.styleCopies();
   const skins = attempt(() => new Skins(step, plain.axes, plain.solids, metres).mend(), null) ?? part("openings") ?? [];
 
-  const building = new Building(site, step, place), incomplete = [], lost = [], bodiless = [];
+  const building = new Building(site, step, opened, place), incomplete = [], lost = [], bodiless = [];
   for (const id of products) {
     if (!building.hasBody(id)) continue;
     const { parts, problems, left } = made.get(id), isClosed = (one) => plain.cut.has(one) || (opened.has(id) && plain.solid.has(one));

@@ -95,9 +95,11 @@ export class Profiles {
   // Corners [x, y, radius], each replaced by an arc that touches both its edges, if it has a radius.
   #rounded(corners) {
     return corners.flatMap(([x, y, radius], i) => {
-      const here = [x, y], before = corners.at(i - 1).slice(0, 2), after = corners[(i + 1) % corners.length].slice(0, 2);
+      const here = [x, y];
+      if (!(radius > 0)) return [here];
+      const before = corners.at(i - 1).slice(0, 2), after = corners[(i + 1) % corners.length].slice(0, 2);
       const u = unit(minus(before, here)), v = unit(minus(after, here));
-      if (!(radius > 0) || !u || !v) return [here];
+      if (!u || !v) return [here];
       const half = Math.acos(Math.min(1, Math.max(-1, u[0] * v[0] + u[1] * v[1]))) / 2, to = radius / Math.tan(half);
       const middle = unit(plus(u, v));
       if (!middle || !(to > 0)) return [here];

@@ -9,7 +9,7 @@ const MANY = 500;  // faces, above which a body is not looked at
 export class Skins {
   constructor(step, axes, solids, metres) {
     Object.assign(this, { step, axes, solids, metres });
-    this.hosts = new Map();  // bodies of what is opened, which may be opened in several places
+    this.hosts = new Map();  // what is opened, maybe in several places: its bodies, the direction through it, and its ends in that
   }
 
   // Opens skins of up to a centimetre. Returns {opening, host, skin_m, opened} of all that are left or were.
@@ -18,14 +18,17 @@ export class Skins {
     for (const id of step.ids("IFCRELVOIDSELEMENT")) {
       const [, , , , host, opening] = step.args(id);
       if (!host || !opening || this.#isRecess(opening.ref)) continue;
-      if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, this.#body(host.ref));
-      const wall = this.hosts.get(host.ref), hole = this.#body(opening.ref);
-      if (wall.length === 0 || hole.length === 0) continue;
-      const across = mainNormal(wall), reach = (bodies) => bodies.flatMap(({ points }) => points).map((point) => dot(point, across));
-      const [low, high] = ends(reach(wall)), [from, to] = ends(reach(hole));
+      if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, { bodies: this.#bodies(host.ref, (...of) => this.#faces(...of)) });
+      // Openings are many, and most reach through: their corners tell.
+      const wall = this.hosts.get(host.ref), hole = this.#bodies(opening.ref, (...of) => this.#corners(...of));
+      if (wall.bodies.length === 0 || hole.length === 0) continue;
+      wall.across ??= mainNormal(wall.bodies);
+      wall.ends ??= ends(wall.bodies, wall.across);
+      const { across, ends: [low, high] } = wall, [from, to] = ends(hole, across);
       const gaps = [from - low, high - to].map((gap) => gap * this.metres), skin = Math.max(...gaps);
       if (skin < NOTHING_M || skin > TOLD_M || (high - low) * this.metres < 2 * skin) continue;
-      const opened = skin <= OPENED_M && hole.every((body) => this.#stretch(body, across, gaps));
+      const whole = skin <= OPENED_M ? hole.map((body) => this.#body(body, (...of) => this.#faces(...of))) : [];
+      const opened = skin <= OPENED_M && whole.every((body) => this.#stretch(body, across, gaps));
       found.push({ opening: opening.ref, host: host.ref, skin_m: skin, opened });
     }
     return found;
@@ -36,8 +39,9 @@ export class Skins {
     return [args[4], args[8]].some((type) => typeof type === "string" && /recess|niche/i.test(type));
   }
 
-  // {points, faces, item, place}, points in the model's coordinates; [] if they are not simple.
-  #body(id) {
+  // {points, triangles, item, place, shared}, points in the model's coordinates; [] if they are not simple. `shapeOf`
+  // makes the first two of an item and its type.
+  #bodies(id, shapeOf) {
     const { step, axes } = this, args = step.args(id), shape = args[6];
     if (!shape) return [];
     const bodies = [], at = axes.local(args[5]);
@@ -49,8 +53,8 @@ export class Skins {
         const inner = composed(composed(place, axes.operator(target.ref)), axes.placement(origin));
         return step.args(representation.ref)[3].forEach((one) => add(one.ref, inner, true));
       }
-      const made = this.#faces(item, type);
-      if (made) bodies.push({ ...made, points: made.points.map((point) => placed(place, point)), item, place, shared });
+      const body = this.#body({ item, place, shared }, shapeOf);
+      if (body) bodies.push(body);
     };
     try {
       for (const representation of step.args(shape.ref)[2] ?? []) for (const item of step.args(representation.ref)[3] ?? []) add(item.ref, at, false);
@@ -60,7 +64,14 @@ export class Skins {
     }
     return bodies;
   }
+  #body({ item, place, shared }, shapeOf) {
+    const made = shapeOf(item, this.step.type(item));
+    return made && { ...made, points: made.points.map((point) => placed(place, point)), item, place, shared };
+  }
 
+  #corners(item, type) {
+    return type === "IFCEXTRUDEDAREASOLID" ? { points: this.solids.corners(item) } : this.#faces(item, type);
+  }
   #faces(item, type) {
     const { step } = this;
     if (type === "IFCEXTRUDEDAREASOLID") { const { points, triangles } = this.solids.of(item); return { points, triangles }; }
@@ -83,7 +94,7 @@ export class Skins {
   // Moves an opening's end through the face that it stops before. False if the body is another one's, too.
   #stretch(body, across, gaps) {
     if (body.shared || body.closed === false) return false;
-    const along = body.points.map((point) => dot(point, across)), [from, to] = ends(along), end = NOTHING_M / this.metres;
+    const along = body.points.map((point) => dot(point, across)), [from, to] = ends([body], across), end = NOTHING_M / this.metres;
     const { place } = body, inside = (v) => [place.x, place.y, place.z].map((axis) => dot(v, axis));
     const points = body.points.map((point, i) => {
       const by = gaps[1] >= NOTHING_M && along[i] > to - end ? gaps[1] : gaps[0] >= NOTHING_M && along[i] < from + end ? -gaps[0] : 0;
@@ -96,7 +107,16 @@ export class Skins {
   }
 }
 
-const ends = (values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
+// From where to where bodies reach in a direction.
+function ends(bodies, direction) {
+  let low = Infinity, high = -Infinity;
+  for (const { points } of bodies)
+    for (const point of points) {
+      const along = dot(point, direction);
+      low = Math.min(low, along), high = Math.max(high, along);
+    }
+  return [low, high];
+}
 
 // The direction that most of the surface of bodies faces, either way.
 function mainNormal(bodies) {

@@ -65,6 +65,12 @@ export class Solids {
     return faces;
   }
 
+  // Corners of an IfcExtrudedAreaSolid alone.
+  corners(id) {
+    const args = this.step.args(id), { from, low, high } = this.#ends([...args, args[0]]), flat = from.flatMap(({ outer, holes }) => [outer, ...holes].flat());
+    return [...flat.map(low), ...flat.map(high)];
+  }
+
   #circle(r) {
     return this.curves.arc({ o: [0, 0, 0], x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }, r, r, 0, 2 * Math.PI).slice(0, -1).map((p) => p.slice(0, 2));
   }
@@ -124,7 +130,8 @@ export class Solids {
     }
   }
 
-  #tapered(faces, [profile, position, direction, depth, end]) {
+  // Profiles of both ends, where their points lie, and whether the second one is below.
+  #ends([profile, position, direction, depth, end]) {
     const at = this.axes.placement(position), d = this.axes.direction(direction);
     // Circles of either end get the chords of the larger one.
     this.curves.like = Math.max(0, ...[profile, end].map((one) => this.step.args(one.ref)).map((args) => (typeof args[3] === "number" ? args[3] : 0)));
@@ -138,6 +145,11 @@ export class Solids {
     const alike = from.length === to.length && from.every((one, i) => one.outer.length === to[i].outer.length && one.holes.length === to[i].holes.length && one.holes.every((hole, k) => hole.length === to[i].holes[k].length));
     if (!alike) throw new Unread("IFCEXTRUDEDAREASOLIDTAPERED between profiles of other corners");
     const low = (p) => placed(at, p), high = (p) => placed(at, plus([...p, 0], d, depth)), down = d[2] < 0;
+    return { from, to, low, high, down };
+  }
+
+  #tapered(faces, args) {
+    const { from, to, low, high, down } = this.#ends(args);
     from.forEach((region, i) => {
       [region.outer, ...region.holes].forEach((ring, k) => {
         const other = k === 0 ? to[i].outer : to[i].holes[k - 1], flip = (area(ring) < 0) !== (k > 0) !== down;

@@ -6,9 +6,20 @@ const [STRING, TYPED, ENUM, REAL, REF, INTEGER] = [1, 2, 3, 4, 5, 10];
 
 const MOST = 100_000;
 
+// The values of a list of web-ifc's, which is freed: lists left in its memory slow down whatever asks for some later.
+export function taken(list) {
+  const all = Array.from({ length: list.size() }, (_, i) => list.get(i));
+  list.delete();
+  return all;
+}
+
+// Lists become their values in place.
 const decode = (token) => {
   if (token === null || token === undefined) return null;
-  if (Array.isArray(token)) return token.map(decode);
+  if (Array.isArray(token)) {
+    for (let i = 0; i < token.length; ++i) token[i] = decode(token[i]);
+    return token;
+  }
   switch (token.type) {
     case REF: return { ref: token.value };
     case REAL: return Number(token.value);
@@ -41,34 +52,31 @@ export class Step {
 
   // Numbers of all entities of these types, by their names in capitals; types that the schema lacks have none.
   ids(...names) {
-    const all = [];
-    for (const name of names) {
-      const found = this.api.GetLineIDsWithType(this.model, this.ifc[name]);
-      for (let i = 0, count = found.size(); i < count; ++i) {
-        const id = found.get(i);
-        if (this.type(id) === name) all.push(id);
-      }
-    }
-    return all;
+    return names.flatMap((name) => {
+      const code = this.ifc[name];
+      return taken(this.api.GetLineIDsWithType(this.model, code)).filter((id) => this.api.GetLineType(this.model, id) === code);
+    });
   }
   // Those of a type and all below it.
   kinds(name) {
-    const found = this.api.GetLineIDsWithType(this.model, this.ifc[name], true), all = [];
-    for (let i = 0, count = found.size(); i < count; ++i) all.push(found.get(i));
-    return all;
+    return taken(this.api.GetLineIDsWithType(this.model, this.ifc[name], true));
   }
 
   // Name in capitals; "" if there is no such entity.
   type(id) {
-    const code = this.api.GetLineType(this.model, id);
-    if (!code) return "";
-    if (!this.#names.has(code)) this.#names.set(code, this.api.GetNameFromTypeCode(code));
-    return this.#names.get(code).toUpperCase();
+    return this.#name(id).capitals;
   }
   // As people write it: IfcWall.
   className(id) {
-    this.type(id);
-    return this.#names.get(this.api.GetLineType(this.model, id)) ?? "";
+    return this.#name(id).name;
+  }
+  #name(id) {
+    const code = this.api.GetLineType(this.model, id);
+    const known = this.#names.get(code);
+    if (known) return known;
+    const name = code ? this.api.GetNameFromTypeCode(code) : "", both = { name, capitals: name.toUpperCase() };
+    this.#names.set(code, both);
+    return both;
   }
 
   // Attributes in the order of the schema, which are not to be changed; [] if there is no such entity.
