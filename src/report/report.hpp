@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "export/pictures.hpp"
 #include "report/accuracy.hpp"
 #include "vantage/report.hpp"
 #include "vantage/summary.hpp"
@@ -46,6 +48,7 @@ struct Report {
   std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
   std::optional<Accuracy> accuracy = {};                        // of the answer, by room or mesh
   std::vector<RoomFacts> rooms = {};                            // under the answer; empty: none, or not looked at
+  std::span<const PlanPage> plan = {};                          // views of the plan; empty: not drawn yet
   // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 
@@ -64,9 +67,11 @@ std::vector<std::pair<std::string, std::string>> report_facts(const Report& repo
 // False, and no file, if stopped before the page or the sheets were made.
 bool write_report_html(const std::filesystem::path& file, const Report& report, Site& site, const Progress& progress);
 bool write_report_pdf(const std::filesystem::path& file, const Report& report, Site& site, const std::stop_token& stop);
-// report.html and report.pdf of a plan, side by side. Returns the names of those that a stop left out.
+// report.html and report.pdf of a plan, side by side. `plan`: its pages, which a stop may have kept from being drawn.
+// Returns the names of those that a stop left out.
 // Throws Error invalid_argument if there is no report in this build.
 std::vector<std::string> write_reports(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                                       const ReportOptions& options, const Progress& progress);
+                                       const ReportOptions& options, std::span<const PlanPage> plan,
+                                       const Progress& progress);
 
 }  // namespace vantage

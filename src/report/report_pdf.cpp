@@ -39,22 +39,28 @@ void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
 }
 
 // The plan view; of several storeys those with most stations, below each other as far as there is room.
-void front_plans(Sheet& sheet, const Evaluation& network, Site& site, const std::stop_token& stop) {
-  std::span<const StationError> errors;
-  if (network.registration) errors = network.registration->stations;
-  const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
-  const auto pages = plan_view_pictures({.scene = site.scene(),
-                                         .area = site.area(),
-                                         .stations = network.stations,
-                                         .names = station_names(network.stations, network.names),
-                                         .links = links,
-                                         .title = "Stations and links",
-                                         .errors = errors,
-                                         .targets = network.targets},
-                                        stop);
+void front_plans(Sheet& sheet, const Report& report, Site& site, const std::stop_token& stop) {
+  const Evaluation& network = report.shown();
+  std::vector<PlanPage> drawn;
+  if (report.plan.empty()) {
+    std::span<const StationError> errors;
+    if (network.registration) errors = network.registration->stations;
+    const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
+    drawn = plan_view_pictures({.scene = site.scene(),
+                                .area = site.area(),
+                                .stations = network.stations,
+                                .names = station_names(network.stations, network.names),
+                                .links = links,
+                                .title = "Stations and links",
+                                .errors = errors,
+                                .targets = network.targets},
+                               stop);
+  }
   if (stop.stop_requested()) return;  // the sheet is not kept
+  const std::span<const PlanPage> pages = report.plan.empty() ? drawn : report.plan;
   std::vector<const Canvas*> plans;
-  for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k) plans.push_back(pages[k].canvas.get());
+  for (std::size_t k = pages.size() > 1 ? 1 : 0; k < pages.size(); ++k)
+    if (pages[k].canvas) plans.push_back(pages[k].canvas.get());
   const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), network.stations);
   if (levels.size() == plans.size()) {
     const auto standing = [&](std::size_t k) {
@@ -118,7 +124,7 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   for (const auto& [heading, text] : report.facts)
     line(heading, text + (heading == "computed" ? "; report.html has every parameter" : ""), false);
   sheet.y += 8;
-  front_plans(sheet, network, site, stop);
+  front_plans(sheet, report, site, stop);
   return sheet;
 }
 

@@ -92,9 +92,13 @@ class FolderWriter {
     // Progress is told on the calling thread, by those that take longest.
     const Deadline drawn_by(seconds(), watch_.stop);
     progress(kDraw, 0, 1, drawn_by)(0);
-    parallel::beside([&] { draw(known, drawn_by.stop()); },
+    // The report shows the plan, too.
+    parallel::beside([&] { plan_ = plan_pages(drawn_by.stop()); },
                      [&] {
                        if (known) judge(*known);
+                     });
+    parallel::beside([&] { draw(known, drawn_by.stop()); },
+                     [&] {
                        if (options_.reports && why_no_report().empty()) report(known);
                      });
     std::ranges::sort(written_.left_out);
@@ -150,7 +154,7 @@ class FolderWriter {
   // Clouds and pictures are made side by side. Both files of a picture are made by one thread, since they share it.
   void draw(const VoxelField* field, const std::stop_token& late) {
     tbb::task_group files;
-    files.run([&] { draw_plan(late); });
+    files.run([&] { save_plan(late); });
     if (field)
       files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field, options_.ply); });
     if (field && entry_.registration) {
@@ -172,22 +176,25 @@ class FolderWriter {
     parallel::wait(files);
   }
 
-  void draw_plan(const std::stop_token& late) {
+  std::vector<PlanPage> plan_pages(const std::stop_token& late) const {
     std::span<const StationError> errors;
     if (entry_.registration) errors = entry_.registration->stations;
-    const PlanView view{.scene = site_.scene(),
-                        .area = site_.area(),
-                        .stations = entry_.stations,
-                        .names = names_,
-                        .links = links_,
-                        .title = title_of(entry_),
-                        .errors = errors,
-                        .targets = entry_.targets};
-    const std::vector<PlanPage> pages = plan_view_pictures(view, late);
-    parallel::for_all(std::size_t{0}, pages.size(), [&](std::size_t k) {
-      for (const std::string& name : {"plan" + pages[k].suffix + ".png", "plan" + pages[k].suffix + ".svg"})
-        if (pages[k].canvas && (name == "plan.png" || !late.stop_requested()))
-          pages[k].canvas->save(folder_ / name);
+    return plan_view_pictures({.scene = site_.scene(),
+                               .area = site_.area(),
+                               .stations = entry_.stations,
+                               .names = names_,
+                               .links = links_,
+                               .title = title_of(entry_),
+                               .errors = errors,
+                               .targets = entry_.targets},
+                              late);
+  }
+
+  void save_plan(const std::stop_token& late) {
+    parallel::for_all(std::size_t{0}, plan_.size(), [&](std::size_t k) {
+      for (const std::string& name : {"plan" + plan_[k].suffix + ".png", "plan" + plan_[k].suffix + ".svg"})
+        if (plan_[k].canvas && (name == "plan.png" || !late.stop_requested()))
+          plan_[k].canvas->save(folder_ / name);
         else
           leave_out(name);
     });
@@ -221,7 +228,7 @@ class FolderWriter {
     shown.field = field;
     shown.missed = written_.missed ? &*written_.missed : nullptr;
     const Deadline due(seconds(), watch_.stop);
-    for (const std::string& name : write_reports(folder_, result_, site_, shown, progress(kReport, 0, 1, due)))
+    for (const std::string& name : write_reports(folder_, result_, site_, shown, plan_, progress(kReport, 0, 1, due)))
       leave_out(name);
   }
 
@@ -234,6 +241,7 @@ class FolderWriter {
   const PlanEntry& entry_;
   std::vector<std::string> names_;
   StationLinks links_;
+  std::vector<PlanPage> plan_;
   std::mutex adding_;
   WrittenFolder written_;
 };

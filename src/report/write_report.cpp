@@ -33,8 +33,10 @@ bool write_report(const std::filesystem::path& file, const Evaluation& evaluatio
 }
 
 std::vector<std::string> write_reports(const std::filesystem::path& folder, const PlanResult& result, Site& site,
-                                       const ReportOptions& options, const Progress& progress) {
-  const Report report = report_of(result, site, options);
+                                       const ReportOptions& options, std::span<const PlanPage> plan,
+                                       const Progress& progress) {
+  Report report = report_of(result, site, options);
+  report.plan = plan;
   bool page = false, sheets = false;
   parallel::beside([&] { sheets = write(folder / "report.pdf", report, site, {.report = {}, .stop = progress.stop}); },
                    [&] { page = write(folder / "report.html", report, site, progress); });

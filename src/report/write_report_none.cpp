@@ -19,7 +19,7 @@ bool write_report(const std::filesystem::path&, const Evaluation&, Site&, const 
 }
 
 std::vector<std::string> write_reports(const std::filesystem::path&, const PlanResult&, Site&, const ReportOptions&,
-                                       const Progress&) {
+                                       std::span<const PlanPage>, const Progress&) {
   throw Error(Errc::invalid_argument, "report: " + why_no_report());
 }
 
