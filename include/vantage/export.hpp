@@ -94,6 +94,16 @@ void write_stations_csv(const std::filesystem::path& file, std::span<const Place
 /// `walk_m` is the way to the station; `station` is its line in stations.csv. REQUIRES: the evaluation has a visit.
 void write_sessions_csv(const std::filesystem::path& file, const Evaluation& evaluation);
 
+/// Writes the round of an evaluated network for a robot, or each of its sessions; the extension decides the format:
+/// - .csv: `day,crew,order,name,x,y,z,head_height,heading,first_column,dwell_s`, a line for each station;
+/// - .json: keys crs and rounds[{day, crew, minutes, start, waypoints[{order, name, position, orientation{x, y, z, w},
+///   heading, first_column, head_height, dwell_s, path}], back}].
+/// Positions are of the ground, survey frame, with every digit. `heading` is the direction in which a station is
+/// reached and `first_column` that of the scanner's first column, both in degrees from +X towards +Y. Throws Error: io;
+/// invalid_argument (another extension, an evaluation without a round).
+void write_waypoints(const std::filesystem::path& file, const Evaluation& evaluation, std::span<const Scanner> scanners,
+                     const std::string& crs = {});
+
 /// Writes stations for maps and drawings; the extension decides the format:
 /// - .geojson (RFC 7946): a Point for each station below its tripod, [longitude, latitude, z] with ten and four digits.
 ///   Properties: kind ("station"), name, status, existing, head_height_m, and in the survey frame x, y, z of the head
@@ -174,6 +184,27 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
 /// `shares` for each of `rooms`.
 void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> rooms, std::span<const RoomShare> shares,
                      std::span<const PlacedStation> stations, std::span<const std::string> names);
+/// What a network captures of one element of the model: the surveyed meshes of one name.
+struct ElementShare {
+  std::string name = {};                ///< `MeshInfo::name`.
+  std::string ifc_class = {};           ///< "IfcWall", as the importer of IFC puts it into the name; empty: none.
+  std::string global_id = {};           ///< Its GlobalId, likewise.
+  double area_m2 = 0;                   ///< Of all its triangles.
+  std::uint64_t voxels = 0;             ///< Voxels with most surface of it.
+  std::optional<double> captured = {};  ///< Share of the goal points of these.
+  std::optional<Angle> incidence = {};  ///< Median over its seen voxels, each from the station that sees it best.
+  std::optional<double> point_distance_m = {};  ///< Median over its seen voxels: the root of area over points.
+  /// Predicted registration error, root mean square over its seen voxels; empty unless it was predicted.
+  std::optional<double> deviation_m = {};
+};
+/// Elements in the order of their first meshes. Looks at every voxel; of more than 2 000 000 at so many. `field`: of
+/// the evaluated stations; with station masks, or incidence and deviation are empty. Throws Error invalid_argument for
+/// a field without the points of every voxel.
+std::vector<ElementShare> element_shares(const Simulator& simulator, const Evaluation& evaluation,
+                                         const VoxelField& field);
+/// CSV: `name,class,global_id,area_m2,voxels,captured,incidence,point_distance_mm,deviation_mm`; degrees, millimetres.
+/// Empty cells: not known.
+void write_elements_csv(const std::filesystem::path& file, std::span<const ElementShare> elements);
 /// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,

@@ -53,8 +53,10 @@ struct WrittenFolder {
 /// - front.csv, front.json, history.csv, fronts.csv (every iteration's front);
 /// - of the answer: stations.csv, overlap.csv (if confirmed), coverage.ply, stations.dxf, and stations.geojson and
 /// stations.kml if the site has a coordinate system by which stations can be put on WGS 84 (else `SiteOptions::warn` is
-/// told why), targets.csv if it has targets, and sessions.csv if its round is split;
-/// - what it does not capture, and why: missed.csv, missed.ply, missed.png, and rooms.csv if the scene has rooms;
+/// told why), targets.csv if it has targets, sessions.csv if its round is split, and waypoints.csv and
+/// waypoints.json if it has one;
+/// - what it captures of each element: elements.csv; what it does not, and why: missed.csv, missed.ply, missed.png, and
+/// rooms.csv if the scene has rooms;
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan, and registration.ply, .png and .svg;

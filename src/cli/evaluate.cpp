@@ -29,8 +29,8 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample, registration_sample;
   std::optional<double> error, link, link_overlap;
   std::optional<BeamOptions> beam;
-  std::optional<std::string> cartography, rooms, matrix, picture, sessions;
-  std::vector<std::string> station_files, registration_files, reports;
+  std::optional<std::string> cartography, rooms, elements, matrix, picture, sessions;
+  std::vector<std::string> station_files, waypoint_files, registration_files, reports;
   MissedFiles missed;
   ReportHead report_head;
   PlyCoordinates ply = PlyCoordinates::floats;
@@ -102,6 +102,12 @@ struct EvaluateCommandOptions {
     add_text(command, "--rooms", "FILE",
              "Write what is captured of each room that the model names, and why one has no station: .csv", rooms)
         ->group("Results");
+    add_text(
+        command, "--elements", "FILE",
+        "Write for each element of the model what is captured of it, how flatly and how densely, and its predicted "
+        "deviation: .csv",
+        elements)
+        ->group("Results");
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(
         command, "--sessions", "FILE",
@@ -113,6 +119,10 @@ struct EvaluateCommandOptions {
     add_texts(command, "--write-stations", "FILE",
               "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
               station_files)
+        ->group("Results");
+    add_texts(command, "--waypoints", "FILE",
+              "Write the round for a robot, with poses and times at each station: .csv or .json; may be repeated",
+              waypoint_files)
         ->group("Results");
     add_texts(command, "--report", "FILE",
               "Write all of it as a page for a browser, .html, or on paper, .pdf; may be repeated", reports)
@@ -128,8 +138,8 @@ struct EvaluateCommandOptions {
 
   bool sampled() const { return sample || error; }
   bool wants_field() const {
-    return !sampled() &&
-           (cartography || rooms || !missed.files.empty() || !registration_files.empty() || !reports.empty());
+    return !sampled() && (cartography || rooms || elements || !missed.files.empty() || !registration_files.empty() ||
+                          !reports.empty());
   }
 };
 
@@ -152,6 +162,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
   must_end(options.rooms, "--rooms", ".csv");
+  must_end(options.elements, "--elements", ".csv");
   must_end(options.sessions, "--sessions", ".csv");
   if (options.sessions && !options.on_site.day_min)
     refuse("--sessions: a round is split by --day, which was not given");
@@ -165,6 +176,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     if (!file.ends_with(".dxf") && site.crs().empty())
       refuse("--write-stations: longitude and latitude need the coordinate system of the site: give --crs");
   }
+  for (const std::string& file : options.waypoint_files) must_end(file, "--waypoints", ".csv", ".json");
   for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
   if (!options.reports.empty() && !why_no_report().empty()) refuse("--report: " + why_no_report());
   options.missed.check();
@@ -177,6 +189,9 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   if (options.cartography && options.sampled()) refuse("--cartography: shows every voxel, and so needs --exact");
   if ((!options.missed.files.empty() || options.rooms) && options.sampled())
     refuse("--missed and --rooms: look at every voxel, and so need --exact");
+  if (options.elements && options.sampled()) refuse("--elements: looks at every voxel, and so needs --exact");
+  if (options.elements && options.no_overlap)
+    refuse("--elements: tells which stations see an element, which --no-overlap leaves out");
   if ((options.matrix || options.picture) && options.no_overlap)
     refuse("--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
   if (!options.registration_files.empty() && (options.sampled() || !options.with_registration))
@@ -222,6 +237,7 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
                  site, found.stations, options.ply);
   if (judged && options.rooms)
     write_rooms_csv(*options.rooms, site.scene().rooms(), judged->rooms, found.stations, names);
+  if (options.elements) write_elements_csv(*options.elements, element_shares(simulator, found, found.field));
   if (options.sessions) write_sessions_csv(*options.sessions, found);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
@@ -243,6 +259,7 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
   }
   for (const std::string& file : options.station_files)
     write_stations(file, found.stations, names, links, site, found.targets);
+  for (const std::string& file : options.waypoint_files) write_waypoints(file, found, site.scanners(), site.crs());
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
                   options.report_head.with({.missed = judged}), program, program.abort);

@@ -16,6 +16,7 @@
 #include "core/setting_list.hpp"
 #include "core/site_reach.hpp"
 #include "core/text.hpp"
+#include "evaluate/check_day.hpp"
 #include "evaluate/cut_round.hpp"
 #include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
@@ -264,6 +265,21 @@ struct OnSite::Impl {
   Ways ways;
 };
 
+void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) {
+  if (options.crews > 1 && !options.day_min)
+    throw Error(Errc::invalid_argument,
+                "crews: only a round that is split is shared by crews; give the length of a day too");
+  if (!options.day_min) return;
+  double least_min = std::numeric_limits<double>::infinity();
+  for (const Scanner& scanner : scanners)
+    least_min = std::min(least_min, static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  least_min += options.set_up_min + options.photos_min;
+  if (*options.day_min < least_min)
+    throw Error(Errc::invalid_argument, "day: " + fixed(*options.day_min, 2) +
+                                            " min are too short for one station, which takes " + fixed(least_min, 2) +
+                                            " min with setting up. Give a longer day");
+}
+
 OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
                const OnSiteOptions& options, const Vec3& origin) {
   check(options, origin);
@@ -271,11 +287,7 @@ OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<cons
   std::vector<double> scan_min;
   for (const Scanner& scanner : scanners)
     scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
-  const double least_min = std::ranges::min(scan_min) + options.set_up_min + options.photos_min;
-  if (options.day_min && *options.day_min < least_min)
-    throw Error(Errc::invalid_argument, "day: " + fixed(*options.day_min, 1) +
-                                            " min are too short for one station, which takes " + fixed(least_min, 1) +
-                                            " min with setting up. Give a longer day");
+  check_day(options, scanners);
   impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin);
 }
 
@@ -362,14 +374,15 @@ std::vector<Session> OnSite::sessions(std::span<const PlacedStation> stations, c
   const auto leg = [&](const Vec3& from, const Vec3& to) {
     return from == to ? Impl::Leg() : impl_->leg(from, to, impl_->ways.between(from, to));
   };
-  RoundTimes times{.stay_min = visit.stay_min};
+  RoundTimes times;
+  times.stay_min = visit.stay_min;
   for (std::size_t k = 0; k < n; ++k) {
     times.out_min.push_back(impl_->walk_min(leg(entrance, ground(k)).metres));
     if (k > 0) times.step_min.push_back(impl_->walk_min(visit.legs_m[k]));
     if (const double alone = visit.stay_min[k] + 2 * times.out_min[k]; alone > *options.day_min)
-      throw Error(Errc::invalid_argument, "day: station " + std::to_string(order[k] + 1) + " takes " + fixed(alone, 1) +
-                                              " min from the entrance and back, " + fixed(visit.stay_min[k], 1) +
-                                              " of them at the station; a day has " + fixed(*options.day_min, 1) +
+      throw Error(Errc::invalid_argument, "day: station " + std::to_string(order[k] + 1) + " takes " + fixed(alone, 2) +
+                                              " min from the entrance and back, " + fixed(visit.stay_min[k], 2) +
+                                              " of them at the station; a day has " + fixed(*options.day_min, 2) +
                                               ". Give a longer day");
   }
   if (link) times.linked = [&](std::size_t a, std::size_t b) { return link(order[a], order[b]) > 0; };

@@ -31,9 +31,6 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
                  &OnSiteOptions::crews, 1, 1000)
           .checked([](const OnSiteOptions& options, const std::string& what) {
             parse_count(std::to_string(options.crews), what, 1, 1000);
-            if (options.crews > 1 && !options.day_min)
-              throw Error(Errc::invalid_argument,
-                          what + ": only a round that is split is shared by crews; give the length of a day too");
           })
           .take();
   return table;

@@ -5,6 +5,7 @@
 
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
+#include "evaluate/check_day.hpp"
 #include "evaluate/sight_targets.hpp"
 #include "plan/limits.hpp"
 #include "scene/scene_data.hpp"
@@ -16,6 +17,7 @@ namespace vantage {
 void check_problem(const Site& site, const SurveyProblem& problem) {
   const Vec3 origin = site.scene().data().origin;
   check_settings(on_site_settings(), problem.on_site);
+  check_day(problem.on_site, site.scanners());
   check_settings(registration_settings(), problem.registration);
   check_settings(target_settings(), problem.target);
   check_number(problem.link_overlap, "link-overlap", any_share);

@@ -249,7 +249,6 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
   require_somewhere_to_stand(site, heights);
-  if (asked.on_site.day_min) site.on_site(asked.on_site);  // refuses a day that is too short for any station
   PlanContext context(site, config);
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;

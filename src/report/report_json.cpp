@@ -97,13 +97,14 @@ ordered_json round_json(const Round& round, std::size_t kept) {
           {"walk_min", round.walk_min}, {"minutes", round.minutes},       {"ways", std::move(ways)}};
 }
 
-ordered_json visit_json(const Visit& visit, std::size_t kept) {
+ordered_json visit_json(const Evaluation& network, std::size_t kept) {
+  const Visit& visit = *network.visit;
   ordered_json json = round_json(visit, kept);
   if (visit.sessions.empty()) return json;
   // The whole round is not walked.
   json["ways"] = ordered_json::array();
   for (const Session& session : visit.sessions) {
-    ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session)}};
+    ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
     one.update(round_json(session, kept));
     json["sessions"].push_back(std::move(one));
   }
@@ -143,7 +144,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"parts", nullptr}};
   if (network.visit && !network.visit->order.empty()) {
     const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
-    json["visit"] = visit_json(*network.visit, kept);
+    json["visit"] = visit_json(network, kept);
   }
   json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));

@@ -173,7 +173,7 @@ void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                         minutes_text(one.walk_min),
                         fixed(one.walk_m, 0),
                         minutes_text(one.minutes),
-                        session_links(one)};
+                        session_links(one, network)};
               });
 }
 

@@ -175,9 +175,11 @@ std::vector<SheetRound> sheet_rounds(const Evaluation& network) {
   return rounds;
 }
 
-std::string session_links(const Session& session) {
-  return (session.parts > 1 ? "in " + std::to_string(session.parts) + " parts; " : std::string("within, and ")) +
-         (session.linked ? "to others" : "to no other session");
+std::string session_links(const Session& session, const Evaluation& network) {
+  if (network.overlap_matrix.size() == 0 && network.scan_overlap_matrix.size() == 0) return "not measured";
+  const std::string within = session.parts > 1 ? "in " + std::to_string(session.parts) + " parts" : "within";
+  if (network.visit->sessions.size() == 1) return within;
+  return within + (session.parts > 1 ? "; " : ", and ") + (session.linked ? "to others" : "to no other session");
 }
 
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts) {

@@ -47,7 +47,7 @@ struct SheetRound {
 std::vector<SheetRound> sheet_rounds(const Evaluation& network);
 
 // "within, and to others", "in 2 parts; to no other session".
-std::string session_links(const Session& session);
+std::string session_links(const Session& session, const Evaluation& network);
 
 // Stations by their place in the round, the others behind them.
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts);

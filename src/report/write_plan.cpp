@@ -56,10 +56,11 @@ constexpr Part kMap{"map", 0, 0.2}, kDraw{"draw", 0.2, 0.5}, kMissed{"missed", 0
 
 // Removes the files of an earlier plan that this one need not have.
 void remove_earlier_plan(const std::filesystem::path& folder) {
-  remove_earlier(
-      folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg", "history.png",
-               "history.svg", "targets.csv", "stations.geojson", "stations.kml", "plan.svg", "missed.csv", "missed.ply",
-               "missed.png", "rooms.csv", "sessions.csv", "report.html", "report.pdf"});
+  remove_earlier(folder, {"overlap.csv",  "coverage.ply", "registration.ply", "registration.png", "registration.svg",
+                          "history.png",  "history.svg",  "targets.csv",      "stations.geojson", "stations.kml",
+                          "plan.svg",     "missed.csv",   "missed.ply",       "missed.png",       "rooms.csv",
+                          "sessions.csv", "elements.csv", "waypoints.csv",    "waypoints.json",   "report.html",
+                          "report.pdf"});
   std::vector<std::string> levels;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
@@ -132,7 +133,7 @@ class FolderWriter {
              .evaluate(to_network(entry_.stations), {.overlap = true, .field = &field}, progress(kMap, 0, 1, due))
              .cancelled)
       return field;
-    for (const char* name : {"coverage.ply", "missed.csv", "missed.ply", "missed.png"}) leave_out(name);
+    for (const char* name : {"coverage.ply", "elements.csv", "missed.csv", "missed.ply", "missed.png"}) leave_out(name);
     if (entry_.registration)
       for (const char* name : {"registration.ply", "registration.png", "registration.svg"}) leave_out(name);
     if (!site_.scene().rooms().empty()) leave_out("rooms.csv");
@@ -145,6 +146,9 @@ class FolderWriter {
     write_history_csv(folder_ / "history.csv", result_);
     write_fronts_csv(folder_ / "fronts.csv", result_);
     write_stations_csv(folder_ / "stations.csv", entry_.stations, site_.scanners(), entry_.names);
+    if (entry_.visit && !entry_.visit->order.empty())
+      for (const char* name : {"waypoints.csv", "waypoints.json"})
+        write_waypoints(folder_ / name, entry_, site_.scanners(), site_.crs());
     if (entry_.visit && !entry_.visit->sessions.empty()) write_sessions_csv(folder_ / "sessions.csv", entry_);
     if (entry_.exact) write_overlap_csv(folder_ / "overlap.csv", entry_.overlap_matrix);
     if (!entry_.targets.empty()) write_targets_csv(folder_ / "targets.csv", entry_.targets, names_);
@@ -157,6 +161,9 @@ class FolderWriter {
     files.run([&] { save_plan(late); });
     if (field)
       files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field, options_.ply); });
+    if (field)
+      files.run(
+          [&] { write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *field)); });
     if (field && entry_.registration) {
       files.run([&] {
         write_registration_ply(folder_ / "registration.ply", site_.simulator(), *field, *entry_.registration,

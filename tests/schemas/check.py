@@ -32,7 +32,7 @@ PLANS = {
                 "have.csv", *SEARCH],
 }
 TARGETS = "name,x,y,z,sigma\nC1,5.5,1,1.5,0.002\nC2,7,-1,1.2,0.003\nC3,6.5,2,1.7,0.002\nT1,5.6,-1,1.8,\n"
-TEXTS = {"name", "scanner", "status", "proposed", "storey", "room", "why_no_station", "node"}  # columns
+TEXTS = {"name", "class", "global_id", "scanner", "status", "proposed", "storey", "room", "why_no_station", "node"}  # columns
 
 
 def run(folder, *arguments, expected=(0,)):
@@ -80,7 +80,7 @@ def check_tables(folder, written):
     assert {target["proposed"] for target in entry["targets"]} == {True, False}
     assert [part["name"] for part in written["floor"]["parts"] if part["kind"] == "room"] == ["1.01 Hall"]
     names = {station["name"] for station in entry["stations"]}
-    for name, broken in (("targets", {"proposed": "perhaps"}), ("rooms", {"hidden": 2}), ("missed", {"voxels": -1})):
+    for name, broken in (("targets", {"proposed": "perhaps"}), ("rooms", {"hidden": 2}), ("missed", {"voxels": -1}), ("elements", {"captured": 2})):
         holds = validator(os.path.join(SCHEMAS, f"{name}.schema.json"))
         table = rows(os.path.join(folder, "targets", f"{name}.csv"), TEXTS | {"stations"})
         assert table
@@ -107,7 +107,7 @@ def check_sessions(folder, written):
 
 
 def check_files(folder):
-    front, stations, after = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations", "next"))
+    front, stations, after, waypoints = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations", "next", "waypoints"))
     config = validator(os.path.join(MANUAL, "schemas/config.schema.json"))
     run(folder, "generate", "four-walls", "-o", "empty.glb")
     add_room(folder, "empty.glb", "walls.glb")
@@ -128,6 +128,8 @@ def check_files(folder):
         # What a schema lets through must not be just anything.
         for broken in ({**written, "more": 1}, {**written, "front": []}, {k: v for k, v in written.items() if k != "seed"}):
             assert not front.is_valid(broken)
+        with open(os.path.join(folder, name, "waypoints.json"), encoding="utf-8") as file:
+            require(waypoints, json.load(file), f"{name}/waypoints.json")
         if name == "targets":
             check_tables(folder, written)
         if name == "days":

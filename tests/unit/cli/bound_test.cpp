@@ -68,6 +68,22 @@ TEST_F(Bound, EvaluateTellsWhatIsMissed) {
                  "missed.txt");
 }
 
+TEST_F(Bound, EvaluateTellsOfElements) {
+  const Outcome outcome = run_program(coarse("evaluate", {"--station", "8,0,1.5", "--station", "-8,0,1.5",
+                                                          "--registration", "--elements", path("elements.csv")}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string table = read("elements.csv");
+  EXPECT_TRUE(
+      table.starts_with("name,class,global_id,area_m2,voxels,captured,incidence,point_distance_mm,deviation_mm\n"))
+      << table;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 5) << "a line for each wall: " << table;
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--elements", path("elements.txt")})), 2,
+                 "must end with .csv");
+  expect_refused(
+      run_program(coarse("evaluate", {"--station", "8,0,1.5", "--sample", "100", "--elements", path("sampled.csv")})),
+      2, "needs --exact");
+}
+
 TEST_F(Bound, EvaluateTellsOfRooms) {
   expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--rooms", path("rooms.csv")})), 2,
                  "names no rooms");

