@@ -95,7 +95,8 @@ void add_visits(py::module_& m) {
 
   py::class_<Visit, Round> visit(m, "Visit", "The round over all stations.");
   visit.def_readonly("day_min", &Visit::day_min, "Minutes that its sessions may take; 0: none were asked for.")
-      .def_readonly("sessions", &Visit::sessions, "Its Sessions by day and crew; empty: none were asked for.")
+      .def_readonly("sessions", &Visit::sessions, "Its Sessions by day and crew; empty: none, or not asked for.")
+      .def_readonly("not_split", &Visit::not_split, "What keeps it from being split into sessions; empty: nothing.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
                std::string(py::str(py::float_(v.minutes))) + " minutes>";

@@ -40,7 +40,7 @@ inline auto members(Session& s) {
   return std::tuple_cat(members(static_cast<Round&>(s)), std::tie(s.day, s.crew, s.parts, s.linked));
 }
 inline auto members(Visit& v) {
-  return std::tuple_cat(members(static_cast<Round&>(v)), std::tie(v.day_min, v.sessions));
+  return std::tuple_cat(members(static_cast<Round&>(v)), std::tie(v.day_min, v.sessions, v.not_split));
 }
 inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
 inline auto members(Work& w) {

@@ -112,7 +112,7 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
 Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
                double most_min = std::numeric_limits<double>::infinity());
 /// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are
-/// linked. Throws as `OnSite::sessions()`.
+/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`.
 void add_sessions(Evaluation& evaluation, const OnSite& on_site);
 /// Minutes that the requirements allow on site; infinity if they set no limit.
 double most_minutes(std::span<const Requirement> requirements);

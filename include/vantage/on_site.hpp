@@ -62,7 +62,8 @@ struct Session : Round {
 /// The round over all stations.
 struct Visit : Round {
   double day_min = 0;             ///< `OnSiteOptions::day_min` of the sessions; 0: none were asked for.
-  std::vector<Session> sessions;  ///< In the order of the round, by day and crew; empty: none were asked for.
+  std::vector<Session> sessions;  ///< In the order of the round, by day and crew; empty: none, or not asked for.
+  std::string not_split;          ///< What keeps the round from being split into sessions; empty: nothing.
 };
 
 /// Strength of the link between two stations, by their indices: 0 if they are not linked, else at most 1.

@@ -126,6 +126,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       Evaluation plain{.stations = one};
       plain.visit = visit_of(plain, *site.on_site);
       add_sessions(plain, *site.on_site);
+      if (!plain.visit->not_split.empty()) throw Error(Errc::invalid_argument, plain.visit->not_split);
     }
 
   // Shares of the time: surveyed voxels, then surroundings and what is attainable.

@@ -57,7 +57,12 @@ void add_sessions(Evaluation& evaluation, const OnSite& on_site) {
     };
   }
   evaluation.visit->day_min = *on_site.options().day_min;
-  evaluation.visit->sessions = on_site.sessions(std::span(stations).subspan(existing), *evaluation.visit, link);
+  try {
+    evaluation.visit->sessions = on_site.sessions(std::span(stations).subspan(existing), *evaluation.visit, link);
+  } catch (const Error& error) {  // a plan that took hours is worth more than its days
+    if (error.code() != Errc::invalid_argument) throw;
+    evaluation.visit->not_split = error.what();
+  }
 }
 
 double most_minutes(std::span<const Requirement> requirements) {

@@ -192,6 +192,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     const std::size_t kept = result.problem.existing.size();
     json["on_site"] = round_json(*entry.visit, kept);
     if (!entry.visit->sessions.empty()) json["on_site"]["sessions"] = sessions_json(entry.visit->sessions, kept);
+    if (!entry.visit->not_split.empty()) json["on_site"]["not_split"] = entry.visit->not_split;
   }
   return json;
 }

@@ -273,6 +273,8 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
   if (links) to_do(links_advice(*links, names));
+  if (evaluation.visit && !evaluation.visit->not_split.empty())
+    to_do({"not split into days: " + evaluation.visit->not_split});
   if (evaluation.visit && !evaluation.visit->sessions.empty()) {
     const auto existing = std::ranges::count(evaluation.stations, true, &PlacedStation::existing);
     to_do(sessions_advice(*evaluation.visit, {names.begin() + existing, names.end()}));

@@ -18,6 +18,7 @@
 #include "vantage/built_in_scenes.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
@@ -483,6 +484,15 @@ TEST(Sessions, ADayThatIsTooShortIsOneError) {
       far.ends_with(" min from the entrance and back, 3.00 of them at the station; a day has 5.00. Give a longer day"))
       << far;
   EXPECT_EQ(refusal(5.5), "");
+  // A plan that was made is not lost by it.
+  Evaluation made{.stations = corridor.stations};
+  const OnSite short_days =
+      Yard().on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Corridor::kEntrance, .day_min = 5});
+  made.visit = short_days.visit(made.stations);
+  add_sessions(made, short_days);
+  EXPECT_EQ(made.visit->not_split, far);
+  EXPECT_TRUE(made.visit->sessions.empty());
+  EXPECT_EQ(std::ranges::count(summary_lines(made), "not split into days: " + far, &SummaryLine::text), 1);
   EXPECT_THROW(Yard().on_site({.crews = 2}), Error) << "crews share days";
   EXPECT_THROW(Yard().on_site({.day_min = 60, .crews = 0}), Error);
   EXPECT_THROW(Yard().on_site({.day_min = 0}), Error);
