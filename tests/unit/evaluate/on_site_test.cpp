@@ -485,7 +485,7 @@ TEST(Sessions, ADayThatIsTooShortIsOneError) {
       << far;
   EXPECT_EQ(refusal(5.5), "");
   // A plan that was made is not lost by it.
-  Evaluation made{.stations = corridor.stations};
+  Evaluation made{.stations = corridor.stations, .values = {{"coverage", {0.5, 0}}}};
   const OnSite short_days =
       Yard().on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Corridor::kEntrance, .day_min = 5});
   made.visit = short_days.visit(made.stations);
