@@ -197,7 +197,7 @@ struct ElementShare {
   /// Predicted registration error, root mean square over its seen voxels; empty unless it was predicted.
   std::optional<double> deviation_m = {};
 };
-/// Elements in the order of their first meshes. Looks at every voxel; of more than 2 000 000 at so many. `field`: of
+/// Elements in the order of their first meshes. Looks at 50 000 voxels at most, those of `missed_voxels`. `field`: of
 /// the evaluated stations; with station masks, or incidence and deviation are empty. Throws Error invalid_argument for
 /// a field without the points of every voxel.
 std::vector<ElementShare> element_shares(const Simulator& simulator, const Evaluation& evaluation,

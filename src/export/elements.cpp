@@ -18,7 +18,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint64_t kMostVoxels = 2'000'000;  // whose surfaces are looked at
+constexpr std::uint64_t kMostVoxels = 50'000;  // whose surfaces are looked at, as for what is missed
 
 // Names as the importer of IFC makes them: "IfcWall North wall 2O2Fr$t4X7Zf8NOew3FLOH".
 void split_ifc_name(ElementShare& element) {

@@ -149,6 +149,28 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
     throw Error(Errc::invalid_argument, "registration is summed from station masks, and so needs overlap");
 }
 
+// The surfaces of the voxels that were asked for last: tables and reports of an answer look at the same sample.
+class KnownPatches {
+ public:
+  std::optional<std::vector<VoxelPatch>> find(std::span<const std::uint32_t> voxels) const {
+    const std::lock_guard lock(mutex_);
+    if (voxels.empty() || !std::ranges::equal(voxels, voxels_)) return std::nullopt;
+    return patches_;
+  }
+  void keep(std::span<const std::uint32_t> voxels, const std::vector<VoxelPatch>& patches) {
+    constexpr std::size_t kMost = 1 << 17;  // 11 MB
+    if (voxels.size() > kMost) return;
+    const std::lock_guard lock(mutex_);
+    voxels_.assign(voxels.begin(), voxels.end());
+    patches_ = patches;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::uint32_t> voxels_;
+  std::vector<VoxelPatch> patches_;
+};
+
 }  // namespace
 
 struct Simulator::Impl {
@@ -438,6 +460,7 @@ struct Simulator::Impl {
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
   LruCache<VoxelMeshes> voxel_meshes;
+  KnownPatches known_patches;
   std::vector<PatchScanner> patch_scanners;
   std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
   std::optional<WideBeam> wide_beam;   // made for the first beam with one
@@ -512,6 +535,7 @@ std::uint32_t Simulator::voxel_weight(std::uint64_t voxel_index) const {
 }
 
 std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> voxel_indices) const {
+  if (auto known = impl_->known_patches.find(voxel_indices)) return std::move(*known);
   std::vector<VoxelPatch> patches;
   patches.reserve(voxel_indices.size());
   for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, voxel_indices)) {
@@ -521,6 +545,7 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
                        .area_m2 = surface.extent,
                        .mesh = surface.mesh});
   }
+  impl_->known_patches.keep(voxel_indices, patches);
   return patches;
 }
 
