@@ -184,7 +184,7 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
 /// `shares` for each of `rooms`.
 void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> rooms, std::span<const RoomShare> shares,
                      std::span<const PlacedStation> stations, std::span<const std::string> names);
-/// What a network captures of one element of the model: the surveyed meshes of one name.
+/// An element of the model, the surveyed meshes of one name, as a network captures it.
 struct ElementShare {
   std::string name = {};                ///< `MeshInfo::name`.
   std::string ifc_class = {};           ///< "IfcWall", as the importer of IFC puts it into the name; empty: none.

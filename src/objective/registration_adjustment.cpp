@@ -280,7 +280,7 @@ MatrixXd RegistrationAdjustment::information() const {
   return all;
 }
 
-// Of the unknowns alone.
+// The information of the unknowns alone.
 SparseBlocks RegistrationAdjustment::sparse_information() const {
   const Eigen::Index d = unknowns_;
   const auto of_unknowns = [d](const Matrix6d& h) { return h.bottomRightCorner(d, d); };

@@ -27,7 +27,7 @@ struct PartialInverse {
   std::vector<Eigen::MatrixXd> blocks;  // on its diagonal
   Eigen::MatrixXd times;                // inverse · right
 };
-// In one thread by a sparse factor; a matrix that would fill up is factorised as a dense one, in parallel. The same
+// A sparse factor takes one thread; a matrix that would fill up is factorised as a dense one, in parallel. The same
 // bits on any number of threads. REQUIRES: at least one block.
 PartialInverse partial_inverse(const SparseBlocks& matrix, const Eigen::MatrixXd& right);
 

@@ -473,7 +473,7 @@ class SheetPanel {
   double x_, y_, cut_over_ = 0;
 };
 
-// What all sheets are drawn of. Borrows it.
+// The content of all sheets. Borrows it.
 struct Drawing {
   const Report& report;
   const std::vector<StationFacts>& facts;

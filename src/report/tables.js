@@ -106,7 +106,7 @@ const kRows = 60;  // that a page shows at once
 const sessionsOf = (network) => (network.visit && network.visit.sessions) || [];
 const sessionName = (session) => `Day ${session.day}, crew ${session.crew}`;
 
-// Where a station comes in its session, or in the round; null: nowhere.
+// The place of a station in its session, or in the round; null: nowhere.
 function stopOf(network, k) {
   for (const round of sessionsOf(network).length ? sessionsOf(network) : network.visit ? [network.visit] : []) {
     const stop = round.order.indexOf(k);

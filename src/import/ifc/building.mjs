@@ -242,7 +242,7 @@ export class Building {
   }
 }
 
-// Whether two parts look the same, to a micrometre.
+// True if two parts look the same, to a micrometre.
 const same = (a, b) => a.geometry === b.geometry && a.turned === b.turned && a.colour.every((v, i) => v === b.colour[i]) &&
   a.place.every((v, i) => v === b.place[i] || (Math.abs(v - b.place[i]) < 2e-6 && v.toFixed(6) === b.place[i].toFixed(6)));
 

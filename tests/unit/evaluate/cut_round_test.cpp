@@ -24,7 +24,7 @@ struct Cost {
   }
 };
 
-// By the definition, with no part of the programme's bookkeeping.
+// The definition itself, with no part of the programme's bookkeeping.
 std::optional<Cost> cost_of(const RoundTimes& times, const std::vector<std::size_t>& starts, double most_min) {
   const std::size_t n = times.stay_min.size();
   Cost cost{.pieces = starts.size()};
