@@ -126,8 +126,7 @@ void add_on_site(py::module_& m) {
           },
           py::arg("stations"),
           "A good order of the stations, the time of the round, and its sessions if the options have a day. stations: "
-          "in "
-          "a form that `evaluate` accepts. Raises Error invalid_argument if a day is too short for a station.");
+          "in a form that `evaluate` accepts. Raises Error invalid_argument if a day is too short for a station.");
 }
 
 }  // namespace vantage::python

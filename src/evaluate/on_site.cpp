@@ -265,14 +265,17 @@ struct OnSite::Impl {
   Ways ways;
 };
 
+static double minutes_of_scan(const Scanner& scanner) {
+  return static_cast<double>(scanner.rays()) / scanner.points_per_second / 60;
+}
+
 void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) {
   if (options.crews > 1 && !options.day_min)
     throw Error(Errc::invalid_argument,
                 "crews: only a round that is split is shared by crews; give the length of a day too");
   if (!options.day_min) return;
   double least_min = std::numeric_limits<double>::infinity();
-  for (const Scanner& scanner : scanners)
-    least_min = std::min(least_min, static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  for (const Scanner& scanner : scanners) least_min = std::min(least_min, minutes_of_scan(scanner));
   least_min += options.set_up_min + options.photos_min;
   if (*options.day_min < least_min)
     throw Error(Errc::invalid_argument, "day: " + fixed(*options.day_min, 2) +
@@ -285,8 +288,7 @@ OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<cons
   check(options, origin);
   if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
   std::vector<double> scan_min;
-  for (const Scanner& scanner : scanners)
-    scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  for (const Scanner& scanner : scanners) scan_min.push_back(minutes_of_scan(scanner));
   check_day(options, scanners);
   impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin);
 }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
 namespace vantage {
 namespace {
@@ -285,14 +283,11 @@ SparseBlocks RegistrationAdjustment::sparse_information() const {
   const Eigen::Index d = unknowns_;
   const auto of_unknowns = [d](const Matrix6d& h) { return h.bottomRightCorner(d, d); };
   SparseBlocks all{.diagonal = std::vector<SmallBlock>(stations_.size(), SmallBlock::Zero(d, d)), .pairs = {}};
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;  // pairs that surfaces and targets both tie
   for_information([&](std::size_t a, std::size_t b, const Matrix6d& h) {
     all.diagonal[a] += of_unknowns(h);
     if (a == b) return;
     all.diagonal[b] += of_unknowns(h);
-    const auto [at, added] = known.try_emplace(std::minmax(a, b), all.pairs.size());
-    if (added) all.pairs.push_back({std::max(a, b), std::min(a, b), SmallBlock::Zero(d, d)});
-    all.pairs[at->second].block -= of_unknowns(h);
+    all.pairs.push_back({std::max(a, b), std::min(a, b), -of_unknowns(h)});
   });
   return all;
 }

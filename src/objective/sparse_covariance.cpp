@@ -103,9 +103,9 @@ class SparseFactor {
     for (const SparseBlocks::Pair& pair : matrix.pairs) {
       const std::size_t row = elimination.place[pair.row], column = elimination.place[pair.column];
       if (row > column)
-        block(columns_, row, column) = pair.block;
+        block(columns_, row, column) += pair.block;
       else
-        block(columns_, column, row) = pair.block.transpose();
+        block(columns_, column, row) += pair.block.transpose();
     }
     for (std::size_t k = 0; k < columns_.size(); ++k) factorise(k);
   }
@@ -206,10 +206,10 @@ class SparseFactor {
   std::vector<MatrixXd> inverse() const {
     std::vector<MatrixXd> found(columns_.size());
     for (std::size_t k = columns_.size(); k-- > 0;) {
-      const Index width = columns_[k].cols(), rest = columns_[k].rows() - width, skipped = width / size_;
+      const Index width = columns_[k].cols(), rest = columns_[k].rows() - width;
       MatrixXd among(rest, rest);  // the inverse among the rows below, its lower triangle
       for_later(k, [&](std::size_t later, std::size_t c, std::size_t count, const std::vector<std::size_t>& at) {
-        const std::size_t from = c - static_cast<std::size_t>(skipped);
+        const std::size_t from = c - elimination_.supernodes[k].columns;
         for (std::size_t j = 0; j < count; ++j)
           for (std::size_t r = j; r < at.size(); ++r)
             among.block(rows(from + r), rows(from + j), size_, size_) =
@@ -301,8 +301,8 @@ MatrixXd SparseBlocks::dense() const {
   };
   for (std::size_t k = 0; k < diagonal.size(); ++k) block(k, k) = diagonal[k];
   for (const Pair& pair : pairs) {
-    block(pair.row, pair.column) = pair.block;
-    block(pair.column, pair.row) = pair.block.transpose();
+    block(pair.row, pair.column) += pair.block;
+    block(pair.column, pair.row) += pair.block.transpose();
   }
   return all;
 }

@@ -13,7 +13,7 @@ using SmallBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 // A symmetric matrix of square blocks of one size, of which most are 0.
 struct SparseBlocks {
   struct Pair {
-    std::size_t row, column;  // row > column; each pair once
+    std::size_t row, column;  // row > column; blocks of the same place add up
     SmallBlock block;
   };
   std::vector<SmallBlock> diagonal;
