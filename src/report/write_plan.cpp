@@ -93,12 +93,12 @@ class FolderWriter {
     // Progress is told on the calling thread, by those that take longest.
     const Deadline drawn_by(seconds(), watch_.stop);
     progress(kDraw, 0, 1, drawn_by)(0);
-    // The report shows the plan, too.
-    parallel::beside([&] { plan_ = plan_pages(drawn_by.stop()); },
+    // The report shows the plan and what is missed; surfaces of the missed voxels are those of elements.csv.
+    parallel::beside([&] { draw(known, drawn_by.stop()); },
                      [&] {
                        if (known) judge(*known);
                      });
-    parallel::beside([&] { draw(known, drawn_by.stop()); },
+    parallel::beside([&] { finish(known, drawn_by.stop()); },
                      [&] {
                        if (options_.reports && why_no_report().empty()) report(known);
                      });
@@ -155,15 +155,12 @@ class FolderWriter {
     write_station_files(folder_, {entry_.stations, names_, entry_.targets}, links_, site_);
   }
 
-  // Clouds and pictures are made side by side. Both files of a picture are made by one thread, since they share it.
+  // Clouds and pictures are made side by side.
   void draw(const VoxelField* field, const std::stop_token& late) {
     tbb::task_group files;
-    files.run([&] { save_plan(late); });
+    files.run([&] { plan_ = plan_pages(late); });
     if (field)
       files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field, options_.ply); });
-    if (field)
-      files.run(
-          [&] { write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *field)); });
     if (field && entry_.registration) {
       files.run([&] {
         write_registration_ply(folder_ / "registration.ply", site_.simulator(), *field, *entry_.registration,
@@ -175,11 +172,22 @@ class FolderWriter {
                             entry_.stations, "Registration error on the surface (predicted)");
         });
     }
+    // Both files of such a picture are made by one thread, since they share it.
     files.run([&] {
       save("front", *front_picture(result_));
       save("hypervolume", *hypervolume_picture(result_));
       if (result_.problem.objectives.size() > 1) save("history", *history_picture(result_));
     });
+    parallel::wait(files);
+  }
+
+  // Files that wait for what the report waits for.
+  void finish(const VoxelField* field, const std::stop_token& late) {
+    tbb::task_group files;
+    files.run([&] { save_plan(late); });
+    if (field)
+      files.run(
+          [&] { write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *field)); });
     parallel::wait(files);
   }
 

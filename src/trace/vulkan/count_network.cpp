@@ -13,7 +13,23 @@ constexpr std::uint32_t most_stations = 64;
 // dispatch_bytes: of an indirect dispatch
 constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;
 
+KernelVariant count_kernel(Kernel kernel, const DeviceScanner& scanner, bool turned,
+                           const Tracer::CountOptions& options) {
+  if (kernel != Kernel::count) return {kernel, {}, turned};
+  return {kernel, {scanner.noise(), scanner.limits(), options.masks, options.skip}, turned};
+}
+
 }  // namespace
+
+std::vector<KernelVariant> VulkanTracer::count_kernels(const DeviceScanner& scanner, bool turned,
+                                                       const CountOptions& options) const {
+  std::vector<KernelVariant> all{count_kernel(Kernel::count, scanner, turned, options), {Kernel::reduce}};
+  if (!options.skip) return all;
+  for (const Kernel kernel : {Kernel::tiles, Kernel::tile_list, Kernel::tile_pass})
+    if (kernel != Kernel::tile_pass || traversal_->tile_pass())
+      all.push_back(count_kernel(kernel, scanner, turned, options));
+  return all;
+}
 
 // Processes scanners one by one, each with all of its stations. With skipping, each submission first finds the tiles of
 // directions that see a surveyed brick (tiles), lists them for each part (tile_list), runs the engine's tile pass, and
@@ -77,6 +93,8 @@ class VulkanTracer::ExactCount {
     const RayPattern& pattern = scanner_->pattern();
     schedule_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
                       t_.rows_per_dispatch(pattern));
+    for (const TraceStation& station : stations_)
+      t_.kernels_.compile(t_.count_kernels(*scanner_, station.turn.has_value(), options_));
     if (!options_.skip) return;
     t_.ensure(t_.tiles_.far, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
               "tile far");
@@ -148,8 +166,7 @@ class VulkanTracer::ExactCount {
   // Counts are sums, so the parts of a submission need no barriers between them.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
     if (headroom_.clamp_before(schedule_->rays_of({&part, 1}))) record_clamp(r);
-    const BoundPipeline pipeline =
-        pipeline_of(Kernel::count, part, {scanner_->noise(), scanner_->limits(), options_.masks, options_.skip});
+    const BoundPipeline pipeline = pipeline_of(Kernel::count, part);
     const CountPush push = count_push(part, k);
     if (options_.skip) {
       r.dispatch_indirect(pipeline, push, t_.tiles_.dispatch, k * dispatch_bytes);
@@ -159,8 +176,9 @@ class VulkanTracer::ExactCount {
     }
   }
 
-  BoundPipeline pipeline_of(Kernel kernel, const CountPart& part, std::array<bool, 4> constants = {}) const {
-    return t_.kernels_.get(scanner_->set(), stations_[part.station].turn.has_value(), kernel, constants);
+  BoundPipeline pipeline_of(Kernel kernel, const CountPart& part) const {
+    const bool turned = stations_[part.station].turn.has_value();
+    return t_.kernels_.get(scanner_->set(), count_kernel(kernel, *scanner_, turned, options_));
   }
 
   void record_clamp(const Recorder& r) {

@@ -42,18 +42,25 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
 
 }  // namespace
 
-BoundPipeline Kernels::get(const TraceSet& set, bool turned, Kernel kernel, std::array<bool, 4> constants) {
-  ComputePipeline& pipeline = pipelines_[{kernel, constants, turned}];
-  if (!pipeline) {
-    const Source source = source_of(kernel, traversal_);
-    std::vector<ComputePipeline::Constant> values;
-    for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, constants[k]});
-    values.push_back({turned_constant, turned});  // these have no effect on kernels without them
-    values.push_back({glass_constant, glass_});
-    values.push_back({shared_constant, shared_});
-    pipeline = ComputePipeline(device_, source.shader, source.push_bytes, values, set_, source.name);
-  }
-  return {&pipeline, set.handle()};
+ComputePipeline Kernels::compiled(const KernelVariant& variant) const {
+  const Source source = source_of(variant.kernel, traversal_);
+  std::vector<ComputePipeline::Constant> values;
+  for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, variant.constants[k]});
+  values.push_back({turned_constant, variant.turned});  // these have no effect on kernels without them
+  values.push_back({glass_constant, glass_});
+  values.push_back({shared_constant, shared_});
+  return {device_, source.shader, source.push_bytes, values, set_, source.name};
+}
+
+void Kernels::compile(std::span<const KernelVariant> wanted) {
+  for (const KernelVariant& variant : wanted)
+    if (auto& pipeline = pipelines_[variant]; !pipeline.valid())
+      pipeline = std::async(std::launch::async, [this, variant] { return compiled(variant); }).share();
+}
+
+BoundPipeline Kernels::get(const TraceSet& set, const KernelVariant& variant) {
+  compile({&variant, 1});
+  return {&pipelines_.at(variant).get(), set.handle()};
 }
 
 }  // namespace vantage::vulkan

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compute pipelines of one engine on one device. Each is compiled on first use, so a run pays only for what it uses.
+// Compute pipelines of one engine on one device. Each is compiled before its first use, so a run pays only for what it
+// uses. A driver takes some tenths of a second for each that it has not seen before, so a job names all of its kernels
+// first, and these are compiled side by side.
 #pragma once
 
 #include <array>
+#include <compare>
+#include <future>
 #include <map>
-#include <tuple>
+#include <span>
 
 #include "trace/vulkan/device.hpp"
 #include "trace/vulkan/pipeline.hpp"
@@ -29,6 +33,14 @@ enum class Kernel {
   registration
 };
 
+// A kernel with its specialization constants, in the order of their constant_id, for upright or for turned stations.
+struct KernelVariant {
+  Kernel kernel;
+  std::array<bool, 4> constants = {};
+  bool turned = false;
+  auto operator<=>(const KernelVariant&) const = default;
+};
+
 class Kernels {
  public:
   // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. `shared`: whether
@@ -36,18 +48,21 @@ class Kernels {
   Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass, bool shared)
       : device_(device), traversal_(traversal), set_(set), glass_(glass), shared_(shared) {}
 
-  // `constants`: the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass, an
-  // engine that has one.
-  BoundPipeline get(Kernel kernel, std::array<bool, 4> constants = {}) { return get(set_, false, kernel, constants); }
-  // For the scanner that owns the set. `turned`: for turned stations.
-  BoundPipeline get(const TraceSet& set, bool turned, Kernel kernel, std::array<bool, 4> constants = {});
+  // Begins to compile those of `wanted` that are not known yet, and does not wait for them. REQUIRES, as get() does:
+  // for tile_pass, an engine that has one.
+  void compile(std::span<const KernelVariant> wanted);
+  BoundPipeline get(Kernel kernel) { return get(set_, {kernel}); }
+  // For the scanner that owns the set. Waits until it is compiled. Throws what compiling it threw.
+  BoundPipeline get(const TraceSet& set, const KernelVariant& variant);
 
  private:
+  ComputePipeline compiled(const KernelVariant& variant) const;
+
   const Device& device_;
   const Traversal& traversal_;
   const TraceSet& set_;
   bool glass_, shared_;
-  std::map<std::tuple<Kernel, std::array<bool, 4>, bool>, ComputePipeline> pipelines_;
+  std::map<KernelVariant, std::shared_future<ComputePipeline>> pipelines_;
 };
 
 }  // namespace vantage::vulkan

@@ -16,7 +16,6 @@ using Shader = std::span<const std::uint32_t>;  // SPIR-V
 
 class ComputePipeline {
  public:
-  ComputePipeline() = default;
   struct Constant {
     std::uint32_t id, value;
   };
@@ -24,7 +23,6 @@ class ComputePipeline {
                   const TraceSet& set, const char* name);  // `set`: for its layout
 
   void bind(const VolkDeviceTable& vk, VkCommandBuffer commands, VkDescriptorSet set, const void* push) const;
-  explicit operator bool() const { return static_cast<bool>(pipeline_); }
 
  private:
   std::uint32_t push_bytes_ = 0;

@@ -124,6 +124,7 @@ class VulkanTracer::SampledCount {
   // Returns false if the caller stopped it before the end.
   bool count_batch(Batch batch, const Progress& progress) {
     fill_slots(batch);
+    compile_kernels(batch);
     t_.ensure(t_.sample_.stations, batch.slots.size() * sizeof(SampleStation), "sample stations");
     t_.ensure(t_.sample_.slot_rays, batch.slots.size() * sizeof(std::uint64_t), "slot rays");
     slot_rays_.resize(batch.slots.size());
@@ -289,15 +290,28 @@ class VulkanTracer::SampledCount {
     if (mask_words_) r.zero(t_.sums_.masks);
   }
 
+  KernelVariant variant(const Run& run, Kernel kernel) const {
+    const bool traces = kernel == Kernel::sample_probe || kernel == Kernel::sample_trace;
+    if (!traces) return {kernel, {}, run.turned};
+    const DeviceScanner& scanner = *run.scanner;
+    return {kernel, {scanner.noise(), scanner.limits(), job_.masks, t_.traversal_->is_watertight()}, run.turned};
+  }
+
+  // On a graphics card those of exact counts, too: whoever counts samples counts the answer by every ray later.
+  void compile_kernels(const Batch& batch) const {
+    std::vector<KernelVariant> wanted{{Kernel::reduce}};
+    for (const Run& run : batch.runs)
+      for (const Kernel kernel : {Kernel::sample_trace, Kernel::sample_probe, Kernel::sample_arguments,
+                                  Kernel::sample_list, Kernel::sample_sights, Kernel::sample_queue})
+        wanted.push_back(variant(run, kernel));
+    t_.kernels_.compile(wanted);
+    if (t_.info_.software) return;
+    for (const Run& run : batch.runs) t_.kernels_.compile(t_.count_kernels(*run.scanner, run.turned, CountOptions()));
+  }
+
   // Probes, lists and traces one chunk; its control words are number k of the submission.
   void record_chunk(const Recorder& r, const Run& run, const SampleChunk& chunk, std::size_t k) const {
-    const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
-      return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
-    };
-    const auto tracing = [&](Kernel kernel) {
-      return pipeline(kernel,
-                      {run.scanner->noise(), run.scanner->limits(), job_.masks, t_.traversal_->is_watertight()});
-    };
+    const auto pipeline = [&](Kernel kernel) { return t_.kernels_.get(run.scanner->set(), variant(run, kernel)); };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
     SamplePush push = push_of(chunk, k);
     // Dispatches a thread for each item that the control word counts by then.
@@ -310,15 +324,15 @@ class VulkanTracer::SampledCount {
     };
     const std::uint32_t groups = groups_of(chunk.pairs());
     r.shader_after_shader();  // the previous chunk still reads the lists
-    r.dispatch(tracing(Kernel::sample_probe), probe_push_of(push, run, chunk), std::min(groups, groups_in_row),
+    r.dispatch(pipeline(Kernel::sample_probe), probe_push_of(push, run, chunk), std::min(groups, groups_in_row),
                groups_of(groups, groups_in_row));
     push.list = control_rays;
     over(control_pairs, pipeline(Kernel::sample_list));
-    over(control_rays, tracing(Kernel::sample_trace));
+    over(control_rays, pipeline(Kernel::sample_trace));
     push.list = control_rest;
     over(control_sights, pipeline(Kernel::sample_sights));
     over(control_items, pipeline(Kernel::sample_queue));
-    over(control_rest, tracing(Kernel::sample_trace));
+    over(control_rest, pipeline(Kernel::sample_trace));
   }
 
   SamplePush push_of(const SampleChunk& chunk, std::size_t k) const {

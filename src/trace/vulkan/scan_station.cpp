@@ -45,7 +45,7 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
 
   // The arrays begin at first_ray. A part counts its rows from its own start, so its outputs are offset.
   const BoundPipeline pipeline =
-      kernels_.get(scanner.set(), station.turn.has_value(), Kernel::scan, {scanner.noise(), scanner.limits()});
+      kernels_.get(scanner.set(), {Kernel::scan, {scanner.noise(), scanner.limits()}, station.turn.has_value()});
   const std::uint32_t at_once = rows_per_dispatch(scanner.pattern());
   const auto first_row = static_cast<std::uint32_t>(first_ray / columns);
   for (std::uint32_t row = 0; row < rows; row += at_once) {

@@ -96,6 +96,9 @@ class VulkanTracer final : public Tracer {
   std::vector<DeviceScanner> make_scanners();
   const DeviceSample& upload_sample(std::span<const std::uint32_t> sample);
   DeviceSample device_sample(std::span<const std::uint32_t> sample);
+  // Those that an exact count of stations of one scanner takes.
+  std::vector<KernelVariant> count_kernels(const DeviceScanner& scanner, bool turned,
+                                           const CountOptions& options) const;
   SampleRoom room_for_sample() const { return sample_room(info_.software, scene_.max_rays_per_dispatch); }
   bool limited() const { return scanners_.front().limits(); }  // either all scanners are limited or none
   std::uint64_t rays_per_dispatch() const {
