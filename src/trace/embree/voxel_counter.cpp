@@ -17,6 +17,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "core/target_clones.hpp"
 
@@ -29,7 +30,7 @@ constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel are probed one by one for an occluder as long as there are as many, and each hides as many: to trace
 // fewer takes no longer than a probe.
 constexpr std::uint32_t kWorthProbe = 8;
-// Rays of a voxel that are traced next where there is a limit, in times of those before.
+// Rays of a voxel that are listed and traced next where there is a limit, in times of those before.
 constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
@@ -57,6 +58,51 @@ bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint3
   return in((p.x - min[0]) * grid.inverse_size(), cell[0]) && in((p.y - min[1]) * grid.inverse_size(), cell[1]) &&
          in((p.z - min[2]) * grid.inverse_size(), cell[2]);
 }
+
+// The rays of a window in units of up to `kUnit` neighbours in a row, from its middle on: an occluder of the middle ray
+// may hide all. Spread, any number of units in succession lie all over the window, so that they see what all of its
+// rays see, in proportion; else the units go row by row, and around.
+class SpreadUnits {
+ public:
+  static constexpr std::uint32_t kUnit = 8;
+  struct Unit {
+    std::uint32_t row, column, rays;
+  };
+
+  SpreadUnits(const RayRanges& window, bool spread) : window_(window) {
+    for (std::size_t k = 0; k < 2; ++k)
+      if (!window.columns[k].empty())
+        blocks_[k] = (window.columns[k].end - window.columns[k].begin + kUnit - 1) / kUnit;
+    const std::uint32_t rows = window.rows.end - window.rows.begin, of_row = blocks_[0] + blocks_[1];
+    size_ = rows * of_row;
+    start_ = rows / 2 * of_row + of_row / 2;
+    constexpr std::uint32_t kFew = 8;
+    if (!spread || size_ <= kFew) return;
+    constexpr double kGolden = 0.6180339887498949;  // spreads any number of steps around a circle most evenly
+    step_ = static_cast<std::uint32_t>(kGolden * size_);
+    while (std::gcd(step_, size_) != 1) ++step_;  // so that each unit has its turn
+  }
+  std::uint32_t size() const { return size_; }
+  // Index of the unit whose turn is `turn`, for at() and next().
+  std::uint32_t index(std::uint32_t turn) const {
+    return static_cast<std::uint32_t>((start_ + std::uint64_t{turn} * step_) % size_);
+  }
+  std::uint32_t next(std::uint32_t index) const {
+    const std::uint64_t next = std::uint64_t{index} + step_;
+    return static_cast<std::uint32_t>(next < size_ ? next : next - size_);
+  }
+  Unit at(std::uint32_t index) const {
+    const std::uint32_t of_row = blocks_[0] + blocks_[1], row = index / of_row, block = index - row * of_row;
+    const std::size_t k = block < blocks_[0] ? 0 : 1;
+    const std::uint32_t column = window_.columns[k].begin + (block - (k == 0 ? 0 : blocks_[0])) * kUnit;
+    return {window_.rows.begin + row, column, std::min(kUnit, window_.columns[k].end - column)};
+  }
+
+ private:
+  const RayRanges& window_;
+  std::array<std::uint32_t, 2> blocks_{};
+  std::uint32_t size_ = 0, step_ = 1, start_ = 0;
+};
 
 Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - head; }
 
@@ -96,9 +142,15 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     drop_hidden_boxes();
     for (const Look& each : looks_) list_rays(each);
     settle();
-    for (const Rest& rest : rest_)
-      if (!full(rest.look.voxel)) list_rays(rest.look, rest.window, rest.from, kAll);
-    settle();
+    for (std::uint64_t times = kMore; !rest_.empty(); times *= kMore) {
+      std::swap(rest_, again_);
+      rest_.clear();
+      for (const Rest& rest : again_)
+        if (!full(rest.look.voxel))
+          list_rays(rest.look, rest.window, rest.units,
+                    static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(rest.look.voxel), kAll)));
+      settle();
+    }
   }
 }
 
@@ -352,12 +404,13 @@ void SampledVoxelCounter::list_rays(const Look& look) {
     if (station_->turn) turn_back(*station_->turn, low, high);
     window = rays_of_box(pattern, low, high);
   }
-  if (!window.empty()) list_rays(look, window, {0, window.rows.begin, window.columns[0].begin}, wanted(i));
+  if (!window.empty()) list_rays(look, window, 0, wanted(i));
 }
 
-// Lists the rays of the window from a place on, at least `enough` if there are as many.
+// Lists the rays of the window from number `units` of its units on, at least `enough` if there are as many.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough) {
+void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, std::uint32_t units,
+                                    std::uint32_t enough) {
   const RayPattern& pattern = rays_->pattern();
   const std::uint32_t i = look.voxel;
   const Cube& cube = look.cube;
@@ -373,41 +426,36 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, P
                  .farthest = std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
                  .occluder = look.occluder};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  for (std::uint32_t range = from.range; range < window.columns.size(); ++range) {
-    const RayRanges::Range columns = window.columns[range];
-    for (std::uint32_t row = range == from.range ? from.row : window.rows.begin; row < window.rows.end; ++row) {
-      const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
-      const bool begun = range == from.range && row == from.row;
-      for (std::uint32_t column = begun ? from.column : columns.begin; column < columns.end;) {
-        const std::uint32_t size = batch_.size;
-        const auto put = [&](std::uint32_t k) {
-          batch_.x[size + k] = sine * cosines[column + k];
-          batch_.y[size + k] = sine * sines[column + k];
-          batch_.z[size + k] = cosine;
-          batch_.row[size + k] = row;
-          batch_.column[size + k] = column + k;
-        };
-        std::uint32_t n = std::min({columns.end - column, worth - size, RayBatch::step});
-        if (column + RayBatch::step <= pattern.columns()) {
-          for (std::uint32_t k = 0; k < RayBatch::step; ++k) put(k);
-        } else {
-          n = 1;
-          put(0);
-        }
-        batch_.size += n;
-        column += n;
-        if (batch_.size < worth) continue;
-        fill_nearest(planes, cube);
-        found += list_batch(rays);
-        if (full(i)) return;
-        if (found >= enough) {
-          end_rays(rays);
-          rest_.push_back({look, window, {range, row, column}});
-          return;
-        }
-        worth = std::min(2 * worth, RayBatch::capacity);
-      }
+  static_assert(SpreadUnits::kUnit == RayBatch::step);
+  const SpreadUnits all(window, stop_at_ != 0);
+  for (std::uint32_t index = all.index(units); units < all.size(); index = all.next(index)) {
+    const auto [row, column, many] = all.at(index);
+    ++units;
+    const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
+    const std::uint32_t size = batch_.size;
+    const auto put = [&](std::uint32_t k) {
+      batch_.x[size + k] = sine * cosines[column + k];
+      batch_.y[size + k] = sine * sines[column + k];
+      batch_.z[size + k] = cosine;
+      batch_.row[size + k] = row;
+      batch_.column[size + k] = column + k;
+    };
+    if (column + RayBatch::step <= pattern.columns()) {
+      for (std::uint32_t k = 0; k < RayBatch::step; ++k) put(k);
+    } else {
+      for (std::uint32_t k = 0; k < many; ++k) put(k);
     }
+    batch_.size += many;
+    if (batch_.size + RayBatch::step <= worth) continue;
+    fill_nearest(planes, cube);
+    found += list_batch(rays);
+    if (full(i)) return;
+    if (found >= enough && units < all.size()) {
+      end_rays(rays);
+      rest_.push_back({look, window, units});
+      return;
+    }
+    worth = std::min(2 * worth, RayBatch::capacity);
   }
   fill_nearest(planes, cube);
   list_batch(rays);
@@ -437,8 +485,6 @@ void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
   listed_size_ = rays.end;
   if (rays.end == rays.begin) return;
-  // An occluder of the middle ray may hide all.
-  std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
   voxel_rays_.push_back(rays);
 }
 

@@ -61,15 +61,11 @@ class SampledVoxelCounter {
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
     std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
   };
-  // Where the listing of a voxel's rays goes on: at this row and column of this range of columns.
-  struct Place {
-    std::uint32_t range = 0, row = 0, column = 0;
-  };
-  // A voxel of which some rays were listed, as many as usually suffice.
+  // A voxel of which some rays were listed, as many as usually suffice: the first `units` of SpreadUnits.
   struct Rest {
     Look look;
     RayRanges window;
-    Place from;
+    std::uint32_t units;
   };
   // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
   struct VoxelRays {
@@ -108,7 +104,7 @@ class SampledVoxelCounter {
   // Points that are still to be counted in voxel number i of the block, or more.
   std::uint32_t wanted(std::uint32_t i) const;
   void list_rays(const Look& look);
-  void list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough);
+  void list_rays(const Look& look, const RayRanges& window, std::uint32_t units, std::uint32_t enough);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
   std::uint32_t list_batch(VoxelRays& rays);
   void end_rays(VoxelRays& rays);
@@ -141,7 +137,7 @@ class SampledVoxelCounter {
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
   std::vector<Look> looks_;
-  std::vector<Rest> rest_;
+  std::vector<Rest> rest_, again_;
   std::vector<VoxelRays> voxel_rays_, visible_;
   std::vector<Probe> probes_;
   RayBundle bundle_;
