@@ -27,11 +27,18 @@ Settings settings(const RegistrationOptions& options) {
 
 void check(const RegistrationOptions& options) { check_settings(registration_settings(), options); }
 
+// E |shift + turn × q|² = tr D + 2 q · E[shift × turn] + |q|² tr A − qᵀ A q, with A the covariance of the turn and D
+// that of the shift: a map asks for it at millions of points.
 double RegistrationError::at(std::size_t station, const Vec3& local) const {
-  const Eigen::Vector3d q(local.x - centre.x, local.y - centre.y, local.z - centre.z);
-  const Matrix36d m = displacement(q / scale_m);
-  const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(poses[station].data());
-  return std::sqrt(std::max((m * covariance * m.transpose()).trace(), 0.0));
+  const std::array<double, 36>& pose = poses[station];
+  const auto c = [&](std::size_t row, std::size_t column) { return pose[6 * row + column]; };
+  const Vec3 q = (local - centre) * (1 / scale_m);
+  const Vec3 shift_by_turn{c(2, 4) - c(1, 5), c(0, 5) - c(2, 3), c(1, 3) - c(0, 4)};
+  const Vec3 turned{c(0, 0) * q.x + c(0, 1) * q.y + c(0, 2) * q.z, c(1, 0) * q.x + c(1, 1) * q.y + c(1, 2) * q.z,
+                    c(2, 0) * q.x + c(2, 1) * q.y + c(2, 2) * q.z};
+  const double square = c(3, 3) + c(4, 4) + c(5, 5) + 2 * dot(q, shift_by_turn) +
+                        (c(0, 0) + c(1, 1) + c(2, 2)) * dot(q, q) - dot(q, turned);
+  return std::sqrt(std::max(square, 0.0));
 }
 
 RegistrationInputs registration_inputs(const NetworkCounts& counts, std::uint64_t voxels,

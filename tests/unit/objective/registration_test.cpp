@@ -132,6 +132,24 @@ struct Room {
   }
 };
 
+TEST(RegistrationError, AtAPointIsTheTraceOfItsDisplacementsCovariance) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 100; ++k) {
+    const Eigen::Matrix<double, 6, 6> factor =
+        Eigen::Matrix<double, 6, 6>::NullaryExpr([&] { return 1e-3 * normal(random); });
+    const Eigen::Matrix<double, 6, 6> covariance = factor * factor.transpose();
+    RegistrationError error{.centre = {3, -2, 1}, .scale_m = 17};
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(error.poses.emplace_back().data()) = covariance;
+    const Vec3 local{30 * normal(random), 30 * normal(random), 5 * normal(random)},
+        q = (local - error.centre) * (1.0 / 17);
+    Eigen::Matrix<double, 3, 6> moves;  // shift + turn × q, of [turn, shift]
+    moves << 0, q.z, -q.y, 1, 0, 0, -q.z, 0, q.x, 0, 1, 0, q.y, -q.x, 0, 0, 0, 1;
+    const double expected = std::sqrt((moves * covariance * moves.transpose()).trace());
+    EXPECT_NEAR(error.at(0, local), expected, 1e-12 * expected);
+  }
+}
+
 TEST(RegistrationError, OfThreePairsOfPlanes) {
   const double a = 2, d = 3;
   const int k = 20;
