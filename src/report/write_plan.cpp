@@ -93,15 +93,14 @@ class FolderWriter {
     // Progress is told on the calling thread, by those that take longest.
     const Deadline drawn_by(seconds(), watch_.stop);
     progress(kDraw, 0, 1, drawn_by)(0);
-    // The report shows the plan and what is missed; surfaces of the missed voxels are those of elements.csv.
     parallel::beside([&] { draw(known, drawn_by.stop()); },
                      [&] {
-                       if (known) judge(*known);
+                       if (!known) return;
+                       judge(*known);
+                       // Looks at the surfaces that judging has just made.
+                       write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *known));
                      });
-    parallel::beside([&] { finish(known, drawn_by.stop()); },
-                     [&] {
-                       if (options_.reports && why_no_report().empty()) report(known);
-                     });
+    if (options_.reports && why_no_report().empty()) report(known);
     std::ranges::sort(written_.left_out);
     return std::move(written_);
   }
@@ -158,7 +157,10 @@ class FolderWriter {
   // Clouds and pictures are made side by side.
   void draw(const VoxelField* field, const std::stop_token& late) {
     tbb::task_group files;
-    files.run([&] { plan_ = plan_pages(late); });
+    files.run([&] {
+      plan_ = plan_pages(late);  // the report shows them, too
+      save_plan(late);
+    });
     if (field)
       files.run([&] { write_coverage_ply(folder_ / "coverage.ply", site_.simulator(), *field, options_.ply); });
     if (field && entry_.registration) {
@@ -178,16 +180,6 @@ class FolderWriter {
       save("hypervolume", *hypervolume_picture(result_));
       if (result_.problem.objectives.size() > 1) save("history", *history_picture(result_));
     });
-    parallel::wait(files);
-  }
-
-  // Files that wait for what the report waits for.
-  void finish(const VoxelField* field, const std::stop_token& late) {
-    tbb::task_group files;
-    files.run([&] { save_plan(late); });
-    if (field)
-      files.run(
-          [&] { write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *field)); });
     parallel::wait(files);
   }
 

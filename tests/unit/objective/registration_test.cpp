@@ -139,7 +139,8 @@ TEST(RegistrationError, AtAPointIsTheTraceOfItsDisplacementsCovariance) {
     const Eigen::Matrix<double, 6, 6> factor =
         Eigen::Matrix<double, 6, 6>::NullaryExpr([&] { return 1e-3 * normal(random); });
     const Eigen::Matrix<double, 6, 6> covariance = factor * factor.transpose();
-    RegistrationError error{.centre = {3, -2, 1}, .scale_m = 17};
+    RegistrationError error;
+    error.centre = {3, -2, 1}, error.scale_m = 17;
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(error.poses.emplace_back().data()) = covariance;
     const Vec3 local{30 * normal(random), 30 * normal(random), 5 * normal(random)},
         q = (local - error.centre) * (1.0 / 17);
@@ -641,7 +642,7 @@ TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
   for (const double tilt : {0.05, 0.0}) {
     Made made;
     made.heads.clear();
-    RegistrationTarget target{.control_m = 0.003};
+    RegistrationTarget target{.centre = {}, .control_m = 0.003};
     for (int k = 0; k < 64; ++k) {
       made.heads.push_back({4.0 * k, k % 3 == 0 ? 0.4 : -0.3, 0.1 * (k % 2)});
       if (k % 20 == 3) target.seen_by.push_back({static_cast<std::size_t>(k), 0.002});
