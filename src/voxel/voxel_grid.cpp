@@ -13,6 +13,19 @@
 namespace vantage {
 namespace {
 
+constexpr std::uint64_t kStep = 256;
+
+// Among bricks with the same `first`, only the last holds voxels.
+std::vector<std::uint32_t> bricks_at_steps(std::span<const VoxelBrick> bricks, std::uint64_t voxels) {
+  std::vector<std::uint32_t> at((voxels + kStep - 1) / kStep);
+  std::uint32_t brick = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    while (brick + 1 < bricks.size() && bricks[brick + 1].first <= k * kStep) ++brick;
+    at[k] = brick;
+  }
+  return at;
+}
+
 std::uint64_t brick_key(const VoxelBrick& brick) {
   return morton_encode(brick.x, brick.y, brick.z) << (3 * brick_bits);
 }
@@ -37,6 +50,7 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
   grid.size_ = marked->voxels;
   grid.bricks_ = std::move(marked->bricks);
   grid.slots_ = std::move(marked->slots);
+  grid.brick_at_ = bricks_at_steps(grid.bricks_, grid.size_);
   auto weights = voxel_weights(scene, grid, {.report = {}, .stop = progress.stop});
   if (!weights) return std::nullopt;
   grid.total_weight_ =
@@ -45,11 +59,11 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
   return grid;
 }
 
+VANTAGE_TARGET_CLONES
 std::uint64_t VoxelGrid::key(std::uint64_t voxel_index) const {
-  // Among bricks with the same `first`, only the last holds voxels.
-  const auto after = std::upper_bound(bricks_.begin(), bricks_.end(), voxel_index,
-                                      [](std::uint64_t r, const VoxelBrick& b) { return r < b.first; });
-  const VoxelBrick& brick = *std::prev(after);
+  std::uint32_t at = brick_at_[voxel_index / kStep];
+  while (at + 1 < bricks_.size() && bricks_[at + 1].first <= voxel_index) ++at;
+  const VoxelBrick& brick = bricks_[at];
   auto left = static_cast<int>(voxel_index - brick.first);
   std::uint32_t word = 0;
   for (int set = std::popcount(brick.mask[0]); left >= set; set = std::popcount(brick.mask[word])) {

@@ -64,6 +64,8 @@ class VoxelGrid {
   std::uint64_t size_ = 0;
   std::vector<VoxelBrick> bricks_;
   std::vector<BrickSlot> slots_;
+  std::vector<std::uint32_t>
+      brick_at_;  // the brick of each voxel whose index is a multiple of kStep: key() starts there
   VoxelDemands demands_;
   std::uint64_t total_weight_ = 0;
 };
