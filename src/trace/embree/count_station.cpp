@@ -73,7 +73,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
       if (surface.surveyed(triangle)) hits.add(rays, slot, first + column);
     }
   }
-  station_rays.find_ranges(station, hits);
+  station_rays.find_ranges(station, hits, true);
   count_points(station_rays, rays.origin, hits, panes, voxels, points, shift, totals);
   return totals;
 }
@@ -150,7 +150,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
   Hits hits;
   hits.size = 0;
   const auto count = [&]() __attribute__((always_inline)) {
-    station_rays.find_ranges(station, hits);
+    station_rays.find_ranges(station, hits, true);
     count_points(station_rays, station.origin, hits, panes, voxels, points, shift, totals);
     hits.size = 0;
   };

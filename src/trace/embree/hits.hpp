@@ -7,6 +7,7 @@
 #include "trace/embree/range_noise.hpp"
 #include "trace/embree/ray_caster.hpp"
 #include "trace/embree/surface.hpp"
+#include "voxel/voxel_grid.hpp"
 
 namespace vantage {
 
@@ -40,8 +41,9 @@ struct Hits {
   Float3 point(const Float3& origin, std::uint32_t k) const { return point_at(origin, {x[k], y[k], z[k]}, range[k]); }
 };
 
-// Fills `range`: distances of the points, noise included. `place` also keys the noise.
-void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place,
-                 Hits& hits);
+// Fills `range`: distances of the points, noise included. `place` also keys the noise. With a grid, only the voxels of
+// the points are right: a range stays the hit's distance where noise moves no point out of its voxel.
+void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
+                 const VoxelGrid* grid = nullptr);
 
 }  // namespace vantage

@@ -119,7 +119,7 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   if (outputs & Tracer::primitive)
     for (std::uint32_t k = 0; k < points.size; ++k) chunk.primitive[at[k]] = points.primitive[k];
   if ((outputs & (Tracer::range | Tracer::position | Tracer::voxel)) == 0) return;
-  station_rays.find_ranges(station, points);
+  station_rays.find_ranges(station, points, false);
   if (outputs & Tracer::range)
     for (std::uint32_t k = 0; k < points.size; ++k) chunk.range[at[k]] = points.range[k];
   if (outputs & Tracer::position)

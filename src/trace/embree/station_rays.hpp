@@ -113,9 +113,9 @@ class StationRays {
     std::fill_n(rays.end, rays.size, end);
   }
 
-  // Fills hits.range, noise included.
-  void find_ranges(const TraceStation& station, Hits& hits) const {
-    vantage::find_ranges(surface(), noise_, station.origin, station.place, hits);
+  // Fills hits.range, noise included; `for_voxels`: as far as that moves points from voxel to voxel.
+  void find_ranges(const TraceStation& station, Hits& hits, bool for_voxels) const {
+    vantage::find_ranges(surface(), noise_, station.origin, station.place, hits, for_voxels ? &grid() : nullptr);
   }
 
   bool limited() const { return judge_.enabled(); }

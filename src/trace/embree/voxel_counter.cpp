@@ -599,7 +599,7 @@ void SampledVoxelCounter::finish() {
     const Ray& ray = listed_[cast_ray_[slot]];
     hits_.add(bundle_, slot, rays_->ray(ray.row, ray.column));
   }
-  rays_->find_ranges(*station_, hits_);
+  rays_->find_ranges(*station_, hits_, true);
   std::array<Passed, RayBundle::capacity> passed;
   const bool behind_glass = rays_->glass() && rays_->glass()->follow(bundle_.origin, hits_, nullptr, passed);
   for (std::uint32_t k = 0; k < hits_.size; ++k) {

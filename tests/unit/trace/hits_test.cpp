@@ -73,6 +73,43 @@ TEST(Hits, RangesOfManyAreThoseOfEach) {
   expect_ranges_as_one_by_one(scene);
 }
 
+TEST(Hits, RangesForVoxelsLeadToTheVoxelsOfAllRanges) {
+  const auto scene = test::SceneBuilder().mesh(Role::surveyed, test::quad({-3, 3, -3}, {6, 1, 0}, {0, 2, 6})).finish();
+  const VoxelGrid grid = VoxelGrid::build(*scene, 0.06);
+  const Surface surface(scene, std::make_shared<Planes>(scene));
+  Scanner scanner;
+  scanner.noise = rtc360_noise();
+  const RangeNoise noise(std::make_shared<const NoiseModel>(make_noise_model(scanner, 3)));
+  const Float3 origin{0.3f, -2, 1};
+  const Vec3 head = widen(origin), normal = cross(Vec3{6, 1, 0}, Vec3{0, 2, 6}), corner{-3, 3, -3};
+  const double height = dot(corner - head, normal);
+  RandomStream random(8);
+  const auto rays = std::make_unique<RayBundle>();
+  const auto some = std::make_unique<Hits>(), all = std::make_unique<Hits>();
+  int moved = 0, stayed = 0;
+  for (int round = 0; round < 200; ++round) {
+    some->size = all->size = 0;
+    // Neighbours in a row, beyond the edges of the plane too, some of which the grid does not hold.
+    const double up = static_cast<double>(test::between(random, -0.8, 0.8)), from = test::between(random, -1, 0.9);
+    for (std::uint32_t k = 0; k < RayBundle::capacity; ++k) {
+      const Vec3 d{from + 4e-4 * k, 1, up};
+      const Float3 unit = narrow(d * (1 / std::sqrt(dot(d, d))));
+      rays->x[k] = unit.x, rays->y[k] = unit.y, rays->z[k] = unit.z;
+      rays->t[k] = static_cast<float>(height / dot(widen(unit), normal));
+      rays->primitive[k] = k % 2;
+      some->add(*rays, k, k), all->add(*rays, k, k);
+    }
+    find_ranges(surface, noise, origin, 4, *some, &grid);
+    find_ranges(surface, noise, origin, 4, *all);
+    for (std::uint32_t k = 0; k < RayBundle::capacity; ++k) {
+      ASSERT_EQ(grid.cell_of(some->point(origin, k)), grid.cell_of(all->point(origin, k))) << round << ", " << k;
+      ++(some->range[k] == all->range[k] ? moved : stayed);
+    }
+  }
+  EXPECT_GT(stayed, moved / 4);
+  EXPECT_GT(moved, stayed / 4);
+}
+
 TEST(Hits, WithoutNoiseARangeIsTheDistance) {
   const auto scene = test::SceneBuilder().mesh(Role::surveyed, test::quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2})).finish();
   const auto rays = std::make_unique<RayBundle>();
