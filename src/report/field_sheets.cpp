@@ -139,7 +139,8 @@ class MapOnSheet {
       if (path.size() < 2) continue;
       // The way back, and straight lines where no way is known, are dotted.
       const Vec3 straight = path.back() - path.front();
-      const bool unknown = path.size() == 2 && visit.legs_m[leg] > 1.01 * std::sqrt(dot(straight, straight));
+      constexpr double kRoundabout = 1.25;  // a known straight way is a few per cent longer on the grid of places
+      const bool unknown = path.size() == 2 && visit.legs_m[leg] > kRoundabout * std::sqrt(dot(straight, straight));
       const bool back = leg + 1 == visit.paths.size() || unknown;
       double length = 0;
       for (std::size_t k = 0; k + 1 < path.size(); ++k)
