@@ -131,6 +131,9 @@ std::string links_text(const StationLinks& links, const std::vector<std::string>
 
 std::vector<std::string> links_advice(const StationLinks& links, const std::vector<std::string>& names) {
   std::vector<std::string> advice;
+  for (const StationLinks::Gap& pane : links.through_glass)
+    advice.push_back(names[pane.inside] + " and " + names[pane.outside] + " share " + fixed(pane.value, 3) +
+                     " through glass, which does not count: put a station in a doorway between them, if there is one");
   for (const StationLinks::Gap& gap : links.gaps) {
     const std::string &inside = names[gap.inside], &outside = names[gap.outside];
     advice.push_back(gap.value > 0
@@ -140,6 +143,16 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
                          : inside + " shares nothing with any station of another part: put a station on the way to " +
                                outside + ", in a doorway if there is one, or tie it in with targets");
   }
+  return advice;
+}
+
+std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const std::vector<std::string>& names) {
+  std::vector<std::string> advice;
+  for (const StoreyTie& tie : ties)
+    advice.push_back(names[tie.a] + "–" + names[tie.b] +
+                     " alone ties two storeys, through a window or across a void: " + fixed(tie.apart_m, 1) +
+                     " m apart, " + fixed(tie.way_m, 0) +
+                     " m on foot; stations at both ends of the stair would tie them better");
   return advice;
 }
 
@@ -273,6 +286,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
   if (links) to_do(links_advice(*links, names));
+  to_do(storeys_advice(evaluation.storey_ties, names));
   if (evaluation.visit && !evaluation.visit->not_split.empty())
     to_do({"not split into days: " + evaluation.visit->not_split});
   if (evaluation.visit && !evaluation.visit->sessions.empty()) {
