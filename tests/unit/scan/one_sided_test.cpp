@@ -119,6 +119,26 @@ TEST(OneSided, WhatIsSeenThroughGlassIsToldAndNotShared) {
   }
 }
 
+// Two stations 8 m apart over a floor. Within 60° of its normal each reaches 2.9 m of it.
+TEST(OneSided, ALimitOfIncidenceIsOneOfSurveyedVoxels) {
+  QuadScene scene;
+  scene.quad({0, 0, 0}, {12, 0, 0}, {0, 4, 0});
+  SimulatorConfig config;
+  config.engine = Engine::embree;
+  config.user_size_m = 0.3;
+  config.point_spacing_m = 0.1;
+  const Network network{{{2, 2, 1.7}}, {{10, 2, 1.7}}};
+  Simulator any(scene.scene(), coarse_scanner(1), config);
+  config.max_incidence = Angle::degrees(60);
+  Simulator limited(scene.scene(), coarse_scanner(1), config);
+  EXPECT_GT(any.evaluate(network).shared_by(0, 1), any.voxel_count() / 2);
+  EXPECT_EQ(limited.evaluate(network).shared_by(0, 1), 0u);
+  Simulator around = surroundings_of(limited), around_any = surroundings_of(any);
+  const double linked = scan_overlap_matrix(around.evaluate(network))(0, 1);
+  EXPECT_EQ(linked, scan_overlap_matrix(around_any.evaluate(network))(0, 1));
+  EXPECT_GT(linked, 0.2);
+}
+
 TEST(OneSided, ASheetHasTwoSurfaces) {
   QuadScene scene;
   scene.quad({0, -3, 0}, {0, 6, 0}, {0, 0, 3});
