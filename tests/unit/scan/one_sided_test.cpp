@@ -131,7 +131,7 @@ TEST(OneSided, ALimitOfIncidenceIsOneOfSurveyedVoxels) {
   Simulator any(scene.scene(), coarse_scanner(1), config);
   config.max_incidence = Angle::degrees(60);
   Simulator limited(scene.scene(), coarse_scanner(1), config);
-  EXPECT_GT(any.evaluate(network).shared_by(0, 1), any.voxel_count() / 2);
+  EXPECT_GT(any.evaluate(network).shared_by(0, 1), any.voxel_count() / 3);
   EXPECT_EQ(limited.evaluate(network).shared_by(0, 1), 0u);
   Simulator around = surroundings_of(limited), around_any = surroundings_of(any);
   const double linked = scan_overlap_matrix(around.evaluate(network))(0, 1);
