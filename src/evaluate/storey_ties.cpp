@@ -8,8 +8,9 @@ namespace vantage {
 namespace {
 
 constexpr double kStorey_m = 1.8;  // as between the levels of a plan
-// A stair with a landing half way up is some 2 to 3 times as long as the line between the stations at its ends.
-constexpr double kAlongWay = 3, kShortWay_m = 15;
+// A slope is hardly longer than the line between two heads. A stair is, and short: the way between stations at its two
+// ends, or in front of these.
+constexpr double kAlongSlope = 1.5, kStair_m = 15;
 
 }  // namespace
 
@@ -29,7 +30,7 @@ std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite
                      .way_m = on_site.way_m(stations[a].ground, stations[b].ground).value_or(0)};
   };
   const auto by_the_way = [](const StoreyTie& tie) {
-    return tie.way_m <= std::max(kShortWay_m, kAlongWay * tie.apart_m);
+    return tie.way_m <= std::max(kStair_m, kAlongSlope * tie.apart_m);
   };
   // The strongest tree, in which a link on one level, or along the way, is stronger than any other.
   const auto weight = [&](std::size_t a, std::size_t b) {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluate/through_glass.hpp"
 
-#include "scene/scene_data.hpp"
+#include <algorithm>
+
 #include "vantage/error.hpp"
 
 namespace vantage {
 
 void look_through_glass(Evaluation& evaluation, const Simulator& simulator, const Progress& progress) {
   constexpr std::uint64_t kVoxels = 20'000;
-  if (evaluation.scan_overlap_matrix.size() == 0 || !simulator.scene().data().has_glass()) return;
+  if (evaluation.scan_overlap_matrix.size() == 0) return;
+  if (std::ranges::none_of(simulator.scene().meshes(), &MeshInfo::glass)) return;
   if (evaluation.links()->gaps.empty() || progress.stopped()) return;
   try {
     Simulator around = surroundings_of(simulator, true);
