@@ -54,9 +54,20 @@ struct StationLinks {
     double value = 0;
   };
   std::vector<Gap> gaps = {};
+  /// Pairs that would link a component, except the first, to another if glass did not stop links: the best of each.
+  std::vector<Gap> through_glass = {};
 };
 StationLinks station_links(const OverlapMatrix& overlap, double least, std::span<const PlacedStation> stations);
 StationLinks station_links(const ScanOverlapMatrix& overlap, double least, std::span<const PlacedStation> stations);
+
+/// A link that alone ties ground at two heights together, though the way on foot between its stations is long: it goes
+/// through a window or across a void, and not up the stair.
+struct StoreyTie {
+  std::size_t a = 0, b = 0;  ///< Stations, by their places in the network.
+  double value = 0;          ///< Of the link.
+  double apart_m = 0;        ///< Between their heads.
+  double way_m = 0;          ///< On foot.
+};
 
 /// A network and its figures: by every ray, or estimated from a sample of the voxels.
 struct Evaluation {
@@ -80,14 +91,18 @@ struct Evaluation {
   OverlapMatrix overlap_matrix = {};           ///< Equation 11; empty: pairs were not counted.
   PairMatrix overlap_errors = {};              ///< Their standard errors; empty for exact ones.
   ScanOverlapMatrix scan_overlap_matrix = {};  ///< On all surfaces, surveyed or not; empty: not computed.
-  double link_overlap = default_link_overlap;  ///< Least overlap of a link,
-  double link = default_link;                  ///< or least scan overlap, if that is known.
+  /// The same with all that is seen through glass, of a sample; it links nothing. Empty unless the scans have several
+  /// components in a scene with glass.
+  ScanOverlapMatrix through_glass = {};
+  double link_overlap = default_link_overlap;                    ///< Least overlap of a link,
+  double link = default_link;                                    ///< or least scan overlap, if that is known.
   std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
   std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
   AccuracyClass accuracy_class = AccuracyClass::loa30;  ///< Judges the registration error.
   std::optional<Visit> visit = std::nullopt;            ///< The round on site without existing stations.
+  std::vector<StoreyTie> storey_ties = {};  ///< `storey_ties_of()` this network; empty: none, or not looked for.
   /// For stations that do not stand well, in their order: the nearest places that may hold them, if these were looked
   /// for (`EvaluationSite::area`). Existing stations and those without ground have none.
   std::vector<StationMove> moves = {};
@@ -111,6 +126,10 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
 /// `OnSite::visit()`.
 Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
                double most_min = std::numeric_limits<double>::infinity());
+/// Links between heights that differ by a storey, 1.8 m or more, without which the network falls into more components,
+/// as far as a way on foot exists that is longer than three times the line between the heads, and than 15 m. Links
+/// along shorter ways are preferred to them, then links of larger values. Empty if links are not known.
+std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite& on_site);
 /// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are
 /// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`.
 void add_sessions(Evaluation& evaluation, const OnSite& on_site);

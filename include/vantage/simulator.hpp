@@ -293,7 +293,7 @@ class Simulator {
   Work work() const;
 
  private:
-  friend Simulator surroundings_of(const Simulator& simulator);
+  friend Simulator surroundings_of(const Simulator& simulator, bool through_glass);
   friend const VoxelPlanes* sides_of(const Simulator& simulator);
   friend void share_one_sided(const Simulator& simulator, NetworkCounts& counts, const Network& network,
                               std::span<const std::uint32_t> voxel_indices, std::span<const std::uint64_t> masks);
@@ -314,6 +314,7 @@ class Simulator {
 /// Voxels are at most a hundredth of the site's largest extent and at most 0.5 m, never finer than those of
 /// `simulator`. Two rays cross a voxel at the site's far end or at the range's limit; the steps are never finer than
 /// the scanner's. Registration's sums are those of the scanner's own scans.
-Simulator surroundings_of(const Simulator& simulator);
+/// `through_glass`: rays pass glass, to tell what scans share through it. No other process takes part then.
+Simulator surroundings_of(const Simulator& simulator, bool through_glass = false);
 
 }  // namespace vantage

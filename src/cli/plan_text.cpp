@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "plan/answer.hpp"
+
 namespace vantage::cli {
 namespace {
 
@@ -78,7 +80,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   if (shown < entry.stations.size())
     text += fmt::format("and {} more in stations.csv\n", entry.stations.size() - shown);
   text += "\n";
-  text += chosen == answer(result) ? summary_text(result) : summary_text(entry, result.problem.requirements);
+  text += chosen == answer(result) ? summary_text(result) : summary_text(entry, advised_requirements(result));
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";
 }

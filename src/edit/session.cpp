@@ -355,6 +355,7 @@ void EditSession::measure(bool quick) {
     if (stations.size() <= kQuickStations && !stations.empty()) {
       evaluation_.visit = visit_of(evaluation_, *on_site_);
       add_sessions(evaluation_, *on_site_);
+      evaluation_.storey_ties = storey_ties_of(evaluation_, *on_site_);
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
   }

@@ -6,6 +6,7 @@
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
 #include "evaluate/sight_targets.hpp"
+#include "evaluate/through_glass.hpp"
 #include "evaluate/visibility.hpp"
 #include "objective/registered_sample.hpp"
 #include "placement/nearest_place.hpp"
@@ -216,6 +217,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
       one.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, stations[k]);
     if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;
     one.link_overlap = options.link_overlap, one.link = options.link;
+    look_through_glass(one, site.simulator, progress);
+    if (site.on_site) one.storey_ties = storey_ties_of(one, *site.on_site);
     one.violation = violation_of(one, options.requirements);
   }
   if (options.field && !made.front().counts.cancelled) made.front().field = std::move(field);

@@ -33,6 +33,18 @@ void check(const OnSiteOptions& options, const Vec3& origin) {
   if (options.entrance) require_in_reach(*options.entrance, origin, "the entrance is");
 }
 
+// The search area, and ground that is reached and too small to stand on: the treads of stairs.
+SearchMesh walked_ground(const SearchArea& area) {
+  SearchMesh ground = area.mesh();
+  for (const LeftOut& out : area.left_out()) {
+    if (out.reason != LeftOutReason::small) continue;
+    const auto first = static_cast<std::uint32_t>(ground.positions.size());
+    ground.positions.insert(ground.positions.end(), out.positions.begin(), out.positions.end());
+    for (const auto& [a, b, c] : out.triangles) ground.triangles.push_back({first + a, first + b, first + c});
+  }
+  return ground;
+}
+
 using Matrix = std::vector<std::vector<double>>;
 
 // A walk from the first point of a matrix to its last, over all others. The matrix is symmetric.
@@ -214,7 +226,7 @@ struct OnSite::Impl {
         origin(centre),
         scan_min(std::move(scans)),
         entered(area.entries().begin(), area.entries().end()),
-        ways(area.mesh(), [clash](const Vec3& a, const Vec3& b) {
+        ways(walked_ground(area), [clash](const Vec3& a, const Vec3& b) {
           const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}

@@ -7,6 +7,20 @@
 namespace vantage {
 namespace {
 
+std::vector<StationLinks::Gap> gaps_between(std::span<const std::vector<std::size_t>> parts, const PairMatrix& values) {
+  std::vector<StationLinks::Gap> gaps;
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    StationLinks::Gap best{.inside = parts[p].front(), .outside = parts[0].front(), .value = 0};
+    for (const std::size_t inside : parts[p])
+      for (std::size_t other = 0; other < parts.size(); ++other)
+        for (const std::size_t outside : parts[other])
+          if (other != p && values(inside, outside) > best.value)
+            best = {.inside = inside, .outside = outside, .value = values(inside, outside)};
+    gaps.push_back(best);
+  }
+  return gaps;
+}
+
 StationLinks links_by(LinkMeasure measure, const PairMatrix& values, double least,
                       std::span<const PlacedStation> stations) {
   // the graph of the active stations, by their places among all
@@ -26,15 +40,7 @@ StationLinks links_by(LinkMeasure measure, const PairMatrix& values, double leas
     links.weakest = {station[graph.weakest_link.first], station[graph.weakest_link.second]};
     links.weakest_value = graph.weakest_overlap;
   }
-  for (std::size_t p = 1; p < links.parts.size(); ++p) {
-    StationLinks::Gap best{.inside = links.parts[p].front(), .outside = links.parts[0].front(), .value = 0};
-    for (const std::size_t inside : links.parts[p])
-      for (std::size_t other = 0; other < links.parts.size(); ++other)
-        for (const std::size_t outside : links.parts[other])
-          if (other != p && values(inside, outside) > best.value)
-            best = {.inside = inside, .outside = outside, .value = values(inside, outside)};
-    links.gaps.push_back(best);
-  }
+  links.gaps = gaps_between(links.parts, values);
   return links;
 }
 
@@ -51,7 +57,15 @@ StationLinks station_links(const ScanOverlapMatrix& overlap, double least, std::
 }
 
 std::optional<StationLinks> Evaluation::links() const {
-  if (scan_overlap_matrix.size() > 0) return station_links(scan_overlap_matrix, link, stations);
+  if (scan_overlap_matrix.size() > 0) {
+    StationLinks found = station_links(scan_overlap_matrix, link, stations);
+    if (through_glass.size() > 0) {
+      found.through_glass = gaps_between(found.parts, through_glass);
+      std::erase_if(found.through_glass,
+                    [&](const StationLinks::Gap& gap) { return !(gap.value > 0 && gap.value >= link); });
+    }
+    return found;
+  }
   if (overlap_matrix.size() > 0) return station_links(overlap_matrix, link_overlap, stations);
   return std::nullopt;
 }

@@ -66,6 +66,19 @@ ordered_json links_json(const PairMatrix& overlap, double min_overlap) {
   return json;
 }
 
+// Pairs that glass alone keeps from linking two parts, and links between storeys that nobody walks along. Stations are
+// numbered from 1.
+void add_ties(ordered_json& json, const Evaluation& evaluation) {
+  if (const auto links = evaluation.links())
+    for (const StationLinks::Gap& gap : links->through_glass)
+      json["through_glass"].push_back({{"stations", {gap.inside + 1, gap.outside + 1}},
+                                       {"scan_overlap", evaluation.scan_overlap_matrix(gap.inside, gap.outside)},
+                                       {"through_glass", gap.value}});
+  for (const StoreyTie& tie : evaluation.storey_ties)
+    json["storey_ties"].push_back(
+        {{"stations", {tie.a + 1, tie.b + 1}}, {"overlap", tie.value}, {"apart_m", tie.apart_m}, {"way_m", tie.way_m}});
+}
+
 // Stations are numbered from 1, in the order of visiting.
 ordered_json round_json(const Round& round, std::size_t kept) {
   ordered_json order = ordered_json::array();
@@ -181,6 +194,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   json["x"] = entry.x;
   if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
   if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
+  add_ties(json, entry);
   if (!entry.targets.empty()) {
     json["targets"] = targets_json(entry.targets);
     json["registration_mm"] = {{"with_targets", entry.value("registration")},
@@ -295,6 +309,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
   }
   if (evaluation.scan_overlap_matrix.size() > 0)
     json["scan_overlap_matrix"] = matrix_json(evaluation.scan_overlap_matrix);
+  add_ties(json, evaluation);
   if (evaluation.attainable)
     json["attainable"] = evaluation.attainable->value, json["attainable_se"] = evaluation.attainable->standard_error;
   if (const auto capture = evaluation.values.find("capture"); capture != evaluation.values.end())

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "core/text.hpp"
 #include "scene/room_floors.hpp"
@@ -129,17 +131,50 @@ std::string links_text(const StationLinks& links, const std::vector<std::string>
   return text;
 }
 
-std::vector<std::string> links_advice(const StationLinks& links, const std::vector<std::string>& names) {
+// The stations of a part and of the others that stand nearest to each other, the part's first.
+std::pair<std::size_t, std::size_t> nearest_to_part(const StationLinks& links, std::size_t part,
+                                                    std::span<const PlacedStation> stations) {
+  std::pair<std::size_t, std::size_t> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t inside : links.parts[part])
+    for (std::size_t other = 0; other < links.parts.size(); ++other)
+      for (const std::size_t outside : links.parts[other]) {
+        const Vec3 apart = stations[outside].position - stations[inside].position;
+        if (const double away = dot(apart, apart); other != part && away < least)
+          least = away, nearest = {inside, outside};
+      }
+  return nearest;
+}
+
+std::vector<std::string> links_advice(const StationLinks& links, std::span<const PlacedStation> stations,
+                                      const std::vector<std::string>& names) {
   std::vector<std::string> advice;
-  for (const StationLinks::Gap& gap : links.gaps) {
-    const std::string &inside = names[gap.inside], &outside = names[gap.outside];
-    advice.push_back(gap.value > 0
-                         ? "link " + inside + " to " + outside + ", the nearest to it with " + fixed(gap.value, 3) +
-                               ": put a station on the way between them, in a doorway if there is one, or move them "
-                               "closer"
-                         : inside + " shares nothing with any station of another part: put a station on the way to " +
-                               outside + ", in a doorway if there is one, or tie it in with targets");
+  for (const StationLinks::Gap& pane : links.through_glass)
+    advice.push_back(names[pane.inside] + " and " + names[pane.outside] + " share " + fixed(pane.value, 3) +
+                     " through glass, which does not count: put a station in a doorway between them, if there is one");
+  std::set<std::pair<std::size_t, std::size_t>> told;  // a pair may be the best one of both parts
+  for (std::size_t k = 0; k < links.gaps.size(); ++k) {
+    const double value = links.gaps[k].value;
+    const auto [inside, outside] =
+        value > 0 ? std::pair{links.gaps[k].inside, links.gaps[k].outside} : nearest_to_part(links, k + 1, stations);
+    if (!told.insert(std::minmax(inside, outside)).second) continue;
+    advice.push_back(
+        value > 0 ? "link " + names[inside] + " to " + names[outside] + ", the nearest to it with " + fixed(value, 3) +
+                        ": put a station on the way between them, in a doorway if there is one, or move "
+                        "them closer"
+                  : names[inside] + " shares nothing with any station of another part: put a station on the way to " +
+                        names[outside] + ", in a doorway if there is one, or tie it in with targets");
   }
+  return advice;
+}
+
+std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const std::vector<std::string>& names) {
+  std::vector<std::string> advice;
+  for (const StoreyTie& tie : ties)
+    advice.push_back(names[tie.a] + "–" + names[tie.b] +
+                     " alone ties two storeys, through a window or across a void: " + fixed(tie.apart_m, 1) +
+                     " m apart, " + fixed(tie.way_m, 0) +
+                     " m on foot; stations at both ends of the stair would tie them better");
   return advice;
 }
 
@@ -272,7 +307,8 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
-  if (links) to_do(links_advice(*links, names));
+  if (links) to_do(links_advice(*links, evaluation.stations, names));
+  to_do(storeys_advice(evaluation.storey_ties, names));
   if (evaluation.visit && !evaluation.visit->not_split.empty())
     to_do({"not split into days: " + evaluation.visit->not_split});
   if (evaluation.visit && !evaluation.visit->sessions.empty()) {

@@ -39,15 +39,21 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   return std::sqrt(sum);
 }
 
-// Says nothing of more stations, where as many as were wanted could be placed.
-Requirement without_more_stations(Requirement requirement) {
-  constexpr std::string_view kMore = "allow more stations, or ";
-  std::string& advice = requirement.objective.advice;
-  if (advice.starts_with(kMore)) advice.erase(0, kMore.size());
-  return requirement;
+bool all_placed(const PlanResult& result) {
+  const std::size_t placed = result.front[answer(result)].stations.size() - result.problem.existing.size();
+  return placed >= result.problem.stations_max;
 }
 
 }  // namespace
+
+std::vector<Requirement> advised_requirements(const PlanResult& result) {
+  std::vector<Requirement> requirements = result.problem.requirements;
+  if (result.front.empty() || (all_placed(result) && result.problem.stations_max < max_stations)) return requirements;
+  constexpr std::string_view kMore = "allow more stations, or ";
+  for (Requirement& requirement : requirements)
+    if (std::string& advice = requirement.objective.advice; advice.starts_with(kMore)) advice.erase(0, kMore.size());
+  return requirements;
+}
 
 std::size_t answer(std::span<const PlanEntry> front, const SurveyProblem& problem) {
   const bool required = !problem.requirements.empty();
@@ -81,16 +87,15 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     if (!entry.exact) help.push_back("more time: no network was traced with every ray, so the figures are estimates");
     return help;
   }
-  const bool all_placed = entry.stations.size() - problem.existing.size() >= problem.stations_max;
   const auto minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most);
-  for (const Requirement& requirement : problem.requirements) {
+  for (const Requirement& requirement : advised_requirements(result)) {
     const Objective& objective = requirement.objective;
     const double value = entry.value(objective.name);
     if (requirement.missed_by(entry.estimate(objective.name)) == 0) continue;
     const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
-    help.push_back(advice(all_placed ? requirement : without_more_stations(requirement), value, ended_early));
+    help.push_back(advice(requirement, value, ended_early));
     if (objective.kind != Objective::Kind::coverage || ended_early) continue;
-    if (all_placed)
+    if (all_placed(result))
       help.back() += "; it takes more stations than " + std::to_string(problem.stations_max);
     else if (minutes)
       help.back() += "; it takes more time than " + number(*minutes) + " min on site";

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "vantage/planner.hpp"
 
@@ -10,5 +11,9 @@ namespace vantage {
 
 // answer() of a front that is no result yet. REQUIRES: a network, and the violations of all.
 std::size_t answer(std::span<const PlanEntry> front, const SurveyProblem& problem);
+
+// The requirements of a plan's problem, whose advice asks for more stations only if the answer has all that are
+// allowed, and more could be.
+std::vector<Requirement> advised_requirements(const PlanResult& result);
 
 }  // namespace vantage

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "evaluate/through_glass.hpp"
 #include "plan/answer_targets.hpp"
 #include "plan/fewest_choice.hpp"
 #include "plan/trade_off.hpp"
@@ -49,6 +50,7 @@ void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& p
   };
   visit(result.front[chosen]);
   add_sessions(result.front[chosen], context.on_site());
+  result.front[chosen].storey_ties = storey_ties_of(result.front[chosen], context.on_site());
   if (result.front.size() > kMostRounds) return;
   for (PlanEntry& entry : result.front)
     if (!entry.visit && !progress.stopped()) visit(entry);
@@ -88,6 +90,7 @@ void complete_front(PlanResult& result, PlanContext& context, Site& site, const 
   }
   if (result.front.empty()) return;
   work_out_rounds(result, context, progress);
+  look_through_glass(result.front[answer(result)], site.simulator(), progress);
   put_answer_in_trade_off(result);
   add_targets(result, site, context.measures(), progress);
 }

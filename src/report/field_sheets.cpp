@@ -139,7 +139,8 @@ class MapOnSheet {
       if (path.size() < 2) continue;
       // The way back, and straight lines where no way is known, are dotted.
       const Vec3 straight = path.back() - path.front();
-      const bool unknown = path.size() == 2 && visit.legs_m[leg] > 1.01 * std::sqrt(dot(straight, straight));
+      constexpr double kRoundabout = 1.25;  // a known straight way is a few per cent longer on the grid of places
+      const bool unknown = path.size() == 2 && visit.legs_m[leg] > kRoundabout * std::sqrt(dot(straight, straight));
       const bool back = leg + 1 == visit.paths.size() || unknown;
       double length = 0;
       for (std::size_t k = 0; k + 1 < path.size(); ++k)
@@ -416,7 +417,7 @@ class SheetPanel {
     if (shown.empty()) return;
     canvas.text({x_, y_}, "In the order of visiting", {.size = 9, .bold = true});
     y_ += 14;
-    constexpr double kShort = 21, kThird = 9, kLast = 12;
+    constexpr double kName = 12, kLine = 9, kLast = 12;
     const double bottom = layout_.map.bottom(), end = x_ + kPanelWidth - 18, after_name = x_ + 56;
     const TextStyle name{.size = 8, .bold = true}, figures{.size = 7.5}, faint{.size = 7, .colour = kFaintInk};
     const auto coordinates = [&](std::size_t k) {
@@ -428,34 +429,49 @@ class SheetPanel {
       return canvas.text_width(coordinates(k), figures) <= end - after_name &&
              canvas.text_width(facts[k].name, name) <= after_name - x_ - 20;
     });
-    const double least = kShort + (beside ? 0 : kThird);
-    const bool more_lines = static_cast<double>(shown.size()) * (least + kThird) <= bottom - y_;
-    const double entry = least + (more_lines ? kThird : 0);
-    const auto fit = static_cast<std::size_t>(
-        std::max(0.0, (bottom - (static_cast<double>(shown.size()) * entry <= bottom - y_ ? 0 : kLast) - y_) / entry));
-    for (std::size_t k = 0; k < std::min(fit, shown.size()); ++k) {
-      const StationFacts& f = facts[shown[k]];
+    // What stands below a station's coordinates: a line each for what it is registered to, for what it is measured in
+    // by, and for what it sees, as far as all stations have room for them.
+    enum class Lines { one, two, three };
+    const auto lines_of = [&](const StationFacts& f, Lines wanted) {
+      std::vector<std::string> lines{f.note};
+      const auto add = [&](const std::string& text) {
+        if (!text.empty()) lines.back() += (lines.back().empty() ? "" : "; ") + text;
+      };
+      add(f.register_to);
+      if (wanted != Lines::one) lines.emplace_back();
+      if (!f.targets.empty()) add("targets " + f.targets);
+      if (!f.corners.empty()) add("corners " + tape_text(f.corners));
+      if (wanted == Lines::three) lines.emplace_back();
+      if (wanted != Lines::two && f.alone > 0)
+        add((wanted == Lines::three ? "alone sees " : "alone: ") + f.alone_where);
+      std::erase(lines, std::string());
+      return lines;
+    };
+    const auto height = [&](std::size_t k, Lines wanted) {
+      return kName + kLine * static_cast<double>(lines_of(facts[k], wanted).size() + (beside ? 0 : 1));
+    };
+    const auto all_fit = [&](Lines wanted) {
+      double sum = 0;
+      for (const std::size_t k : shown) sum += height(k, wanted);
+      return sum <= bottom - y_;
+    };
+    const Lines wanted = all_fit(Lines::three) ? Lines::three : all_fit(Lines::two) ? Lines::two : Lines::one;
+    const double room = bottom - (all_fit(wanted) ? 0 : kLast);
+    std::size_t fit = 0;
+    for (; fit < shown.size() && y_ + height(shown[fit], wanted) <= room; ++fit) {
+      const StationFacts& f = facts[shown[fit]];
       const double left = x_ + 17;
       canvas.text({x_ + 12, y_}, f.stop > 0 ? std::to_string(f.stop) + "." : "–",
                   {.size = 7.5, .colour = kFaintInk, .across = Align::end});
       canvas.text({left, y_}, fitted(canvas, f.name, (beside ? after_name : end) - left - 3, name), name);
       const double from = beside ? after_name : left;
-      double y = beside ? y_ : y_ + kThird;
+      double y = beside ? y_ : y_ + kLine;
       TextStyle whole = figures;
-      whole.size = fitting_size(canvas, coordinates(shown[k]), end - from, figures);
-      canvas.text({from, y}, coordinates(shown[k]), whole);
-      std::string more = f.note;
-      const auto add = [&](const std::string& text) { more += (more.empty() ? "" : "; ") + text; };
-      if (!f.register_to.empty()) add(f.register_to);
-      if (!f.targets.empty()) add("targets " + f.targets);
-      if (!f.corners.empty()) add("corners " + tape_text(f.corners));
-      if (!more_lines && f.alone > 0) add("alone: " + f.alone_where);
-      const auto line_below = [&](const std::string& text) {
-        if (!text.empty()) canvas.text({left, y += kThird}, fitted(canvas, text, end - left, faint), faint);
-      };
-      line_below(more);
-      line_below(more_lines && f.alone > 0 ? "alone sees " + f.alone_where : "");
-      y_ += entry;
+      whole.size = fitting_size(canvas, coordinates(shown[fit]), end - from, figures);
+      canvas.text({from, y}, coordinates(shown[fit]), whole);
+      for (const std::string& text : lines_of(f, wanted))
+        canvas.text({left, y += kLine}, fitted(canvas, text, end - left, faint), faint);
+      y_ += height(shown[fit], wanted);
     }
     if (shown.size() > fit)
       canvas.text({x_, bottom - 6}, std::to_string(shown.size() - fit) + " more in the table of stations",

@@ -2,6 +2,7 @@
 #include "report/report.hpp"
 
 #include "export/front_view.hpp"
+#include "plan/answer.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
@@ -36,7 +37,7 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
                 .crs = site.crs(),
                 .question = problem_line(result.problem),
                 .answer = answer(result),
-                .requirements = result.problem.requirements,
+                .requirements = advised_requirements(result),
                 .measures = result.measures,
                 .trade_off = result.trade_off,
                 .parameters = run_parameters_json(site.simulator(), &result)};

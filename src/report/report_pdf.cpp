@@ -183,32 +183,30 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
   const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
   const Paper paper = lying(a4());
   const bool sessions = network.visit && !network.visit->sessions.empty();
+  // A tunnel has no corners.
+  const bool corners = std::ranges::any_of(facts, [](const StationFacts& f) { return !f.corners.empty(); });
+  constexpr std::size_t kCorners = 7;  // their column
+  std::vector<SheetColumn> columns{{"No."},    {"Station", Align::start},
+                                   {"Sheet"},  {"x"},
+                                   {"y"},      {"z"},
+                                   {"Head"},   {"Corners"},
+                                   {"Walk"},   {"Done at"},
+                                   {"Points"}, {"Notes", Align::start}};
+  if (!corners) columns.erase(columns.begin() + kCorners);
   sheets.emplace_back(paper);
   sheets.back().heading("All stations, in the order of visiting");
   sheets.back().words(
       Sheet::kMargin,
-      "Metres. x, y and z are of the ground under the tripod, the head stands so high over it. Corners: "
-      "tape distances to the two corners that the map marks. Done at: since the start of the " +
-          std::string(sessions ? "session" : "round") +
+      "Metres. x, y and z are of the ground under the tripod, the head stands so high over it. " +
+          std::string(corners ? "Corners: tape distances to the two corners that the map marks. " : "") +
+          "Done at: since the start of the " + std::string(sessions ? "session" : "round") +
           ". Field software "
           "registers each scan to the one before; a station that has no link to that says to which station instead.",
       {.size = 9, .colour = kFaintInk});
   sheets.back().y += 6;
   const auto table = [&](const std::vector<std::size_t>& order) {
-    write_table(sheets, paper,
-                {{"No."},
-                 {"Station", Align::start},
-                 {"Sheet"},
-                 {"x"},
-                 {"y"},
-                 {"z"},
-                 {"Head"},
-                 {"Corners"},
-                 {"Walk"},
-                 {"Done at"},
-                 {"Points"},
-                 {"Notes", Align::start}},
-                order.size(), order.size(), "", [&](std::size_t row) -> std::vector<std::string> {
+    write_table(sheets, paper, columns, order.size(), order.size(), "",
+                [&](std::size_t row) -> std::vector<std::string> {
                   const std::size_t k = order[row];
                   const PlacedStation& s = network.stations[k];
                   const StationFacts& f = facts[k];
@@ -216,19 +214,22 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                   std::string notes = f.note;
                   const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
                   if (!f.register_to.empty()) add(f.register_to);
-                  if (f.alone > 0) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
-                  return {f.stop > 0 ? std::to_string(f.stop) : "",
-                          f.name,
-                          sheet_of[k] > 0 ? std::to_string(first_map + sheet_of[k] - 1) : "",
-                          placed ? fixed(s.ground.x, 3) : "",
-                          placed ? fixed(s.ground.y, 3) : "",
-                          placed ? fixed(s.ground.z, 3) : "",
-                          placed ? fixed(s.position.z - s.ground.z, 2) : "",
-                          tape_text(f.corners),
-                          f.visit > 0 ? fixed(f.walk_m, 1) : "",
-                          f.visit > 0 ? minutes_text(f.done_min) : "",
-                          network.exact && k < points.size() ? grouped(points[k]) : "",
-                          notes};
+                  constexpr double kLeastTold = 0.0005;
+                  if (f.alone >= kLeastTold) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
+                  std::vector<std::string> cells{f.stop > 0 ? std::to_string(f.stop) : "",
+                                                 f.name,
+                                                 sheet_of[k] > 0 ? std::to_string(first_map + sheet_of[k] - 1) : "",
+                                                 placed ? fixed(s.ground.x, 3) : "",
+                                                 placed ? fixed(s.ground.y, 3) : "",
+                                                 placed ? fixed(s.ground.z, 3) : "",
+                                                 placed ? fixed(s.position.z - s.ground.z, 2) : "",
+                                                 tape_text(f.corners),
+                                                 f.visit > 0 ? fixed(f.walk_m, 1) : "",
+                                                 f.visit > 0 ? minutes_text(f.done_min) : "",
+                                                 network.exact && k < points.size() ? grouped(points[k]) : "",
+                                                 notes};
+                  if (!corners) cells.erase(cells.begin() + kCorners);
+                  return cells;
                 });
   };
   std::vector<std::size_t> order = visiting_order(facts);

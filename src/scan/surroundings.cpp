@@ -22,8 +22,8 @@ double extent_of(const Scene& scene) {
 
 }  // namespace
 
-Simulator surroundings_of(const Simulator& simulator) {
-  const Scene scene = all_surveyed(simulator.scene());
+Simulator surroundings_of(const Simulator& simulator, bool through_glass) {
+  const Scene scene = all_surveyed(simulator.scene(), through_glass);
   const double extent = extent_of(scene);
   SimulatorConfig config = simulator.config();
   if (config.devices.empty()) {
@@ -34,6 +34,7 @@ Simulator surroundings_of(const Simulator& simulator) {
   config.point_spacing_m = config.user_size_m / 4;  // the goal is not used here, but must be at least 1
   config.noise = false;
   config.max_incidence = std::nullopt;
+  if (through_glass) config.shared = nullptr;  // other processes make one simulator of the surroundings
 
   std::vector<Scanner> scanners(simulator.scanners().begin(), simulator.scanners().end());
   for (Scanner& scanner : scanners) {

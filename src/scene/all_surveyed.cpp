@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/all_surveyed.hpp"
 
-#include <utility>
-
 #include "scene/scene_data.hpp"
 
 namespace vantage {
 
-Scene all_surveyed(const Scene& scene) {
+Scene all_surveyed(const Scene& scene, bool through_glass) {
   const SceneData& given = scene.data();
   auto data = std::make_shared<SceneData>();
   data->origin = given.origin;
@@ -19,7 +17,10 @@ Scene all_surveyed(const Scene& scene) {
   data->meshes = given.meshes;
   for (MeshRange& range : data->ranges) range.material = 0;
   for (MeshInfo& mesh : data->meshes) {
-    if (std::exchange(mesh.glass, false) || mesh.mirror) continue;
+    if (mesh.glass || mesh.mirror) {
+      mesh.glass = mesh.glass && through_glass;
+      continue;
+    }
     mesh.role = Role::surveyed, mesh.weight = 1;
     mesh.detail_m = mesh.accuracy_m = 0;
   }

@@ -468,6 +468,10 @@ bool Sweep::add(const SweptSite& swept, const SweepOptions& options) {
                percent(score.plan.captured).c_str(), score.seconds);
   const std::vector<std::string> faults = faults_of(swept, score);
   for (const std::string& fault : faults) std::fprintf(stderr, "    fault: %s\n", fault.c_str());
+  for (const StoreyTie& tie : entry.storey_ties)
+    std::fprintf(stderr,
+                 "    S%zu-S%zu alone tie two storeys past the stair: %.2f shared, %.1f m apart, %.0f m on foot\n",
+                 tie.a + 1, tie.b + 1, tie.value, tie.apart_m, tie.way_m);
   if (const auto pair = compare(swept, site, result, options)) {
     const auto& [hand, equal] = *pair;
     any_by_hand_ = true;

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
+#include "vantage/export.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
@@ -90,6 +93,56 @@ TEST(EvaluateStations, AMeasureThatItLacksIsRefusedWithTheNearestName) {
             "the evaluation has no \"covrage\"; did you mean coverage?");
   EXPECT_EQ(message_of([&] { (void)found.value("registration"); }),
             "the evaluation has no \"registration\"; it has coverage, overlap; name others in what is to be measured");
+}
+
+// Two rooms of 4 × 5 × 2.5 m, and what is between them.
+enum class Between { wall, pane, pane_with_door };
+
+Evaluation of_two_rooms(Between between) {
+  test::QuadScene scene;
+  const auto board = [&](const Float3& corner, const Float3& u, const Float3& v) {
+    scene.quad(corner, u, v, between == Between::wall ? Role::surveyed : Role::blocking);
+    scene.data().meshes.back().glass = between != Between::wall;
+  };
+  for (const float z : {0.0f, 2.5f}) scene.quad({-4, 0, z}, {8, 0, 0}, {0, 5, 0});
+  for (const float y : {0.0f, 5.0f}) scene.quad({-4, y, 0}, {8, 0, 0}, {0, 0, 2.5f});
+  for (const float x : {-4.0f, 4.0f}) scene.quad({x, 0, 0}, {0, 5, 0}, {0, 0, 2.5f});
+  board({0, 0, 0}, {0, between == Between::pane_with_door ? 3.0f : 5.0f, 0}, {0, 0, 2.5f});
+  Site site = test::site_of(Simulator(scene.scene(), test::coarse_scanner(1),
+                                      {.engine = Engine::embree, .user_size_m = 0.3, .point_spacing_m = 0.1}));
+  const std::vector<PlacedStation> stations{
+      {.position = {-1.3, 2.2, 1.7}}, {.position = {-2.5, 4, 1.7}}, {.position = {1.9, 3.6, 1.5}}};
+  return site.evaluate(stations);
+}
+
+TEST(EvaluateStations, ALinkThroughGlassIsToldAndDoesNotCount) {
+  const Evaluation found = of_two_rooms(Between::pane);
+  const StationLinks links = *found.links();
+  EXPECT_EQ(links.parts, (std::vector<std::vector<std::size_t>>{{0, 1}, {2}}));
+  EXPECT_EQ(links.gaps.at(0).value, 0);
+  ASSERT_EQ(links.through_glass.size(), 1u);
+  EXPECT_EQ(links.through_glass[0].inside, 2u);
+  EXPECT_GT(links.through_glass[0].value, 0.8);
+  const std::string summary = summary_text(found);
+  EXPECT_NE(summary.find("S3 and S"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("through glass, which does not count"), std::string::npos) << summary;
+  const auto json = nlohmann::json::parse(evaluation_json(found));
+  ASSERT_EQ(json["through_glass"].size(), 1u);
+  EXPECT_EQ(json["through_glass"][0]["stations"][0], 3);
+  EXPECT_EQ(json["through_glass"][0]["scan_overlap"], 0);
+  EXPECT_EQ(json["through_glass"][0]["through_glass"], links.through_glass[0].value);
+}
+
+TEST(EvaluateStations, GlassIsLookedThroughOnlyWhereItMayPart) {
+  const Evaluation wall = of_two_rooms(Between::wall), door = of_two_rooms(Between::pane_with_door);
+  EXPECT_EQ(wall.links()->parts.size(), 2u);
+  EXPECT_EQ(wall.through_glass.size(), 0u) << "no glass";
+  EXPECT_EQ(door.links()->parts.size(), 1u);
+  EXPECT_EQ(door.through_glass.size(), 0u) << "linked without it";
+  for (const Evaluation* found : {&wall, &door}) {
+    EXPECT_TRUE(found->links()->through_glass.empty());
+    EXPECT_FALSE(nlohmann::json::parse(evaluation_json(*found)).contains("through_glass"));
+  }
 }
 
 // Two walls of surveyed meshes, one to the east and one to the west, and ground that only blocks.

@@ -14,7 +14,9 @@
 #include <string>
 
 #include "evaluate/ways.hpp"
+#include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
+#include "support/temporary_folder.hpp"
 #include "vantage/built_in_scenes.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
@@ -508,6 +510,71 @@ TEST(Sessions, BeginAtTheFirstStationWhereNoEntranceIsKnown) {
   EXPECT_TRUE(sessions[0].paths.front().empty());
   EXPECT_EQ(sessions[1].paths.front().front(), corridor.stations[visit.order[0]].ground);
   EXPECT_TRUE(on_site.sessions({}, {}).empty());
+}
+
+// A gallery over a hall, with a ramp up to it at the far end: metres.
+struct Gallery {
+  Site site = [] {
+    test::QuadScene scene;
+    scene.quad({0, 0, 0}, {40, 0, 0}, {0, 8, 0});
+    scene.quad({0, 0, 3}, {20, 0, 0}, {0, 4, 0});
+    scene.quad({20, 0, 3}, {12, 0, -3}, {0, 4, 0});
+    return test::site_of(Simulator(scene.scene(), test::coarse_scanner(2),
+                                   {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+  }();
+  OnSite on_site = site.on_site();
+  // In the hall and over it at the near end, then at the foot and at the head of the ramp.
+  Evaluation network = [] {
+    Evaluation made{.scan_overlap_matrix = ScanOverlapMatrix(4)};
+    for (const Vec3& ground : {Vec3{2, 2, 0}, Vec3{2, 2, 3}, Vec3{35, 2, 0}, Vec3{18, 2, 3}})
+      made.stations.push_back({.position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+    made.scan_overlap_matrix.set(0, 1, 0.9), made.scan_overlap_matrix.set(0, 2, 0.5);
+    made.scan_overlap_matrix.set(1, 3, 0.4);
+    return made;
+  }();
+};
+
+TEST(StoreyTies, AreLinksThatNobodyWalksAlong) {
+  Gallery gallery;
+  const std::vector<StoreyTie> ties = storey_ties_of(gallery.network, gallery.on_site);
+  ASSERT_EQ(ties.size(), 1u);
+  EXPECT_EQ(ties[0].a, 0u);
+  EXPECT_EQ(ties[0].b, 1u);
+  EXPECT_EQ(ties[0].value, 0.9);
+  EXPECT_DOUBLE_EQ(ties[0].apart_m, 3);
+  // To the ramp and back on it: nobody steps onto it from aside where it is 1.5 m high, at x = 26.
+  EXPECT_GT(ties[0].way_m, 2 * (26 - 2));
+  EXPECT_LT(ties[0].way_m, 2 * (32 + 2 - 2));
+  gallery.network.storey_ties = ties;
+  gallery.network.values["coverage"] = {1, 0};
+  EXPECT_NE(summary_text(gallery.network).find("S1–S2 alone ties two storeys"), std::string::npos)
+      << summary_text(gallery.network);
+}
+
+// The treads of the house's stair are too small for a station, and people walk on them.
+TEST(OnSite, AStairJoinsStoreys) {
+  const test::TemporaryFolder folder;
+  write_built_in_scene("house", 0, folder / "house.glb");
+  Site house = Site::open(folder / "house.glb");
+  const OnSite on_site = house.on_site();
+  // From the hall to the landing: 1.0 m to the foot of the stair, 5.3 m on it, and 1.7 m from its head.
+  const auto up = on_site.way_m({5.4, 2, 0.15}, {5.4, 5, 3.21});
+  ASSERT_TRUE(up);
+  EXPECT_GT(*up, std::hypot(16 * 0.27, 17 * 0.18) + 2);
+  EXPECT_LT(*up, 1.15 * (std::hypot(16 * 0.27, 17 * 0.18) + 1.0 + 1.7));
+  // From the garden round to the front door, in, and up.
+  const auto round = on_site.way_m({-4.4, 2.7, 0}, {0.9, 5.7, 3.21});
+  ASSERT_TRUE(round);
+  EXPECT_GT(*round, 25);
+}
+
+TEST(StoreyTies, GiveWayToALinkOnTheStair) {
+  Gallery gallery;
+  gallery.network.scan_overlap_matrix.set(2, 3, 0.3);
+  EXPECT_TRUE(storey_ties_of(gallery.network, gallery.on_site).empty()) << "though it is weaker";
+  gallery.network.stations[3].status = StationStatus::clash;
+  EXPECT_EQ(storey_ties_of(gallery.network, gallery.on_site).size(), 1u) << "one that is left out ties nothing";
+  EXPECT_TRUE(storey_ties_of({.stations = gallery.network.stations}, gallery.on_site).empty()) << "nothing is known";
 }
 
 }  // namespace

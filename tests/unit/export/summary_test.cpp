@@ -168,6 +168,28 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   EXPECT_EQ(summary_lines(pair)[1].text, "one station, nothing to link");
 }
 
+TEST(Summary, TellsWhichStationsOfPartsAreNearest) {
+  Evaluation network{.stations = std::vector<PlacedStation>(6), .exact = true, .values = {{"coverage", {1, 0}}}};
+  network.overlap_matrix = OverlapMatrix(6);
+  for (std::size_t storey = 0; storey < 3; ++storey) {
+    const double z = 4 * static_cast<double>(storey);
+    network.stations[2 * storey].position = {0, 0, z}, network.stations[2 * storey + 1].position = {9, 0, z};
+    network.overlap_matrix.set(2 * storey, 2 * storey + 1, 0.5);
+  }
+  const auto told = [&] {
+    std::vector<std::string> sentences;
+    for (const SummaryLine& line : summary_lines(network))
+      if (line.heading == "to do") sentences.push_back(line.text);
+    return sentences;
+  };
+  ASSERT_EQ(told().size(), 2u);
+  EXPECT_TRUE(told()[0].starts_with("S3 shares nothing") && told()[0].find("way to S1,") != std::string::npos);
+  EXPECT_TRUE(told()[1].starts_with("S5 shares nothing") && told()[1].find("way to S3,") != std::string::npos);
+  network.overlap_matrix.set(2, 5, 0.002);
+  ASSERT_EQ(told().size(), 1u) << "the pair is the best one of both";
+  EXPECT_TRUE(told()[0].starts_with("link S3 to S6")) << told()[0];
+}
+
 TEST(Summary, OfManyPartsCanBeRead) {
   Evaluation network{.stations = std::vector<PlacedStation>(400), .exact = true, .values = {{"coverage", {1, 0}}}};
   network.overlap_matrix = OverlapMatrix(400);

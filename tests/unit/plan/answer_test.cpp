@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "plan/answer.hpp"
+
 #include <gtest/gtest.h>
 
 #include "unit/export/files.hpp"
@@ -91,6 +93,23 @@ TEST(Answer, HasTheFewestStationsThatKeepWhatIsRequired) {
             std::string::npos);
   result.front[0].violation = 0, result.front[0].exact = false;
   EXPECT_FALSE(met(result)) << "not for sure";
+}
+
+TEST(Answer, AdvisesMoreStationsOnlyWhereMoreMayBeAllowed) {
+  PlanResult result = front_of(coverage_overlap_fix(1), {{0.85, 0.9, 0}});
+  result.problem.requirements = {make_requirement("coverage>=0.9")};
+  result.front[0].violation = 0.05;
+  const auto asks_for_more = [&](std::size_t placed, std::size_t allowed) {
+    result.problem.stations_max = allowed;
+    result.front[0].stations.resize(placed);
+    const bool asks = advised_requirements(result)[0].objective.advice.find("more stations") != std::string::npos;
+    EXPECT_EQ(what_would_help(result).at(0).find("allow more stations") != std::string::npos, asks);
+    return asks;
+  };
+  EXPECT_TRUE(asks_for_more(5, 5));
+  EXPECT_FALSE(asks_for_more(4, 5)) << "one more may be placed as it is";
+  EXPECT_FALSE(asks_for_more(19, max_stations));
+  EXPECT_FALSE(asks_for_more(max_stations, max_stations)) << "there may be no more";
 }
 
 TEST(Answer, RefusesAnEmptyFront) { EXPECT_THROW(answer({}), Error); }
