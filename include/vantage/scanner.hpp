@@ -22,6 +22,10 @@ struct NoiseTable {
   bool empty() const { return sigma_m.empty(); }
 };
 
+/// Returns how much is known: "no noise table: exact ranges", "one figure of noise, of 100 m, for all distances and
+/// reflectivities", or "noise of 5 distances and 3 reflectivities".
+std::string describe(const NoiseTable& noise);
+
 /// Direction of a ray in the survey frame.
 struct RayAngles {
   Angle zenith;   ///< From straight up.

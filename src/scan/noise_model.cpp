@@ -27,15 +27,22 @@ Cell cell_at(const std::vector<double>& nodes, double x) {
 
 double mix(double a, double b, double share) { return a + (b - a) * share; }
 
+// Darker surfaces are taken as this dark: the first step of the regular table above 0, where σ would not be finite.
+constexpr double kDarkest = 1.0 / (NoiseModel::side - 1);
+
 }  // namespace
 
 double table_sigma(const NoiseTable& table, double distance_m, double reflectivity) {
   if (table.empty()) return 0;
-  const Cell column = cell_at(table.distances_m, distance_m), row = cell_at(table.reflectivities, reflectivity);
+  const Cell column = cell_at(table.distances_m, distance_m);
   const auto in_row = [&](std::size_t r) {
     const double* sigma = table.sigma_m.data() + r * table.distances_m.size();
     return mix(sigma[column.low], sigma[column.high], column.share);
   };
+  const double lowest = table.reflectivities.front();
+  if (table.reflectivities.size() > 1 && reflectivity < lowest)
+    return std::max(0.0, in_row(0)) * std::sqrt(lowest / std::max(reflectivity, std::min(kDarkest, lowest)));
+  const Cell row = cell_at(table.reflectivities, reflectivity);
   return std::max(0.0, mix(in_row(row.low), in_row(row.high), row.share));
 }
 
