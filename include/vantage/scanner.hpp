@@ -49,8 +49,8 @@ struct Scanner {
   double min_range_m = 0.1;                  ///< d_min.
   double max_range_m = 130.0;                ///< d_max.
   NoiseTable noise = {};                     ///< Empty: exact ranges.
-  /// Full angle by which the beam widens, and its diameter at the exit, both to 1/e² of the intensity on the axis. Both
-  /// 0: unknown.
+  /// Full angle γ by which the beam widens far away, and its diameter D at the exit, both to 1/e² of the intensity on
+  /// the axis. As of a Gaussian beam, the diameter at distance t is √(D² + γ² t²). Both 0: unknown.
   Angle beam_divergence = Angle::radians(0);
   double exit_diameter_m = 0;
   /// Longest distance at which the scanner detects a matt surface of reflectivity `detection_reflectivity` at normal

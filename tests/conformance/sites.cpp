@@ -170,7 +170,7 @@ LimitModel some_limits(SceneData scene, Scanner scanner) {
   scanner.detection_range_m = 6;
   scanner.detection_reflectivity = 0.5;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    scene.meshes[m].detail_m = m % 2 == 0 ? 0.0105 : 0.0125;
+    scene.meshes[m].detail_m = m % 2 == 0 ? 0.0083 : 0.0099;
     scene.meshes[m].accuracy_m = m % 3 == 0 ? 0.0004 : 0;
   }
   return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50)});
