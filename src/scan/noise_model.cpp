@@ -30,6 +30,13 @@ double mix(double a, double b, double share) { return a + (b - a) * share; }
 // Darker surfaces are taken as this dark: the first step of the regular table above 0, where σ would not be finite.
 constexpr double kDarkest = 1.0 / (NoiseModel::side - 1);
 
+// Reflectivity of the darkest surface that the scanner detects at a distance.
+double darkest_detected(const Scanner& scanner, double distance_m) {
+  if (scanner.detection_range_m == 0) return 0;
+  const double part = distance_m / scanner.detection_range_m;
+  return scanner.detection_reflectivity * part * part;
+}
+
 }  // namespace
 
 double table_sigma(const NoiseTable& table, double distance_m, double reflectivity) {
@@ -58,8 +65,14 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
   model.sigma.reserve(std::size_t{NoiseModel::side} * NoiseModel::side);
   for (std::uint32_t r = 0; r < NoiseModel::side; ++r) {
     for (std::uint32_t d = 0; d < NoiseModel::side; ++d) {
-      const double distance = mix(scanner.min_range_m, scanner.max_range_m, d / intervals);
-      model.sigma.push_back(static_cast<float>(table_sigma(scanner.noise, distance, r / intervals)));
+      const auto distance_at = [&](double step) {
+        return mix(scanner.min_range_m, scanner.max_range_m, step / intervals);
+      };
+      // What is not detected has no noise, and would make the reach large: the darkest cell that has a detected point
+      // in it is the last one, at the nearer end of its distances.
+      const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / intervals;
+      model.sigma.push_back(
+          static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / intervals, darkest))));
     }
   }
   // Rounded up: |z| stays 1.5e-5 below its limit, which is more than the look-up's own rounding.

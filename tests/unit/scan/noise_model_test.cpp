@@ -114,6 +114,24 @@ TEST(NoiseModel, ReachBoundsEveryDisplacement) {
   EXPECT_LE(model.reach, 5 * largest * 1.000001f);
 }
 
+// Points that are detected have the σ of the table; others have none, so their σ does not matter, and is not larger.
+TEST(NoiseModel, KnowsNoDarkerSurfaceThanIsDetected) {
+  Scanner scanner = rtc360(), every = rtc360();
+  scanner.detection_range_m = 60, scanner.detection_reflectivity = 0.08;
+  const NoiseModel model = make_noise_model(scanner, 1), all = make_noise_model(every, 1);
+  for (double distance = 0.2; distance < 130; distance += 0.31)
+    for (double reflectivity = 0.001; reflectivity <= 1; reflectivity += 0.0037) {
+      const double sigma = model_sigma(model, distance, reflectivity),
+                   expected = model_sigma(all, distance, reflectivity);
+      if (distance <= 60 * std::sqrt(reflectivity / 0.08)) {
+        EXPECT_EQ(sigma, expected) << distance << " m, " << reflectivity;
+      } else {
+        EXPECT_LE(sigma, expected) << distance << " m, " << reflectivity;
+      }
+    }
+  EXPECT_LT(model.reach, all.reach / 4);
+}
+
 TEST(NoiseModel, IsOffWithoutATableOrWithZeros) {
   EXPECT_FALSE(make_noise_model(Scanner{}, 1).enabled());
   EXPECT_EQ(make_noise_model(Scanner{}, 1).reach, 0.0f);
