@@ -30,11 +30,11 @@ double mix(double a, double b, double share) { return a + (b - a) * share; }
 // Darker surfaces are taken as this dark: the first step of the regular table above 0, where σ would not be finite.
 constexpr double kDarkest = 1.0 / (NoiseModel::side - 1);
 
-// Reflectivity of the darkest surface that the scanner detects at a distance.
+// Reflectivity of the darkest surface that the scanner detects at a distance, at most 1.
 double darkest_detected(const Scanner& scanner, double distance_m) {
   if (scanner.detection_range_m == 0) return 0;
   const double part = distance_m / scanner.detection_range_m;
-  return scanner.detection_reflectivity * part * part;
+  return std::min(scanner.detection_reflectivity * part * part, 1.0);
 }
 
 }  // namespace

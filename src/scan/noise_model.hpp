@@ -13,9 +13,9 @@ namespace vantage {
 // table.
 double table_sigma(const NoiseTable& table, double distance_m, double reflectivity);
 
-// `table_sigma` at 101 × 101 steps of normalised distance and reflectivity; darker surfaces than the scanner detects at a
-// distance have the σ of about the darkest that it does. Not enabled if the scanner has no table.
-// REQUIRES: scanner.check() passes.
+// `table_sigma` at 101 × 101 steps of normalised distance and reflectivity; darker surfaces than the scanner detects at
+// a distance have the σ of about the darkest that it does. Not enabled if the scanner has no table. REQUIRES:
+// scanner.check() passes.
 NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed);
 
 // Bilinear look-up in double, as engines do in float; tests compare engines with it.

@@ -130,6 +130,9 @@ TEST(NoiseModel, KnowsNoDarkerSurfaceThanIsDetected) {
       }
     }
   EXPECT_LT(model.reach, all.reach / 4);
+  // Where nothing is detected, σ is that of the last step before white.
+  scanner.detection_range_m = 10, scanner.detection_reflectivity = 0.9;
+  EXPECT_NEAR(model_sigma(make_noise_model(scanner, 1), 100, 0.3), model_sigma(all, 100, 0.99), 1e-9);
 }
 
 TEST(NoiseModel, IsOffWithoutATableOrWithZeros) {
