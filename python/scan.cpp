@@ -87,7 +87,8 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
 
 std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
                                 const std::vector<std::string>& outputs, const std::string& crs,
-                                const std::optional<BeamOptions>& beam, bool doubles, py::object progress) {
+                                const std::optional<BeamOptions>& beam,
+                                const std::optional<InstrumentErrors>& instrument, bool doubles, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
   const std::uint32_t bits =
@@ -104,7 +105,7 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
       const auto all = static_cast<double>(placed.size());
       const ScanSummary scanned = simulator.scan(
           {placed[k].position, active(placed[k]), setup},
-          {.outputs = bits, .place = static_cast<std::uint32_t>(k), .beam = beam},
+          {.outputs = bits, .place = static_cast<std::uint32_t>(k), .beam = beam, .instrument = instrument},
           [&](const ScanChunk& chunk) { writer.write(chunk, static_cast<std::uint16_t>(k + 1)); },
           call.progress(static_cast<double>(k) / all, static_cast<double>(k + 1) / all));
       if (scanned.cancelled) return 0;
@@ -117,7 +118,8 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
 }  // namespace
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
-          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam, py::object progress) {
+          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam,
+          const std::optional<InstrumentErrors>& instrument, py::object progress) {
   if (grid && beam && beam->returns == Returns::all)
     throw Error(Errc::invalid_argument, "scan: a grid has one element for each ray; with returns='all' leave it out");
   const Simulator& simulator = self.simulator;
@@ -125,7 +127,8 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
   LongCall call(std::move(progress));
   Scan made = call.run([&] {
     Scan points{self.simulator.scan_points({.position = position, .setup = setup},
-                                           {.outputs = bits, .place = place, .beam = beam}, call.progress())};
+                                           {.outputs = bits, .place = place, .beam = beam, .instrument = instrument},
+                                           call.progress())};
     points.outputs = bits, points.grid = grid;
     if (grid) spread(points);
     return points;
@@ -241,12 +244,14 @@ void add_scans(py::module_& m) {
 void add_clouds(py::module_& m) {
   m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
         py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
-        py::arg("beam") = py::none(), py::arg("doubles") = false, py::arg("progress") = py::none(),
+        py::arg("beam") = py::none(), py::arg("instrument") = py::none(), py::arg("doubles") = false,
+        py::arg("progress") = py::none(),
         "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
         "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
         "as for `scan`;\nLAS has 'reflectivity' and 'colour', and like E57 always the first, as intensity. crs: of the "
         "survey frame, such as 'EPSG:25832'; '': none is written. beam: as for `scan`; numbers of returns are written "
-        "too. doubles: coordinates\nof a .ply are doubles; otherwise floats about an origin that its header's comment "
+        "too. instrument: as for `scan`. doubles: coordinates\nof a .ply are doubles; otherwise floats about an origin "
+        "that its header's comment "
         "`origin X Y Z` tells. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
 }
 

@@ -17,7 +17,8 @@ void add_scans(py::module_& m);
 void add_clouds(py::module_& m);
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
-          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam, py::object progress);
+          bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam,
+          const std::optional<InstrumentErrors>& instrument, py::object progress);
 
 /// Points of a station; with `grid` one element for each ray.
 struct Scan : ScanPoints {

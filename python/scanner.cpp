@@ -69,9 +69,33 @@ Options<Scanner> scanner_options() {
       .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.");
 }
 
+Options<InstrumentErrors> instrument_options() {
+  return Options<InstrumentErrors>("InstrumentErrors")
+      .add("vertical_index_deg", &InstrumentErrors::vertical_index, "Turns points downwards on one face.")
+      .add("collimation_deg", &InstrumentErrors::collimation, "Turns them across the line of sight on one face.")
+      .add("trunnion_deg", &InstrumentErrors::trunnion, "The same, times the cosine of the zenith.")
+      .add("range_offset_m", &InstrumentErrors::range_offset_m, "Added to ranges.")
+      .add("range_scale_ppm", &InstrumentErrors::range_scale_ppm, "Millionths by which ranges grow.");
+}
+
 }  // namespace
 
 void add_scanners(py::module_& m) {
+  const auto errors = instrument_options();
+  py::class_<InstrumentErrors> instrument(m, "InstrumentErrors",
+                                          ("Errors of one instrument, which all its scans share. Angles have the "
+                                           "opposite sign behind the heading, where the "
+                                           "mirror\nshows its other face." +
+                                           errors.doc())
+                                              .c_str());
+  instrument.def(py::init([errors](const py::kwargs& given) { return errors.read(given); }))
+      .def_static("draw", &draw_instrument_errors, py::arg("scanner"), py::arg("seed"),
+                  "Draws errors of the standard deviations that the scanner states. Scanners of one seed err alike. "
+                  "Raises Error\ninvalid_argument if it states none.")
+      .def("__repr__", [errors](const InstrumentErrors& e) { return errors.repr(e); });
+  errors.attributes(instrument);
+  errors.pickles(instrument);
+
   const auto options = scanner_options();
   py::class_<Scanner> type(
       m, "Scanner",

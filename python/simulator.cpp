@@ -213,12 +213,13 @@ void add_simulators(py::module_& m) {
       .def("scan", &scan, py::arg("position"),
            py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
            py::arg("setup") = StationSetup{}, py::arg("grid") = false, py::arg("place") = 0,
-           py::arg("beam") = py::none(), py::arg("progress") = py::none(),
+           py::arg("beam") = py::none(), py::arg("instrument") = py::none(), py::arg("progress") = py::none(),
            "Scans one station, whose head is at `position` (x, y, z), survey frame, metres, with this "
            "setup.\n\noutputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel', "
            "'ghost', 'returns';\nrow, column and range_m are always there. grid: arrays of shape (rows, columns, ...), "
            "one element for each ray,\ninstead of (points, ...). place: the station's in its network, which keys the "
-           "noise. beam: BeamOptions; gives the beam\na width.\nRaises Error invalid_argument: a position that is not "
+           "noise. beam: BeamOptions; gives the beam\na width. instrument: InstrumentErrors; moves ranges and "
+           "positions by them.\nRaises Error invalid_argument: a position that is not "
            "finite, an unknown output, a beam that is not known.")
       .def("evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
            py::arg("field") = false, py::arg("surroundings") = false, py::arg("registration") = py::none(),

@@ -112,7 +112,9 @@ struct RegistrationTarget {
   double control_m = 0;  ///< Standard deviation of known coordinates, in each axis; 0: they are not known.
   struct Sighting {
     std::size_t station;  ///< Its place in the network.
-    double sigma_m;       ///< Standard deviation of the centre in that scan, in each axis; above 0.
+    /// Standard deviation of the centre in that scan, above 0: in each axis across the line from the head, and along
+    /// it.
+    double across_m, along_m;
   };
   std::vector<Sighting> seen_by = {};  ///< A station at most once.
 };

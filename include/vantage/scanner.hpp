@@ -22,6 +22,10 @@ struct NoiseTable {
   bool empty() const { return sigma_m.empty(); }
 };
 
+/// Returns how much is known: "no noise table: exact ranges", "one figure of noise, of 100 m, for all distances and
+/// reflectivities", or "noise of 5 distances and 3 reflectivities".
+std::string describe(const NoiseTable& noise);
+
 /// Direction of a ray in the survey frame.
 struct RayAngles {
   Angle zenith;   ///< From straight up.
@@ -45,8 +49,8 @@ struct Scanner {
   double min_range_m = 0.1;                  ///< d_min.
   double max_range_m = 130.0;                ///< d_max.
   NoiseTable noise = {};                     ///< Empty: exact ranges.
-  /// Full angle by which the beam widens, and its diameter at the exit, both to 1/e² of the intensity on the axis. Both
-  /// 0: unknown.
+  /// Full angle γ by which the beam widens far away, and its diameter D at the exit, both to 1/e² of the intensity on
+  /// the axis. As of a Gaussian beam, the diameter at distance t is √(D² + γ² t²). Both 0: unknown.
   Angle beam_divergence = Angle::radians(0);
   double exit_diameter_m = 0;
   /// Longest distance at which the scanner detects a matt surface of reflectivity `detection_reflectivity` at normal
@@ -55,7 +59,8 @@ struct Scanner {
   double detection_reflectivity = 0.9;
   /// Errors that a calibration leaves and all scans of the instrument share, one standard deviation each: of the
   /// vertical index, the collimation and the trunnion axis; of the offset of ranges, and of their scale. They are part
-  /// of the registration error, and not of simulated scans. 0: not stated.
+  /// of the registration error; simulated scans have those that are drawn for them (`ScanOptions::instrument`). 0: not
+  /// stated.
   Angle angle_accuracy = Angle::radians(0);
   double range_accuracy_m = 0;
   double range_accuracy_ppm = 0;
@@ -72,6 +77,26 @@ struct Scanner {
 };
 
 Settings settings(const Scanner& scanner);
+
+/// Errors of one instrument, which all its scans share. A point at range r and zenith θ lies at r (1 + scale) + offset,
+/// and is turned by f · vertical_index downwards and by f · (collimation + trunnion cos θ) across its line of sight,
+/// towards larger azimuths. f is 1 in the half turn before the heading and −1 in that behind it, where the mirror shows
+/// its other face.
+struct InstrumentErrors {
+  Angle vertical_index = Angle::radians(0);
+  Angle collimation = Angle::radians(0);
+  Angle trunnion = Angle::radians(0);
+  double range_offset_m = 0;
+  double range_scale_ppm = 0;
+
+  /// Displacement of a point at this range, in the frame of `angles`.
+  Vec3 displacement(const RayAngles& angles, double range_m, Angle heading = Angle::radians(0)) const;
+};
+
+/// Draws errors of the standard deviations that the scanner states (`angle_accuracy`, `range_accuracy_m` and
+/// `range_accuracy_ppm`). Scanners of one seed err alike, as settings of one instrument do. Throws Error
+/// invalid_argument if it states none.
+InstrumentErrors draw_instrument_errors(const Scanner& scanner, std::uint64_t seed);
 
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();

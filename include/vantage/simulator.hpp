@@ -110,6 +110,9 @@ struct ScanOptions {
   std::function<std::uint32_t(Angle zenith, Angle azimuth)> colour = {};
   /// Gives the beam a width, at the cost of its sub-rays. Empty: a ray without one.
   std::optional<BeamOptions> beam = std::nullopt;
+  /// Moves ranges and positions as an instrument with these errors measures them (`draw_instrument_errors()`). Counts,
+  /// voxels and all else stay those of the rays. Empty: no errors.
+  std::optional<InstrumentErrors> instrument = std::nullopt;
 };
 
 /// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays not asked for are empty. If a

@@ -45,8 +45,9 @@ struct Target {
 struct TargetOptions {
   double diameter_m = 0.145;  ///< Of a sphere, or width of a checkerboard; above 0.
   double height_m = 1.5;      ///< Centre of a proposed one above the ground.
-  /// Standard deviation of a fitted centre in each axis, besides range noise; above 0.
-  double sigma_m = 0.001;
+  /// Standard deviation of a fitted centre in each axis, above 0, besides range noise and what a calibration leaves.
+  /// Empty: 0.2 mm by a scanner that states its accuracy of angles and of ranges, 1 mm by one that does not.
+  std::optional<double> sigma_m = {};
   std::size_t least_points = 60;                ///< A scan with fewer points on a target does not measure it.
   std::size_t least = 0, most = 40;             ///< Proposed targets.
   AccuracyClass wanted = AccuracyClass::loa30;  ///< Proposals end once the predicted registration error meets it,

@@ -233,6 +233,24 @@ class Scanner:
     def check(self) -> None: ...
     def to_dict(self) -> Dict[str, Any]: ...
 
+class InstrumentErrors:
+    def __init__(
+        self,
+        *,
+        vertical_index_deg: float = 0.0,
+        collimation_deg: float = 0.0,
+        trunnion_deg: float = 0.0,
+        range_offset_m: float = 0.0,
+        range_scale_ppm: float = 0.0,
+    ) -> None: ...
+    @staticmethod
+    def draw(scanner: Scanner, seed: int) -> InstrumentErrors: ...
+    vertical_index_deg: float
+    collimation_deg: float
+    trunnion_deg: float
+    range_offset_m: float
+    range_scale_ppm: float
+
 def scanners(more: Path = "") -> List[Tuple[str, str]]: ...
 
 class StationSetup:
@@ -440,6 +458,7 @@ def write_point_cloud(
     outputs: Sequence[str] = ["reflectivity"],
     crs: str = "",
     beam: Optional[BeamOptions] = None,
+    instrument: Optional[InstrumentErrors] = None,
     doubles: bool = False,
     progress: Optional[Progress] = None,
 ) -> int: ...
@@ -722,6 +741,7 @@ class Simulator:
         grid: bool = False,
         place: int = 0,
         beam: Optional[BeamOptions] = None,
+        instrument: Optional[InstrumentErrors] = None,
         progress: Optional[Progress] = None,
     ) -> Scan: ...
     def evaluate(

@@ -14,8 +14,9 @@ uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 directio
   uint misses = square < limits.least_cosine_square ? misses_incidence : 0u;
   if (limits.largest_footprint_square > 0.0) {
     precise float widened = parameters.divergence * t;
-    precise float diameter = parameters.exit_diameter + widened;
-    precise float area = diameter * diameter;
+    precise float at_exit = parameters.exit_diameter * parameters.exit_diameter;
+    precise float added = widened * widened;
+    precise float area = at_exit + added;
     precise float allowed = limits.largest_footprint_square * square;
     if (area > allowed) misses |= misses_footprint;
   }

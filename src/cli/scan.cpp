@@ -34,6 +34,7 @@ struct ScanCommandOptions {
   std::vector<Panorama> panoramas;
   std::uint32_t outputs = scan_position | scan_reflectivity | scan_colour;
   std::optional<BeamOptions> beam;
+  std::optional<std::uint64_t> instrument;  // seed of its errors
   PlyCoordinates ply = PlyCoordinates::floats;
   bool json = false;
 
@@ -59,10 +60,31 @@ struct ScanCommandOptions {
         "station's",
         [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
     add_settings(command, beam_settings(), beam);
+    add_value(command, "--instrument-errors", "SEED",
+              "Draw the errors that the scanner's calibration leaves, the same in all scans, and move the points by "
+              "them; none otherwise",
+              [this](const std::string& text, const std::string& what) { instrument = parse_count(text, what, 0); });
     add_ply_doubles(command, ply);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
+
+nlohmann::json instrument_json(const InstrumentErrors& errors) {
+  return {{"vertical_index_arcsec", errors.vertical_index.in_degrees() * 3600},
+          {"collimation_arcsec", errors.collimation.in_degrees() * 3600},
+          {"trunnion_arcsec", errors.trunnion.in_degrees() * 3600},
+          {"range_offset_mm", errors.range_offset_m * 1e3},
+          {"range_scale_ppm", errors.range_scale_ppm}};
+}
+
+std::string instrument_text(const nlohmann::json& errors) {
+  const auto number = [&](const char* name) { return errors[name].get<double>(); };
+  return fmt::format(
+      "errors of the instrument: vertical index {:+.1f}″, collimation {:+.1f}″, trunnion axis {:+.1f}″, ranges {:+.2f} "
+      "mm {:+.1f} ppm\n",
+      number("vertical_index_arcsec"), number("collimation_arcsec"), number("trunnion_arcsec"),
+      number("range_offset_mm"), number("range_scale_ppm"));
+}
 
 // Stations and sums of all scans.
 struct Scans {
@@ -82,11 +104,13 @@ Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std:
         .stop = program.stop};
     ScanOptions what{.outputs = writer ? options.outputs : 0, .place = static_cast<std::uint32_t>(k)};
     what.beam = options.beam;
+    const StationSetup& setup = stations[k].placed.setup;
+    if (options.instrument)
+      what.instrument = draw_instrument_errors(simulator.scanners()[setup.scanner], *options.instrument);
     if (k < options.panoramas.size())
       what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
         return panorama.colour(zenith, azimuth);
       };
-    const StationSetup& setup = stations[k].placed.setup;
     if (writer)
       writer->begin_station({.name = names[k],
                              .head = stations[k].placed.position,
@@ -114,6 +138,7 @@ Scans scan_each(const std::vector<SiteStation>& stations, const std::vector<std:
     row["hits_on_surveyed"] = one.hits_on_surveyed;
     if (one.ghosts > 0) row["ghosts"] = one.ghosts;
     if (options.beam) row["mixed"] = nlohmann::json(mixed_json(one.mixed));
+    if (what.instrument) row["instrument_errors"] = instrument_json(*what.instrument);
     all.rows.push_back(std::move(row));
   }
   return all;
@@ -152,6 +177,7 @@ std::string scans_text(const Scans& scans, const ScanCommandOptions& options, co
     text +=
         fmt::format("{} of the points are ghosts, seen in mirrors: they stand where nothing is\n", scans.sum.ghosts);
   if (options.beam) text += mixed_text(scans.sum.mixed, scans.sum.points) + "\n";
+  if (options.instrument && !scans.rows.empty()) text += instrument_text(scans.rows[0]["instrument_errors"]);
   if (options.output) text += "written to " + *options.output + "\n";
   return text;
 }

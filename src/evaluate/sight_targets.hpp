@@ -17,7 +17,8 @@ void check(const Target& target, const Vec3& origin);
 // Fills `Target::stations`, and returns the targets as `registration_error()` takes them. A station measures a target
 // if the line between them is free, it lies within the scanner's field and range, and enough points fall on it: the
 // target's disc over range² · Δazimuth · Δzenith · sin zenith. The variance of a centre is sigma² + 3 σ²/N for N
-// points of range noise σ. Throws Error invalid_argument.
+// points of range noise σ, and what the scanner's angles leave across the line, its ranges along it. Throws Error
+// invalid_argument.
 std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,
                                               std::span<const PlacedStation> stations, std::vector<Target>& targets,
                                               const TargetOptions& options = {});

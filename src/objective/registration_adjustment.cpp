@@ -253,7 +253,8 @@ Matrix6d RegistrationAdjustment::prior_of(std::size_t place) const {
   return given + weight_of(options_.position_m) * at_head.transpose() * at_head;
 }
 
-// Calls add(a, b, h) for all information, between two stations or, where a is b, on one by itself.
+// Calls add(a, b, h) for all information, between two stations or, where a is b, on one by itself. Between two, h is on
+// the first by itself, hᵀ on the second.
 template <class Add>
 void RegistrationAdjustment::for_information(const Add& add) const {
   for (std::size_t a = 0; a < stations_.size(); ++a) {
@@ -271,9 +272,9 @@ MatrixXd RegistrationAdjustment::information() const {
     const auto i = static_cast<Eigen::Index>(a) * 6, j = static_cast<Eigen::Index>(b) * 6;
     all.block<6, 6>(i, i) += h;
     if (a == b) return;
-    all.block<6, 6>(j, j) += h;
+    all.block<6, 6>(j, j) += h.transpose();
     all.block<6, 6>(i, j) -= h;
-    all.block<6, 6>(j, i) -= h;
+    all.block<6, 6>(j, i) -= h.transpose();
   });
   return all;
 }
@@ -281,41 +282,52 @@ MatrixXd RegistrationAdjustment::information() const {
 // The information of the unknowns alone.
 SparseBlocks RegistrationAdjustment::sparse_information() const {
   const Eigen::Index d = unknowns_;
-  const auto of_unknowns = [d](const Matrix6d& h) { return h.bottomRightCorner(d, d); };
+  const auto of_unknowns = [d](const Matrix6d& h) -> SmallBlock { return h.bottomRightCorner(d, d); };
   SparseBlocks all{.diagonal = std::vector<SmallBlock>(stations_.size(), SmallBlock::Zero(d, d)), .pairs = {}};
   for_information([&](std::size_t a, std::size_t b, const Matrix6d& h) {
     all.diagonal[a] += of_unknowns(h);
     if (a == b) return;
-    all.diagonal[b] += of_unknowns(h);
-    all.pairs.push_back({std::max(a, b), std::min(a, b), -of_unknowns(h)});
+    all.diagonal[b] += of_unknowns(h.transpose());
+    all.pairs.push_back({std::max(a, b), std::min(a, b), -of_unknowns(a > b ? h : h.transpose())});
   });
   return all;
 }
 
-// A target's centre is unknown, so k sightings of weights w give w_i w_j / Σw for each pair, as a plane does but in all
-// three axes. A control point adds the weight of its coordinates, which belongs to no station.
+Matrix3d RegistrationAdjustment::sighting_weight(const RegistrationTarget& target,
+                                                 const RegistrationTarget::Sighting& sighting) const {
+  const Vector3d line = to_eigen(target.centre - sums_.centre - sums_.heads[sighting.station]).normalized();
+  const double across = weight_of(sighting.across_m), along = weight_of(sighting.along_m);
+  return across * Matrix3d::Identity() + (along - across) * line * line.transpose();
+}
+
+// A target's centre is unknown, so k sightings of weights W give W_i (ΣW)⁻¹ W_j for each pair, as a plane does but in
+// all three axes. A control point adds the weight of its coordinates, which belongs to no station.
 template <class Add>
 void RegistrationAdjustment::for_targets(const Add& add) const {
   for (const RegistrationTarget& target : targets_) {
     struct Seen {
       std::size_t station;
-      double weight;
+      Matrix3d weight;
     };
     std::vector<Seen> seen;
-    const double known = weight_of(target.control_m);
-    double total = known;
+    const Matrix3d known = weight_of(target.control_m) * Matrix3d::Identity();
+    Matrix3d total = known;
     for (const RegistrationTarget::Sighting& sighting : target.seen_by) {
       const auto found = std::ranges::find(stations_, sighting.station);
       if (found == stations_.end()) continue;
-      seen.push_back({static_cast<std::size_t>(found - stations_.begin()), weight_of(sighting.sigma_m)});
+      seen.push_back({static_cast<std::size_t>(found - stations_.begin()), sighting_weight(target, sighting)});
       total += seen.back().weight;
     }
+    if (seen.empty()) continue;
     const Matrix36d at_centre = displacement(scaled(target.centre - sums_.centre));
-    const Matrix6d square = at_centre.transpose() * at_centre;
+    const Matrix3d mean = total.inverse();
+    const auto tie = [&](std::size_t a, std::size_t b, const Matrix3d& other) {
+      add(seen[a].station, seen[b].station,
+          Matrix6d(at_centre.transpose() * seen[a].weight * mean * other * at_centre));
+    };
     for (std::size_t a = 0; a < seen.size(); ++a) {
-      add(seen[a].station, seen[a].station, seen[a].weight * known / total * square);
-      for (std::size_t b = a + 1; b < seen.size(); ++b)
-        add(seen[a].station, seen[b].station, seen[a].weight * seen[b].weight / total * square);
+      tie(a, a, known);
+      for (std::size_t b = a + 1; b < seen.size(); ++b) tie(a, b, seen[b].weight);
     }
   }
 }

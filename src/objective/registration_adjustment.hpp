@@ -59,6 +59,8 @@ class RegistrationAdjustment {
   Eigen::MatrixXd covariance() const;                                  // of all unknowns
   // The mean square error over the covered surface is tr(metric() · covariance()).
   Eigen::MatrixXd metric() const;
+  // Inverse of the covariance of a target's centre in a scan. REQUIRES: the station is one of `stations()`.
+  Eigen::Matrix3d sighting_weight(const RegistrationTarget& target, const RegistrationTarget::Sighting& sighting) const;
   // Displacement of a point of the local frame by a station's unknowns: 3 × unknowns().
   Eigen::MatrixXd displacement_at(const Vec3& local) const;
 

@@ -143,31 +143,37 @@ class TargetChooser {
     MatrixXd values;
   };
 
-  // The k sightings of a target, its centre being unknown, have the information diag(w) − w wᵀ / Σw in each axis.
+  // The k sightings of a target, its centre being unknown, have the information diag(W) − W (ΣW)⁻¹ Wᵀ, W: 3k × 3.
   Rows rows_of(const RegistrationTarget& place) const {
     std::vector<RegistrationTarget::Sighting> seen;
     for (const RegistrationTarget::Sighting& sighting : place.seen_by)
       if (std::ranges::count(adjustment_.stations(), sighting.station) > 0) seen.push_back(sighting);
-    std::ranges::stable_sort(seen, {}, &RegistrationTarget::Sighting::sigma_m);
+    std::ranges::stable_sort(seen, {}, [](const RegistrationTarget::Sighting& sighting) {
+      return 2 * sighting.across_m * sighting.across_m + sighting.along_m * sighting.along_m;
+    });
     seen.resize(std::min(seen.size(), kJudgedSightings));
     Rows rows;
     if (seen.size() < 2) return rows;
     const auto many = static_cast<Index>(seen.size());
-    Eigen::VectorXd weights(many);
-    for (Index k = 0; k < many; ++k) weights[k] = std::pow(seen[static_cast<std::size_t>(k)].sigma_m, -2);
-    const MatrixXd laplacian = MatrixXd(weights.asDiagonal()) - weights * weights.transpose() / weights.sum();
+    Eigen::MatrixX3d weights(3 * many, 3);
+    Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    for (Index k = 0; k < many; ++k)
+      total += weights.middleRows<3>(3 * k) = adjustment_.sighting_weight(place, seen[static_cast<std::size_t>(k)]);
+    MatrixXd laplacian = -weights * total.inverse() * weights.transpose();
+    for (Index k = 0; k < many; ++k) laplacian.block<3, 3>(3 * k, 3 * k) += weights.middleRows<3>(3 * k);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(laplacian);
-    // Its first eigenvalue is 0: a motion of all.
-    const MatrixXd root = solver.eigenvalues().tail(many - 1).cwiseMax(0).cwiseSqrt().asDiagonal() *
-                          solver.eigenvectors().rightCols(many - 1).transpose();
+    // Its first three eigenvalues are 0: motions of all.
+    const Index held = 3 * (many - 1);
+    const MatrixXd root = solver.eigenvalues().tail(held).cwiseMax(0).cwiseSqrt().asDiagonal() *
+                          solver.eigenvectors().rightCols(held).transpose();
     const Index d = adjustment_.unknowns();
     const MatrixXd moves = adjustment_.displacement_at(place.centre);
-    rows.values.resize(3 * (many - 1), many * d);
+    rows.values.resize(held, many * d);
     for (Index k = 0; k < many; ++k) {
       const auto found = std::ranges::find(adjustment_.stations(), seen[static_cast<std::size_t>(k)].station);
       const Index at = (found - adjustment_.stations().begin()) * d;
       for (Index c = 0; c < d; ++c) rows.columns.push_back(at + c);
-      for (Index r = 0; r < many - 1; ++r) rows.values.block(3 * r, k * d, 3, d) = root(r, k) * moves;
+      rows.values.middleCols(k * d, d) = root.middleCols<3>(3 * k) * moves;
     }
     return rows;
   }

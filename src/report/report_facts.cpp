@@ -21,7 +21,7 @@ std::string scanner_text(const Scanner& scanner) {
                                 : degrees(scanner.azimuth_step) + " across and " + degrees(scanner.zenith_step) + " up";
   return (scanner.name == Scanner().name ? "" : scanner.name + ": ") + "a ray every " + steps + ", " +
          grouped(scanner.rays()) + " rays a scan, head " + fixed(scanner.height_m, 2) + " m over the ground, range " +
-         number(scanner.min_range_m) + " to " + number(scanner.max_range_m) + " m";
+         number(scanner.min_range_m) + " to " + number(scanner.max_range_m) + " m, " + describe(scanner.noise);
 }
 
 std::string stations_text(const Evaluation& network) {

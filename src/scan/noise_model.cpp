@@ -27,15 +27,29 @@ Cell cell_at(const std::vector<double>& nodes, double x) {
 
 double mix(double a, double b, double share) { return a + (b - a) * share; }
 
+// Darker surfaces are taken as this dark: the first step of the regular table above 0, where σ would not be finite.
+constexpr double kDarkest = 1.0 / (NoiseModel::side - 1);
+
+// Reflectivity of the darkest surface that the scanner detects at a distance, at most 1.
+double darkest_detected(const Scanner& scanner, double distance_m) {
+  if (scanner.detection_range_m == 0) return 0;
+  const double part = distance_m / scanner.detection_range_m;
+  return std::min(scanner.detection_reflectivity * part * part, 1.0);
+}
+
 }  // namespace
 
 double table_sigma(const NoiseTable& table, double distance_m, double reflectivity) {
   if (table.empty()) return 0;
-  const Cell column = cell_at(table.distances_m, distance_m), row = cell_at(table.reflectivities, reflectivity);
+  const Cell column = cell_at(table.distances_m, distance_m);
   const auto in_row = [&](std::size_t r) {
     const double* sigma = table.sigma_m.data() + r * table.distances_m.size();
     return mix(sigma[column.low], sigma[column.high], column.share);
   };
+  const double lowest = table.reflectivities.front();
+  if (table.reflectivities.size() > 1 && reflectivity < lowest)
+    return std::max(0.0, in_row(0)) * std::sqrt(lowest / std::max(reflectivity, std::min(kDarkest, lowest)));
+  const Cell row = cell_at(table.reflectivities, reflectivity);
   return std::max(0.0, mix(in_row(row.low), in_row(row.high), row.share));
 }
 
@@ -51,8 +65,14 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
   model.sigma.reserve(std::size_t{NoiseModel::side} * NoiseModel::side);
   for (std::uint32_t r = 0; r < NoiseModel::side; ++r) {
     for (std::uint32_t d = 0; d < NoiseModel::side; ++d) {
-      const double distance = mix(scanner.min_range_m, scanner.max_range_m, d / intervals);
-      model.sigma.push_back(static_cast<float>(table_sigma(scanner.noise, distance, r / intervals)));
+      const auto distance_at = [&](double step) {
+        return mix(scanner.min_range_m, scanner.max_range_m, step / intervals);
+      };
+      // What is not detected has no noise, and would make the reach large: the darkest cell that has a detected point
+      // in it is the last one, at the nearer end of its distances.
+      const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / intervals;
+      model.sigma.push_back(
+          static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / intervals, darkest))));
     }
   }
   // Rounded up: |z| stays 1.5e-5 below its limit, which is more than the look-up's own rounding.

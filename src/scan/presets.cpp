@@ -181,7 +181,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   }
   const Node chosen = settings.member(setting);
   chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "points_per_second",
-               "detection_range_m", "source", "note"});
+               "detection_range_m", "noise_factor", "source", "note"});
   chosen.sourced();
 
   Scanner scanner;
@@ -206,6 +206,13 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   if (node.has("range_accuracy_mm")) scanner.range_accuracy_m = node.member("range_accuracy_mm").figure() * 1e-3;
   if (node.has("range_accuracy_ppm")) scanner.range_accuracy_ppm = node.member("range_accuracy_ppm").figure();
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
+  if (chosen.has("noise_factor")) {
+    const Node factor = chosen.member("noise_factor");
+    const double times = factor.figure();
+    if (!(times > 0 && times <= 100)) factor.member("value").fail("must be above 0 and at most 100");
+    if (scanner.noise.empty()) factor.fail("the scanner has no noise table to multiply");
+    for (double& sigma : scanner.noise.sigma_m) sigma *= times;
+  }
   if (node.has("detection")) {
     const Node detection = node.member("detection");
     detection.only({"range_m", "reflectivity", "source", "note"});
@@ -250,12 +257,13 @@ std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more) {
     if (std::any_of(list.begin(), list.end(), [&](const ScannerPreset& known) { return known.key == key; })) return;
     const Scanner scanner = read_scanner(document, key, "");
     char figures[160];
-    std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, %s; ",
+    std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, ",
                   scanner.horizontal_angle.in_degrees(), scanner.zenith_start.in_degrees(),
                   scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, scanner.min_range_m,
-                  scanner.max_range_m, scanner.noise.empty() ? "no noise table" : "noise table");
-    list.push_back({key, entry["name"].get<std::string>() + figures + "settings " + names_of(entry["settings"]) +
-                             " (default " + entry["default_setting"].get<std::string>() + ")"});
+                  scanner.max_range_m);
+    list.push_back({key, entry["name"].get<std::string>() + figures + describe(scanner.noise) + "; settings " +
+                             names_of(entry["settings"]) + " (default " + entry["default_setting"].get<std::string>() +
+                             ")"});
   };
   for (const Document& document : documents(more)) {
     for (const auto& [key, entry] : document.scanners().items()) add(document, key, entry);

@@ -50,8 +50,7 @@ RayFollower::Seen RayFollower::seen(const Float3& origin, const Float3& directio
           {static_cast<float>(weights[0]), static_cast<float>(weights[1])}};
 }
 
-RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end,
-                                      float head) const {
+RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direction, float start, float end) const {
   std::array<Vec3, kMostReflections> normals;
   Float3 from = origin;
   Vec3 d = widen(direction);
@@ -63,7 +62,7 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
     caster_.cast(ray);
     const std::uint32_t triangle = ray.primitive[0];
     if (triangle == RayBundle::no_hit) break;
-    if (glass_) passed *= glass_->share(from, narrowed, reflections == 0 ? head : kOffMirror_m, ray.t[0]);
+    if (glass_) passed *= glass_->share(from, narrowed, reflections == 0 ? 0 : kOffMirror_m, ray.t[0]);
     if (!is_mirror(triangle)) {
       Seen last = seen(from, narrowed, ray.t[0], triangle);
       last.t += way;

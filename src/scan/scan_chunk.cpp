@@ -75,7 +75,7 @@ std::array<float, 3> array_of(const Float3& v) { return {v.x, v.y, v.z}; }
 std::uint32_t raw_outputs(const ScanOptions& options) {
   const std::uint32_t outputs = options.outputs;
   std::uint32_t raw = Tracer::primitive | Tracer::voxel;
-  if (outputs & scan_range) raw |= Tracer::range;
+  if ((outputs & scan_range) || options.instrument) raw |= Tracer::range;
   if (outputs & scan_position) raw |= Tracer::position;
   if (outputs & scan_normal) raw |= Tracer::normal;
   if (outputs & scan_reflectivity) raw |= Tracer::reflectivity;

@@ -112,6 +112,16 @@ void Scanner::check() const {
   check_noise(noise);
 }
 
+std::string describe(const NoiseTable& noise) {
+  if (noise.empty()) return "no noise table: exact ranges";
+  const std::size_t distances = noise.distances_m.size(), reflectivities = noise.reflectivities.size();
+  if (noise.sigma_m.size() == 1)
+    return "one figure of noise, of " + ten_digits(noise.distances_m.front()) +
+           " m, for all distances and reflectivities";
+  return "noise of " + std::to_string(distances) + (distances == 1 ? " distance" : " distances") + " and " +
+         std::to_string(reflectivities) + (reflectivities == 1 ? " reflectivity" : " reflectivities");
+}
+
 NoiseTable rtc360_noise() {
   return {.distances_m = {5, 10, 20, 40, 60},
           .reflectivities = {0.08, 0.21, 0.89},

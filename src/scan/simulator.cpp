@@ -22,6 +22,7 @@
 #include "core/seconds_since.hpp"
 #include "core/setting_table.hpp"
 #include "core/site_reach.hpp"
+#include "scan/instrument_errors.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
@@ -644,6 +645,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
       for (std::uint8_t number = 1; number <= most; ++number) {
         chunk.return_number = number;
         WideBeam::fill(all, number, first, chunk.ray_count, raw, ghost, returns, summary);
+        if (options.instrument) apply(*options.instrument, scanner, from, first, raw);
         fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
         if (sink) sink(chunk);
       }
@@ -657,6 +659,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
         std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
           return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
         });
+      if (options.instrument) apply(*options.instrument, scanner, from, first, raw);
       fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
       if (sink) sink(chunk);
     }

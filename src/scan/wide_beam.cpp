@@ -27,9 +27,6 @@ constexpr std::size_t kMostSubRays = 19, kMostReturns = 15;  // of LAS
 constexpr double kMixed_m = 0.005;
 // How much brighter than a white surface a pane returns the beam near its normal: enough to outshine all else.
 constexpr double kPaneGleam = 100;
-// The apex of a beam lies at most so far behind the head: farther, floats are too coarse, and the beam is as good as
-// parallel.
-constexpr double kFarthestApex_m = 100;
 constexpr std::uint32_t kTwistStream = 3;
 constexpr std::uint64_t kPart = 1024;  // rays that a task follows
 
@@ -64,7 +61,7 @@ struct WideBeam::Echo {
   double t, strength, reflectivity;
   std::uint32_t triangle;
   bool ghost;
-  Float3 way;  // of its sub-ray
+  Float3 from, way;  // of its sub-ray
   RayFollower::Seen seen;
 };
 
@@ -103,8 +100,6 @@ class WideBeam::Follower {
   PointJudge judge_;
   // Of the present ray.
   Float3 axis_{};
-  Float3 apex_{};
-  double behind_ = 0;  // distance from the apex to the head
   std::vector<Echo> echoes_;
   std::vector<Return> found_;
   std::vector<double> strengths_;
@@ -116,32 +111,35 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
   axis_ = direction_of(pattern_, station_, ray);
   const Vec3 d = widen(axis_);
   const Vec3 u = unit(cross(std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0}, d)), v = cross(d, u);
-  // Rays of a beam that is as wide as the exit there, and widens, come from an apex behind the head.
-  const double wide = std::max(scanner_.beam_divergence.in_radians(), scanner_.exit_diameter_m / kFarthestApex_m);
-  behind_ = scanner_.exit_diameter_m / wide;
+  // Lines through the exit that are skewed sideways make the surface of a Gaussian beam, of radius √(exit² + (spread
+  // t)²).
+  const double exit = scanner_.exit_diameter_m / 2, spread = scanner_.beam_divergence.in_radians() / 2;
   // Each footprint is turned by chance, so that no edge meets the same places everywhere.
   const std::uint32_t chance = philox4x32(
       seed_, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, kTwistStream})[0];
   const double twist = 2 * pi * chance / 4294967296.0, c = std::cos(twist), s = std::sin(twist);
+  std::array<Float3, kMostSubRays> from;
   RayBundle rays;
-  rays.origin = apex_ = narrow(widen(station_.origin) - d * behind_);
+  rays.origin = station_.origin;
+  rays.origins = from.data();
   rays.size = options_.sub_rays;
   for (std::uint32_t k = 0; k < rays.size; ++k) {
     const double x = c * places.x[k] - s * places.y[k], y = s * places.x[k] + c * places.y[k];
-    const Float3 way = narrow(d + (u * x + v * y) * (wide / 2));
+    from[k] = narrow(widen(station_.origin) + (u * x + v * y) * exit);
+    const Float3 way = narrow(d + (v * x - u * y) * spread);
     rays.x[k] = way.x;
     rays.y[k] = way.y;
     rays.z[k] = way.z;
-    rays.end[k] = static_cast<float>(behind_) + pattern_.max_range;
+    rays.end[k] = pattern_.max_range;
   }
-  rays.start = static_cast<float>(behind_) + pattern_.min_range;
+  rays.start = pattern_.min_range;
   beam_.rays_.caster().cast(rays);
   std::array<Passed, kMostSubRays> passed;
   bool behind_glass = false;
   const GlassPanes* const glass = scanner_.detection_range_m > 0 ? beam_.rays_.glass() : nullptr;
   if (glass) {
     RayBundle beams = rays;
-    beams.start = static_cast<float>(behind_);
+    beams.start = 0;
     for (std::uint32_t k = 0; k < rays.size; ++k)
       if (rays.primitive[k] != RayBundle::no_hit) beams.end[k] = rays.t[k];
     behind_glass = glass->follow(beams, passed);
@@ -150,30 +148,29 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
   echoes_.clear();
   for (std::uint32_t k = 0; k < rays.size; ++k) {
     const Float3 way{rays.x[k], rays.y[k], rays.z[k]};
-    Echo echo{0, 0, 0, rays.primitive[k], false, way, {}};
+    Echo echo{0, 0, 0, rays.primitive[k], false, from[k], way, {}};
     double gleam = 1;
     if (behind_glass && passed[k].pane != RayBundle::no_hit && passed[k].t >= rays.start) {
       echo.triangle = passed[k].pane;
       echo.t = static_cast<double>(passed[k].t);
-      echo.seen = beam_.rays_.seen(rays.origin, way, passed[k].t, echo.triangle);
+      echo.seen = beam_.rays_.seen(from[k], way, passed[k].t, echo.triangle);
       echo.reflectivity = places.share[k];
       gleam = kPaneGleam;
     } else {
       if (echo.triangle == RayBundle::no_hit) continue;
       if (beam_.rays_.is_mirror(echo.triangle)) {
-        echo.seen = beam_.rays_.follow(rays.origin, way, rays.start, rays.end[k], static_cast<float>(behind_));
+        echo.seen = beam_.rays_.follow(from[k], way, rays.start, rays.end[k]);
         echo.ghost = true;
         if (echo.seen.triangle == RayBundle::no_hit) continue;
         echo.triangle = echo.seen.triangle;
       } else {
-        echo.seen = beam_.rays_.seen(rays.origin, way, rays.t[k], echo.triangle);
+        echo.seen = beam_.rays_.seen(from[k], way, rays.t[k], echo.triangle);
         if (behind_glass) echo.seen.passed = passed[k].share;
       }
       echo.t = static_cast<double>(echo.seen.t);
       echo.reflectivity =
           places.share[k] * (glass ? echo.seen.passed : 1) * static_cast<double>(echo.seen.reflectivity);
     }
-    echo.t -= behind_;
     echo.strength = gleam * echo.reflectivity / (echo.t * echo.t);
     if (echo.strength > 0) echoes_.push_back(echo);
   }
@@ -214,12 +211,11 @@ WideBeam::Return WideBeam::Follower::merged(std::uint64_t ray, std::size_t begin
   if (made.ghost) return made;
   const std::uint32_t voxel_index = beam_.grid_->index_of(made.point), mesh = beam_.rays_.mesh(made.triangle);
   if (voxel_index == no_voxel) return made;
-  made.wrong_voxel =
-      made.mixed && std::none_of(echoes_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 echoes_.begin() + static_cast<std::ptrdiff_t>(end), [&](const Echo& e) {
-                                   const auto from_apex = static_cast<float>(e.t + behind_);
-                                   return beam_.grid_->index_of(point_at(apex_, e.way, from_apex)) == voxel_index;
-                                 });
+  made.wrong_voxel = made.mixed && std::none_of(echoes_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                echoes_.begin() + static_cast<std::ptrdiff_t>(end), [&](const Echo& e) {
+                                                  return beam_.grid_->index_of(point_at(
+                                                             e.from, e.way, static_cast<float>(e.t))) == voxel_index;
+                                                });
   if (made.wrong_voxel || beam_.scene_->meshes[mesh].role != Role::surveyed) return made;
   if (judge_.enabled()) {
     made.dropped = judge_.missed(mesh, main->seen.cosine, t, made.reflectivity, 1);

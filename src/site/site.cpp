@@ -200,6 +200,17 @@ struct Site::Impl {
     security = security_of(options, scale);
     walkable = walkable_of(options, scale);
     if (scale != 1) log_scaled();
+    if (!options.noise) log_noise();
+  }
+
+  // What a maker does not state makes its scans look better than they are. The built-in scanner claims nothing.
+  void log_noise() const {
+    for (const Scanner& one : scanners) {
+      if (one.name == Scanner().name || one.noise.sigma_m.size() > 1) continue;
+      log(one.name + ": " + describe(one.noise) +
+          (one.noise.empty() ? "; its scans and their registration look better than they are"
+                             : "; near and bright surfaces look worse than they are, far and dark ones better"));
+    }
   }
 
   void resolve_density() {

@@ -63,7 +63,9 @@ void take_scan(Site& real, const Vec3& head, const DayOptions& options, std::uin
   PointCloudWriter writer(file, simulator.origin(), scan_position | scan_reflectivity);
   writer.begin_station({.name = file.stem().string(), .head = head + to_vec3(shift), .scanner = real.scanner()});
   const glm::dvec3 local = to_glm(head - simulator.origin());
-  simulator.scan({.position = head}, {.outputs = scan_position | scan_reflectivity}, [&](const ScanChunk& chunk) {
+  ScanOptions what{.outputs = scan_position | scan_reflectivity};
+  if (options.instrument) what.instrument = draw_instrument_errors(real.scanner(), *options.instrument);
+  simulator.scan({.position = head}, what, [&](const ScanChunk& chunk) {
     ScanChunk rough = chunk;
     for (auto& p : rough.position) {
       const glm::dvec3 q = local + shift + turn * (glm::dvec3(p[0], p[1], p[2]) - local);
@@ -134,6 +136,7 @@ void DayOptions::add(CLI::App& command) {
   command.add_option("--link", link, "Least scan overlap of links")->capture_default_str();
   command.add_option("--shift", shift_m, "Error of poses, metres")->capture_default_str();
   command.add_option("--turn", turn_deg, "Error of poses, degrees")->capture_default_str();
+  command.add_option("--instrument-errors", instrument, "Seed of the errors of the instrument; none otherwise");
   command.add_option("--most", most, "Most stations of the day")->capture_default_str();
   command.add_option("--seed", seed, "Of errors of poses")->capture_default_str();
 }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct DayOptions {
   std::vector<std::string> things;  // x,y,z,x,y,z: boxes that stand there and are not in the model
   double capture = 0.9, link = 0.3, shift_m = 0.05, turn_deg = 0.5;
   std::uint64_t most = 20, seed = 1;
+  std::optional<std::uint64_t> instrument;  // seed of its errors
   std::vector<double> steps_deg;
   void add(CLI::App& command);
 };

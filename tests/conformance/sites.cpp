@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "scan/limit_model.hpp"
 #include "scan/noise_model.hpp"
@@ -170,7 +171,7 @@ LimitModel some_limits(SceneData scene, Scanner scanner) {
   scanner.detection_range_m = 6;
   scanner.detection_reflectivity = 0.5;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    scene.meshes[m].detail_m = m % 2 == 0 ? 0.0105 : 0.0125;
+    scene.meshes[m].detail_m = m % 2 == 0 ? 0.0083 : 0.0099;
     scene.meshes[m].accuracy_m = m % 3 == 0 ? 0.0004 : 0;
   }
   return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50)});
@@ -194,7 +195,9 @@ TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> sce
   scanner.noise = rtc360_noise();
   site.pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
   site.noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
-  site.limits = std::make_shared<const LimitModel>(some_limits(*site.scene, scanner));
+  LimitModel limits = some_limits(*site.scene, scanner);
+  limits.noise = site.noise;  // engines keep one table, and the noise of these sites is that of every echo
+  site.limits = std::make_shared<const LimitModel>(std::move(limits));
   scanner.noise = {};
   site.no_noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
   for (const Vec3& head : heads) {

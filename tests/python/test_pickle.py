@@ -49,6 +49,7 @@ class Pickles(unittest.TestCase):
         self.same(vantage.StationSetup(heading_deg=30, tilt_deg=90, scanner=1))
         self.same(vantage.RegistrationOptions(rho_m=0.004, surfaces="all"))
         self.same(vantage.BeamOptions(returns="all", sub_rays=19))
+        self.same(vantage.InstrumentErrors(collimation_deg=0.005, range_offset_m=0.001))
         self.same(vantage.OnSiteOptions(set_up_min=5, entrance=(1, 2, 3)))
         self.same(vantage.minimise(0, 20))
 

@@ -154,7 +154,8 @@ def check_json(folder):
     printed = {
         "info": [["info"], ["info", "--measure", "walls.glb"]],
         "import": [["import", "wall.obj", "-o", "wall.glb"]],
-        "scan": [["scan", *station], ["scan", *station, "--returns", "all", "--beam", "0.3,6", "-o", "scan.ply"]],
+        "scan": [["scan", *station], ["scan", *station, "--returns", "all", "--beam", "0.3,6", "-o", "scan.ply"],
+                 ["scan", *station, "--calibration", "18,1,10", "--instrument-errors", "1"]],
         "evaluate": [["evaluate", *station, "--day", "4h"], ["evaluate", *station, "--station", "-8,0,1.5", "--registration", "--attainable", "--sample", "200"]],
         "bound": [["bound", "walls.glb", *COARSE, "--stations", "1", "--capture", "0.5", "--candidates", "8", "--sample", "100"]],
     }

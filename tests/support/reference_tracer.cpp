@@ -175,7 +175,7 @@ class RayTest {
     const LimitModel& model = *scanner_.limits;
     const LimitModel::Limits& limits = model.meshes[s_.scene->mesh_of(hit.triangle)];
     const double cosine = -dot(hit.normal, direction_of(hit)), incidence = std::acos(std::min(cosine, 1.0));
-    const double axis = (model.exit_diameter + model.divergence * hit.t) / cosine;
+    const double axis = std::hypot(model.exit_diameter, model.divergence * hit.t) / cosine;
     const auto hold = [&](double value, double largest) -> std::uint64_t {
       hit.limit_distance = std::min(hit.limit_distance, std::abs(value - largest) / largest);
       return value > largest ? 1 : 0;

@@ -40,12 +40,12 @@ class PointJudge {
   DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity, double passed) const {
     const LimitModel::Limits& limits = model_->meshes[mesh];
     const double square = cosine * cosine;
-    const double diameter =
-        static_cast<double>(model_->exit_diameter) + static_cast<double>(model_->divergence) * static_cast<double>(t);
+    const double exit = static_cast<double>(model_->exit_diameter),
+                 widened = static_cast<double>(model_->divergence) * static_cast<double>(t);
     DroppedPoints dropped;
     dropped.incidence = square < static_cast<double>(limits.least_cosine_square);
     dropped.footprint = limits.largest_footprint_square > 0 &&
-                        diameter * diameter > static_cast<double>(limits.largest_footprint_square) * square;
+                        exit * exit + widened * widened > static_cast<double>(limits.largest_footprint_square) * square;
     dropped.noise = limits.largest_sigma > 0 && noise_.sigma(t, reflectivity) > limits.largest_sigma;
     dropped.echo = limits.largest_reach_square > 0 && !detected(reach_square(mesh) * passed, cosine, t);
     dropped.points = dropped.incidence + dropped.footprint + dropped.noise + dropped.echo > 0;

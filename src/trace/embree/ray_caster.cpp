@@ -29,13 +29,14 @@ struct Context {
   std::vector<RayCaster::Crossing>* all = nullptr;
   // Directions by the ray's id, as Embree is given them; null: where nothing is shared.
   const float *x = nullptr, *y = nullptr, *z = nullptr;
+  const Float3* origins = nullptr;  // by the ray's id; null: all are `origin`
 };
 
-// Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle. A ray goes on
-// if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
+// Calls take(ray, primitive, distance) for rays `first` to first + n from `origin` to which Embree proposes a triangle.
+// A ray goes on if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
 template <unsigned n, bool placed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
-                                         const Context& context, const Take& take) {
+                                         const Context& context, const Float3& origin, const Take& take) {
   const unsigned all = args->N;
   alignas(32) float own_x[n], own_y[n], own_z[n];
   const float *x = own_x, *y = own_y, *z = own_z;
@@ -60,9 +61,8 @@ template <unsigned n, bool placed, class Take>
         context.tree.number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
     if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = proposed;
-      context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin, x, y, z,
-                                  t);
-      context.planes.beside<n>(primitive, context.origin, x, y, z, t, beside);
+      context.planes.distances<n>(context.planes.seen(primitive, origin), primitive, origin, x, y, z, t);
+      context.planes.beside<n>(primitive, origin, x, y, z, t, beside);
     }
     if (beside[k] == 0 && take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
       RTCRayN_tfar(args->ray, all, i) = t[k] * beyond;
@@ -76,14 +76,24 @@ template <bool placed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Context& context,
                                          const Take& take) {
   unsigned first = 0;
-  for (; first + packet <= args->N; first += packet) judge<packet, placed>(args, first, context, take);
-  for (; first < args->N; ++first) judge<1, placed>(args, first, context, take);
+  for (; first + packet <= args->N; first += packet) judge<packet, placed>(args, first, context, context.origin, take);
+  for (; first < args->N; ++first) judge<1, placed>(args, first, context, context.origin, take);
+}
+
+template <bool placed, class Take>
+[[gnu::always_inline]] inline void judge_each(const RTCFilterFunctionNArguments* args, const Context& context,
+                                              const Take& take) {
+  for (unsigned k = 0; k < args->N; ++k)
+    if (args->valid[k] != 0)
+      judge<1, placed>(args, k, context, context.origins[RTCRayN_id(args->ray, args->N, k)], take);
 }
 
 template <class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Take& take) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
-  if (context.x)
+  if (context.origins)
+    context.x ? judge_each<true>(args, context, take) : judge_each<false>(args, context, take);
+  else if (context.x)
     judge<true>(args, context, take);
   else
     judge<false>(args, context, take);
@@ -195,9 +205,10 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
     RTCRay8& ray = hits[p].ray;
     for (std::uint32_t lane = 0; lane < packet; ++lane) {
       const std::uint32_t i = p * packet + lane;
-      ray.org_x[lane] = rays.origin.x;
-      ray.org_y[lane] = rays.origin.y;
-      ray.org_z[lane] = rays.origin.z;
+      const Float3& origin = rays.origins && i < rays.size ? rays.origins[i] : rays.origin;
+      ray.org_x[lane] = origin.x;
+      ray.org_y[lane] = origin.y;
+      ray.org_z[lane] = origin.z;
       ray.tnear[lane] = rays.start * before;
       ray.dir_x[lane] = RayCaster::safe(rays.x[i]);
       ray.dir_y[lane] = RayCaster::safe(rays.y[i]);
@@ -221,6 +232,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
       x[i] = safe(rays.x[i]), y[i] = safe(rays.y[i]), z[i] = safe(rays.z[i]);
     context.x = x, context.y = y, context.z = z;
   }
+  context.origins = rays.origins;
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCIntersectArguments arguments;

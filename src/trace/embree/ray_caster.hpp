@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits of bundles of rays from one point. Embree proposes hits, and this file chooses.
+// Nearest hits of bundles of rays, mostly from one point. Embree proposes hits, and this file chooses.
 #pragma once
 
 #include <cmath>
@@ -15,13 +15,14 @@
 
 namespace vantage {
 
-// Up to `capacity` rays with a common origin. Neighbours should have similar directions.
+// Up to `capacity` rays, mostly with a common origin. Neighbours should have similar directions.
 struct RayBundle {
   static constexpr std::uint32_t capacity = 256;
   static constexpr std::uint32_t no_hit = 0xFFFFFFFFu;
 
   Float3 origin;
-  float start = 0;  // rays start at this multiple of their direction
+  const Float3* origins = nullptr;  // one for each ray, in place of `origin`; slower
+  float start = 0;                  // rays start at this multiple of their direction
   std::uint32_t size = 0;
   alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
   alignas(64) float end[capacity];

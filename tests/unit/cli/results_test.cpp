@@ -304,6 +304,31 @@ TEST_F(Results, ScanWithoutAFileOnlyCounts) {
   EXPECT_EQ(files(), std::vector<std::string>{});
 }
 
+// The same draw for every station of a run, by its seed.
+TEST_F(Results, ScansHaveTheErrorsOfTheirInstrument) {
+  const auto scanned = [&](std::vector<std::string> more) {
+    auto command = coarse("scan", four_heads);
+    command.insert(command.end(), {"-o", path("cloud.ply")});
+    command.insert(command.end(), more.begin(), more.end());
+    const auto result = json_of(command);
+    return std::pair(result, read("cloud.ply"));
+  };
+  const auto [right, exact] = scanned({"--calibration", "3600,500,10"});
+  const auto [wrong, cloud] = scanned({"--calibration", "3600,500,10", "--instrument-errors", "4"});
+  const auto [other, another] = scanned({"--calibration", "3600,500,10", "--instrument-errors", "5"});
+  EXPECT_FALSE(right["stations"][0].contains("instrument_errors"));
+  EXPECT_EQ(wrong["points"], right["points"]);
+  EXPECT_EQ(wrong["points_on_surveyed"], right["points_on_surveyed"]);
+  EXPECT_NE(cloud, exact);
+  EXPECT_NE(cloud, another);
+  const auto& drawn = wrong["stations"][0]["instrument_errors"];
+  EXPECT_NE(drawn["range_offset_mm"].get<double>(), 0);
+  EXPECT_EQ(drawn, wrong["stations"][3]["instrument_errors"]);
+  EXPECT_NE(drawn, other["stations"][0]["instrument_errors"]);
+  expect_refused(run_program(coarse("scan", {"--station", "8,0,1.5", "--instrument-errors", "4"})), 2,
+                 "states no calibration");
+}
+
 TEST_F(Results, PanoramasArePictures) {
   const auto result = json_of(
       coarse("panorama", {"--station", "8,0,1.5", "--width", "64", "--views", "range,mesh", "-o", path("views")}));

@@ -589,10 +589,10 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
 struct Tied {
   Made made{.heads = {{-6, 0.4, 0}, {0, -0.3, 0.2}, {5, 0, 0}}};
   std::vector<RegistrationTarget> targets{
-      {.centre = {-3, 1, 0.5}, .seen_by = {{0, 0.002}, {1, 0.001}}},
-      {.centre = {2, -1, 0}, .seen_by = {{0, 0.004}, {1, 0.002}, {2, 0.001}}},
-      {.centre = {4, 0.5, -0.5}, .control_m = 0.003, .seen_by = {{1, 0.002}, {2, 0.002}}},
-      {.centre = {9, 0.5, -0.5}, .control_m = 0.005, .seen_by = {{2, 0.003}}}};
+      {.centre = {-3, 1, 0.5}, .seen_by = {{0, 0.002, 0.001}, {1, 0.001, 0.001}}},
+      {.centre = {2, -1, 0}, .seen_by = {{2, 0.004, 0.001}, {1, 0.002, 0.003}, {0, 0.001, 0.002}}},
+      {.centre = {4, 0.5, -0.5}, .control_m = 0.003, .seen_by = {{1, 0.002, 0.0005}, {2, 0.002, 0.002}}},
+      {.centre = {9, 0.5, -0.5}, .control_m = 0.005, .seen_by = {{2, 0.003, 0.001}}}};
   RegistrationOptions options{
       .model = model, .position_m = 0.05, .heading = Angle::degrees(0.5), .tilt = Angle::degrees(0.05)};
   Tied() {
@@ -627,7 +627,14 @@ TEST(RegistrationError, WithTargetsIsThatOfAnAdjustmentWithTheirCentresAmongTheU
         Eigen::MatrixXd row = Eigen::MatrixXd::Zero(3, n + more);
         row.middleCols(static_cast<Eigen::Index>(seen.station) * d, d) = bare.displacement_at(target.centre);
         row.middleCols(at, 3) = Eigen::Matrix3d::Identity();
-        all += row.transpose() * row / (seen.sigma_m * seen.sigma_m);
+        // Along the line from the head, and two axes across it.
+        const Vec3 line = target.centre - tied.made.heads[seen.station];
+        const Eigen::Vector3d along = Eigen::Vector3d(line.x, line.y, line.z).normalized(),
+                              side = along.unitOrthogonal(), up = along.cross(side);
+        for (const Eigen::Vector3d& axis : {along, side, up}) {
+          const double sigma = axis == along ? seen.along_m : seen.across_m;
+          all += row.transpose() * axis * axis.transpose() * row / (sigma * sigma);
+        }
       }
     }
     const Eigen::MatrixXd expected = all.inverse().topLeftCorner(n, n), found = with.covariance();
@@ -645,7 +652,7 @@ TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
     RegistrationTarget target{.centre = {}, .control_m = 0.003};
     for (int k = 0; k < 64; ++k) {
       made.heads.push_back({4.0 * k, k % 3 == 0 ? 0.4 : -0.3, 0.1 * (k % 2)});
-      if (k % 20 == 3) target.seen_by.push_back({static_cast<std::size_t>(k), 0.002});
+      if (k % 20 == 3) target.seen_by.push_back({static_cast<std::size_t>(k), 0.002, 0.001});
     }
     for (int k = 0; k < 31; ++k) {
       const std::uint64_t here = std::uint64_t{15} << (2 * k);  // four stations

@@ -72,12 +72,13 @@ TEST(LimitModel, OfAWallSquareOnAnIncidenceLeavesADisc) {
 
 TEST(LimitModel, AFootprintGrowsWithRangeAndSlant) {
   const Scanner scanner = rtc360_scanner();
-  for (const double detail : {0.0091, 0.0113, 0.0157}) {
+  for (const double detail : {0.0068, 0.0083, 0.0121}) {
     const NetworkCounts counts = count(wall(detail, 0), scanner, {.max_incidence = Angle::degrees(90)});
-    EXPECT_EQ(counts.points_on_surveyed[0],
-              expected(scanner, [&](double cosine) { return (0.006 + 5e-4 * 5 / cosine) / cosine <= detail; }));
+    EXPECT_EQ(counts.points_on_surveyed[0], expected(scanner, [&](double cosine) {
+                return std::hypot(0.006, 5e-4 * 5 / cosine) / cosine <= detail;
+              }));
   }
-  // 60° by default: the beam at 5 m is 8.5 mm wide.
+  // 60° by default: the beam at 5 m is 6.5 mm wide.
   const NetworkCounts usual = count(wall(1, 0), scanner, {});
   EXPECT_EQ(usual.points_on_surveyed[0], expected(scanner, [](double cosine) { return cosine >= 0.5; }));
   EXPECT_EQ(usual.dropped[0].footprint, 0u);

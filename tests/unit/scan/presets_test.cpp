@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "scan/noise_model.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scanner.hpp"
@@ -24,13 +25,44 @@ TEST(Presets, HoldTheScannersOfTheTrade) {
     EXPECT_NE(preset.summary.find("settings"), std::string::npos);
     if (preset.key == "vz-400i") {
       EXPECT_EQ(preset.summary,
-                "RIEGL VZ-400i: 360° around, zenith 30° to 130°, 1.5 to 800 m, noise table; settings 20mdeg, 40mdeg, "
-                "40mdeg-1200khz "
-                "(default 40mdeg)");
+                "RIEGL VZ-400i: 360° around, zenith 30° to 130°, 1.5 to 800 m, one figure of noise, of 100 m, for all "
+                "distances and reflectivities; settings 20mdeg, 40mdeg, 40mdeg-1200khz (default 40mdeg)");
     }
+    const auto tells = [&](const char* text) { return preset.summary.find(text) != std::string::npos; };
+    EXPECT_EQ(tells("no noise table: exact ranges"), preset.key == "zf5016") << preset.summary;
+    EXPECT_EQ(tells("one figure of noise"), preset.key == "x7" || preset.key == "vz-400i") << preset.summary;
+    EXPECT_EQ(tells("noise of 5 distances and 3 reflectivities"), preset.key == "rtc360") << preset.summary;
     EXPECT_NO_THROW(load_scanner(preset.key, presets).check());
   }
-  EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "rtc360", "vz-400i", "x7", "zf5016"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "measured-p-class", "rtc360", "vz-400i", "x7", "zf5016"}));
+}
+
+// The table of the field check is its fit, and near what was measured: white at 5, 11 and 20 m, black at 5 and 20 m.
+TEST(Presets, MeasuredPClassIsItsFieldCheck) {
+  const NoiseTable noise = load_scanner("measured-p-class", presets).noise;
+  for (std::size_t row = 0; row < noise.reflectivities.size(); ++row)
+    for (std::size_t column = 0; column < noise.distances_m.size(); ++column) {
+      const double square = 0.52 * 0.52 + 0.66 * 0.66 * std::pow(noise.distances_m[column] / 10, 0.86) *
+                                              std::pow(noise.reflectivities[row] / 0.9, -1.18);
+      EXPECT_NEAR(noise.sigma_m[row * noise.distances_m.size() + column], 1e-3 * std::sqrt(square), 5.1e-6);
+    }
+  const auto sigma_mm = [&](double distance, double reflectivity) {
+    return 1e3 * table_sigma(noise, distance, reflectivity);
+  };
+  EXPECT_NEAR(sigma_mm(5, 0.9), 0.74, 0.05);
+  EXPECT_NEAR(sigma_mm(11, 0.9), 0.79, 0.09);
+  EXPECT_NEAR(sigma_mm(20, 0.9), 1.02, 0.05);
+  EXPECT_NEAR(sigma_mm(5, 0.05), 2.7, 0.2);
+  EXPECT_NEAR(sigma_mm(20, 0.04), 5.6, 0.3);
+}
+
+TEST(Presets, ASettingMayMultiplyTheNoise) {
+  const Scanner usual = load_scanner("measured-p-class@6.3mm", presets),
+                half = load_scanner("measured-p-class@3.1mm", presets);
+  ASSERT_EQ(half.noise.sigma_m.size(), usual.noise.sigma_m.size());
+  for (std::size_t k = 0; k < usual.noise.sigma_m.size(); ++k)
+    EXPECT_DOUBLE_EQ(half.noise.sigma_m[k], 1.34 * usual.noise.sigma_m[k]);
+  EXPECT_EQ(load_noise("measured-p-class@3.1mm").sigma_m, half.noise.sigma_m);
 }
 
 TEST(Presets, Rtc360) {
@@ -145,6 +177,12 @@ TEST(Presets, BrokenFilesSayWhere) {
       {"row 2 must have a value", [](auto& d) { d["scanners"]["rtc360"]["noise"]["sigma_mm"][1].erase(0); }},
       {"must have a row", [](auto& d) { d["scanners"]["rtc360"]["noise"]["sigma_mm"].erase(0); }},
       {"6mm: needs one of", [](auto& d) { d["scanners"]["rtc360"]["settings"]["6mm"].erase("spacing_mm"); }},
+      {"noise_factor: \"source\" is missing",
+       [](auto& d) { d["scanners"]["rtc360"]["settings"]["6mm"]["noise_factor"]["value"] = 2; }},
+      {"noise_factor / value: must be above 0",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["settings"]["6mm"]["noise_factor"] = {{"value", 0}, {"source", "assumed"}};
+       }},
       {"vertical_angle in degrees is 720",
        [](auto& d) { d["scanners"]["rtc360"]["vertical_angle_deg"]["value"] = 720; }},
   };

@@ -20,16 +20,17 @@ using test::QuadScene;
 
 constexpr double kExit_m = 0.006, kDivergence = 5e-4;
 constexpr double kWall_m = 10;
-constexpr double kRadius_m = (kExit_m + kDivergence * kWall_m) / 2;  // of the footprint on the wall, to 1/e²
+// Of the footprint on the wall, to 1/e².
+const double kRadius_m = std::hypot(kExit_m, kDivergence* kWall_m) / 2;
 constexpr float kR = 0.5f;
 
-// Rays around the x axis, a few millimetres apart on a wall at 10 m.
+// Rays around the x axis, a third of a millimetre apart on a wall at 10 m: two in each bin of means().
 Scanner narrow_scanner() {
   Scanner scanner;
   scanner.horizontal_angle = Angle::degrees(0.6);
   scanner.zenith_start = Angle::degrees(89.7);
   scanner.vertical_angle = Angle::degrees(2 * 0.6);
-  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.005);
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.002);
   scanner.max_range_m = 40;
   scanner.beam_divergence = Angle::radians(kDivergence);
   scanner.exit_diameter_m = kExit_m;

@@ -23,7 +23,8 @@ namespace {
 
 constexpr double kLength_m = 60, kRadius_m = 3;
 
-Site tunnel(double step_deg = 0.1, double user_size_m = 0.3, double spacing_m = 0.05) {
+Site tunnel(double step_deg = 0.1, double user_size_m = 0.3, double spacing_m = 0.05,
+            std::optional<std::array<double, 3>> calibration = {}) {
   std::vector<Vec3> corners;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   constexpr std::uint32_t sides = 16, rings = 30;
@@ -45,6 +46,7 @@ Site tunnel(double step_deg = 0.1, double user_size_m = 0.3, double spacing_m = 
   options.engine = Engine::embree;
   options.user_size_m = user_size_m, options.spacing_m = spacing_m;
   options.steps = std::array{Angle::degrees(step_deg), Angle::degrees(step_deg)};
+  options.calibration = calibration;
   return Site(Scene::from_triangles(corners, triangles), options);
 }
 
@@ -294,8 +296,31 @@ TEST(Targets, AreMeasuredNearEnoughInFieldAndInFreeView) {
   EXPECT_TRUE(targets[2].stations.empty());
   EXPECT_EQ(std::ranges::count(targets[3].stations, 0u), 0) << "straight below no scanner of 300° sees";
   ASSERT_EQ(sighted.size(), 4u);
-  EXPECT_NEAR(sighted[0].seen_by[0].sigma_m, TargetOptions().sigma_m, 1e-12) << "ranges are exact here";
+  // Ranges are exact here, and nothing is stated.
+  EXPECT_NEAR(sighted[0].seen_by[0].across_m, 0.001, 1e-12);
+  EXPECT_NEAR(sighted[0].seen_by[0].along_m, 0.001, 1e-12);
   EXPECT_THROW(sight_targets(site.simulator(), site.clash(), stations, targets, {.diameter_m = 0}), Error);
+}
+
+// By a scanner that states what its calibration leaves: angles across the line, ranges along it.
+TEST(Targets, AreMeasuredAsWellAsTheScannerIsCalibrated) {
+  const auto sighted = [](std::optional<double> sigma_m) {
+    Site site = tunnel(0.1, 0.3, 0.05, std::array{14.4, 1.0, 10.0});
+    const auto stations = stations_of(site);
+    std::vector<Target> targets{{.name = "near", .centre = {17, 1, 1.5}}};
+    return std::pair(sight_targets(site.simulator(), site.clash(), stations, targets, {.sigma_m = sigma_m}).at(0),
+                     stations);
+  };
+  for (const double fitted_mm : {0.2, 0.7}) {
+    const auto [target, stations] = sighted(fitted_mm == 0.2 ? std::nullopt : std::optional(1e-3 * fitted_mm));
+    ASSERT_EQ(target.seen_by.size(), 2u);
+    for (const RegistrationTarget::Sighting& seen : target.seen_by) {
+      const Vec3 line = Vec3{17, 1, 1.5} - stations[seen.station].position;
+      const double range = std::sqrt(dot(line, line)), angle = 14.4 / 3600 * std::numbers::pi / 180;
+      EXPECT_NEAR(seen.across_m, std::hypot(1e-3 * fitted_mm, angle * range), 1e-9);
+      EXPECT_NEAR(seen.along_m, std::hypot(1e-3 * fitted_mm, 0.001, 1e-5 * range), 1e-9);
+    }
+  }
 }
 
 TEST(Targets, AreWrittenAndReadAsTables) {

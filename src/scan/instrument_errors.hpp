@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "trace/tracer.hpp"
+#include "vantage/scanner.hpp"
+
+namespace vantage {
+
+// Moves the points of consecutive rays, and their ranges, as an instrument with these errors measures them. What else
+// is known of a point stays that of its ray. REQUIRES: raw.range is filled.
+void apply(const InstrumentErrors& errors, const Scanner& scanner, const TraceStation& station, std::uint64_t first_ray,
+           Tracer::RawChunk& raw);
+
+}  // namespace vantage
