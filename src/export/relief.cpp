@@ -108,11 +108,37 @@ std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float fl
 
 }  // namespace
 
+namespace {
+
+constexpr std::uint32_t kBlock = 1024;  // triangles that follow each other, mostly of one mesh
+
+// The least and the largest row that each block of triangles touches, lines along them included.
+std::vector<std::pair<double, double>> rows_of_blocks(const SceneData& scene, const MapWindow& window,
+                                                      std::uint32_t triangles) {
+  std::vector<std::pair<double, double>> rows((triangles + kBlock - 1) / kBlock);
+  parallel::for_all(std::size_t{0}, rows.size(), [&](std::size_t block) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto first = static_cast<std::uint32_t>(block) * kBlock;
+    for (std::uint32_t t = first; t < std::min(first + kBlock, triangles); ++t)
+      for (const Float3& corner : scene.corners(t)) {
+        const double y = window.at(scene.origin + widen(corner)).y;
+        low = std::min(low, y), high = std::max(high, y);
+      }
+    rows[block] = {low - kWidest / 2 - 1, high + kWidest / 2 + 1};
+  });
+  return rows;
+}
+
+}  // namespace
+
 HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut,
                              std::span<const float> cuts) {
   HeightBuffer heights{window, {}, {}};
   heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
   heights.triangle.assign(window.columns * window.rows, kNothing);
+  const std::uint32_t opaque = scene.opaque_count();  // the search goes on below a glass roof
+  std::vector<std::pair<double, double>> rows;
+  if (!scene.shares()) rows = rows_of_blocks(scene, window, opaque);
   for_row_bands(window, [&](const RowBand& band) {
     Painter painter(heights, z_cut - scene.origin.z, cuts, band);
     const auto paint = [&](std::uint32_t first, std::uint32_t count) {
@@ -132,9 +158,9 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
           for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
       }
     };
-    // The search goes on below a glass roof.
-    const std::uint32_t opaque = scene.opaque_count();
-    if (!scene.shares()) paint(0, opaque);
+    for (std::uint32_t block = 0; block < rows.size(); ++block)
+      if (rows[block].second >= static_cast<double>(band.first) && rows[block].first <= static_cast<double>(band.end))
+        paint(block * kBlock, std::min(kBlock, opaque - block * kBlock));
     for (const MeshInstance& run : scene.instances) {
       if (run.first_triangle >= opaque) break;
       const MapPoint low = window.at(scene.origin + run.bounds.min), high = window.at(scene.origin + run.bounds.max);

@@ -539,7 +539,7 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
   if (auto known = impl_->known_patches.find(voxel_indices)) return std::move(*known);
   std::vector<VoxelPatch> patches;
   patches.reserve(voxel_indices.size());
-  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, voxel_indices)) {
+  for (const VoxelSurface& surface : impl_->surfaces->find(voxel_indices)) {
     const auto [x, y, z] = surface.point;
     patches.push_back({.point = origin() + Vec3{x, y, z},
                        .normal = {surface.normal.x, surface.normal.y, surface.normal.z},
