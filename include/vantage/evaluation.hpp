@@ -127,7 +127,7 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
 Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
                double most_min = std::numeric_limits<double>::infinity());
 /// Links between heights that differ by a storey, 1.8 m or more, without which the network falls into more components,
-/// as far as a way on foot exists that is longer than three times the line between the heads, and than 15 m. Links
+/// as far as a way on foot exists that is longer than 15 m, and than 1.5 times the line between the heads. Links
 /// along shorter ways are preferred to them, then links of larger values. Empty if links are not known.
 std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite& on_site);
 /// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are

@@ -169,13 +169,14 @@ std::vector<std::string> links_advice(const StationLinks& links, std::span<const
 }
 
 std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const std::vector<std::string>& names) {
-  std::vector<std::string> advice;
-  for (const StoreyTie& tie : ties)
-    advice.push_back(names[tie.a] + "–" + names[tie.b] +
-                     " alone ties two storeys, through a window or across a void: " + fixed(tie.apart_m, 1) +
-                     " m apart, " + fixed(tie.way_m, 0) +
-                     " m on foot; stations at both ends of the stair would tie them better");
-  return advice;
+  if (ties.empty()) return {};
+  constexpr std::size_t kNamed = 6;
+  std::string text = "storeys are tied past the stair, through a window or across a void, by ";
+  for (std::size_t k = 0; k < std::min(kNamed, ties.size()); ++k)
+    text += (k > 0 ? ", " : "") + names[ties[k].a] + "–" + names[ties[k].b] + " (" + fixed(ties[k].apart_m, 1) +
+            " m apart, " + fixed(ties[k].way_m, 0) + " m on foot)";
+  if (ties.size() > kNamed) text += " and " + std::to_string(ties.size() - kNamed) + " more";
+  return {text + ": stations at both ends of the stair would tie them better"};
 }
 
 // Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
