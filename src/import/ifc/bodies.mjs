@@ -5,19 +5,41 @@ const FALLBACKS = ["body-fallback", "facetation", "tessellation", "surface", "mo
 const NO_BODY = ["axis", "footprint", "foot print", "box", "annotation", "clearance", "cog", "reference", "profile", "plan", "lighting", "surveypoints", "survey", "mappedrepresentation axis"];
 const NO_SURFACE = ["curve2d", "curve3d", "curve", "annotation2d", "point", "pointcloud", "geometriccurveset", "text", "boundingbox", "lightsource"];
 
-// {body, left}: references, and the names of those that are none.
-export function bodies(step, representations) {
-  const named = representations.map((ref) => {
-    const [context, identifier, type] = step.args(ref.ref);
-    const about = context ? step.args(context.ref) : [], of = context ? step.type(context.ref) : "";
-    const text = (value) => (typeof value === "string" ? value.trim() : "");
+const text = (value) => (typeof value === "string" ? value.trim() : "");
+
+export class Bodies {
+  #kinds = new Map();  // of representations, by what tells them: most products have the same ones
+
+  constructor(step) {
+    this.step = step;
+  }
+
+  // {body, left}: references, and the names of those that are none.
+  of(representations) {
+    if (representations.length === 1) {
+      const { drawn, label } = this.#kind(representations[0].ref);
+      return drawn ? { body: representations, left: [] } : { body: [], left: [label] };
+    }
+    const all = representations.map((ref) => ({ ref, kind: this.#kind(ref.ref) })), drawn = all.filter(({ kind }) => kind.drawn);
+    let body = drawn.filter(({ kind }) => kind.key === "body");
+    for (const fallback of FALLBACKS) if (body.length === 0) body = drawn.filter(({ kind }) => kind.key === fallback);
+    if (body.length === 0) body = drawn;
+    return { body: body.map(({ ref }) => ref), left: all.filter((one) => !body.includes(one)).map(({ kind }) => kind.label) };
+  }
+
+  // {key, label, drawn}: whether it may be a body.
+  #kind(id) {
+    const [context, identifier, type] = this.step.args(id), told = JSON.stringify([context, text(identifier), text(type)]);
+    let kind = this.#kinds.get(told);
+    if (!kind) this.#kinds.set(told, kind = this.#judged(context, text(identifier), text(type).toLowerCase()));
+    return kind;
+  }
+  #judged(context, identifier, type) {
+    const { step } = this, about = context ? step.args(context.ref) : [], of = context ? step.type(context.ref) : "";
     // A subcontext is named as what it is for: ContextIdentifier.
-    const name = text(identifier) || (of === "IFCGEOMETRICREPRESENTATIONSUBCONTEXT" ? text(about[0]) : "");
-    return { ref, name, key: name.toLowerCase(), type: text(type).toLowerCase(), plan: /plan|sketch|annotation/i.test(text(about[1])) };
-  });
-  const drawn = named.filter(({ key, type, plan }) => !NO_BODY.includes(key) && !NO_SURFACE.includes(type) && (!plan || key === "body"));
-  let body = drawn.filter(({ key }) => key === "body");
-  for (const fallback of FALLBACKS) if (body.length === 0) body = drawn.filter(({ key }) => key === fallback);
-  if (body.length === 0) body = drawn;
-  return { body: body.map(({ ref }) => ref), left: named.filter((one) => !body.includes(one)).map(({ name, type }) => name || type || "nameless") };
+    const name = identifier || (of === "IFCGEOMETRICREPRESENTATIONSUBCONTEXT" ? text(about[0]) : ""), key = name.toLowerCase();
+    const plan = /plan|sketch|annotation/i.test(text(about[1]));
+    const drawn = !NO_BODY.includes(key) && !NO_SURFACE.includes(type) && (!plan || key === "body");
+    return { key, label: name || type || "nameless", drawn };
+  }
 }

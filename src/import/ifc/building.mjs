@@ -93,8 +93,9 @@ export class Building {
     const guid = this.step.args(id)[0];
     let index = -1, place = null, shown = new Map();
     const take = ({ geometries }) => {
-      const sound = taken(geometries).filter((part) => part.flatTransformation.every(Number.isFinite))
-        .map(({ geometryExpressID, color: { x, y, z, w }, flatTransformation }) => ({ geometry: geometryExpressID, colour: [x, y, z, w], place: flatTransformation }));
+      const sound = [];
+      for (const { geometryExpressID, color: { x, y, z, w }, flatTransformation } of taken(geometries))
+        if (flatTransformation.every(Number.isFinite)) sound.push({ geometry: geometryExpressID, colour: [x, y, z, w], place: flatTransformation, turned: false });
       if (sound.length === 0) return;
       // Equal products share a mesh if their parts lie equally to the first.
       const back = inverse(sound[0].place);
@@ -103,10 +104,12 @@ export class Building {
       // web-ifc turns a geometry's faces each time that a product places it mirrored: all places see what is left.
       const mirrored = new Map();
       for (const part of sound) if (determinant(part.place) < 0) mirrored.set(part.geometry, !mirrored.get(part.geometry));
-      for (const part of sound) part.turned = mirrored.get(part.geometry) ?? false;
-      for (const part of sound) part.place = product(toFirst, part.place);
+      for (const part of sound) {
+        part.turned = mirrored.get(part.geometry) ?? false;
+        part.place = product(toFirst, part.place);
+      }
       // An opening is cut out of the geometry itself: only products without one have it in common.
-      const mesh = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0);
+      const mesh = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0, isClosed);
       ({ index, shown } = mesh);
       if (index >= 0) this.#extend(mesh.bounds, place);
     };
@@ -122,7 +125,7 @@ export class Building {
     }
     return {
       empty: parts.filter((ids) => !ids.some((one) => shown.has(one))).length,
-      open: [...shown].filter(([one, share]) => isClosed(one) && share > OPEN).length,
+      open: [...shown.values()].filter((share) => share > OPEN).length,
     };
   }
 
@@ -170,8 +173,8 @@ export class Building {
     return index;
   }
 
-  // `own`: the product that the parts' geometry is cut for, or 0.
-  #mesh(parts, own) {
+  // `own`: the product that the parts' geometry is cut for, or 0; `shown` tells what geometries lack that have to be closed.
+  #mesh(parts, own, isClosed) {
     const first = parts[0].geometry, alike = this.meshesOf.get(first) ?? [];
     const known = alike.find((one) => one.own === own && one.parts.length === parts.length && one.parts.every((part, i) => same(part, parts[i])));
     if (known) return known;
@@ -179,7 +182,7 @@ export class Building {
     for (const part of parts) {
       const geometry = this.#geometry(part.geometry, part.place, part.turned);
       if (geometry.indices.length === 0) continue;
-      shown.set(part.geometry, missing(geometry));
+      shown.set(part.geometry, isClosed(part.geometry) ? missing(geometry) : 0);
       const material = this.site.material(part.colour);
       if (!byMaterial.has(material)) byMaterial.set(material, []);
       byMaterial.get(material).push(geometry);
@@ -206,21 +209,22 @@ export class Building {
   }
 
   // Vertices come with a normal each, already placed.
-  #geometry(id, place, turned = false) {
+  #geometry(id, m, turned = false) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
-    const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()), count = Math.floor(vertices.length / 6);
-    const indices = api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize());
-    const positions = new Float64Array(3 * count), m = Float64Array.from(place);
+    const from = geometry.GetVertexData() / 4, count = Math.floor(geometry.GetVertexDataSize() / 6);
+    const first = geometry.GetIndexData() / 4, size = geometry.GetIndexDataSize();
+    const { HEAPF32, HEAPU32 } = api.wasmModule;  // asked for last: web-ifc's memory moves as it grows
+    const positions = new Float64Array(3 * count), indices = HEAPU32.slice(first, first + size);
     let sound = true;
     for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
     for (let v = 0; v < count; ++v) {
-      const x = vertices[6 * v], y = vertices[6 * v + 1], z = vertices[6 * v + 2];
+      const x = HEAPF32[from + 6 * v], y = HEAPF32[from + 6 * v + 1], z = HEAPF32[from + 6 * v + 2];
       for (let r = 0; r < 3; ++r) positions[3 * v + r] = m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];
       sound &&= Number.isFinite(positions[3 * v] + positions[3 * v + 1] + positions[3 * v + 2]);
     }
     geometry.delete();
     if (!sound) return { positions: [], indices: [] };
-    if (determinant(place) < 0 !== turned)  // faces keep their outside
+    if (determinant(m) < 0 !== turned)  // faces keep their outside
       for (let i = 0; i + 2 < indices.length; i += 3) [indices[i + 1], indices[i + 2]] = [indices[i + 2], indices[i + 1]];
     return { positions, indices };
   }
@@ -248,8 +252,9 @@ const same = (a, b) => a.geometry === b.geometry && a.turned === b.turned && a.c
 
 // One list of vertices and triangles of several.
 function joined(geometries) {
-  const sum = (key) => geometries.reduce((all, one) => all + one[key].length, 0);
-  const positions = new Float32Array(sum("positions")), indices = new Uint32Array(sum("indices"));
+  let vertices = 0, corners = 0;
+  for (const one of geometries) vertices += one.positions.length, corners += one.indices.length;
+  const positions = new Float32Array(vertices), indices = new Uint32Array(corners);
   let vertex = 0, index = 0;
   for (const one of geometries) {
     positions.set(one.positions, 3 * vertex);

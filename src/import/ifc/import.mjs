@@ -19,7 +19,9 @@ const settings = process.argv.slice(2).filter((word) => word.startsWith("unit=")
 const files = process.argv.slice(2 + settings.length);
 if (files.length === 0) fail(USAGE, "usage: node import.mjs [unit=UNIT] FILE... >site.glb");
 // WebAssembly is optimized once it has run for a while: most models are read sooner than web-ifc would be compiled again.
+// For the same reason functions are optimized on their own, and little is copied into those that call them.
 v8.setFlagsFromString("--wasm-tiering-budget=500000000");
+v8.setFlagsFromString("--max-inlined-bytecode-size-cumulative=200");
 for (const talk of ["log", "info", "warn", "error", "debug"]) console[talk] = () => {};  // standard output is the GLB's
 
 let ifc;

@@ -7,10 +7,13 @@ export function transformed(m, x, y, z) {
 }
 
 export function product(a, b) {
-  const out = new Array(16).fill(0);
+  const out = [];
   for (let column = 0; column < 4; ++column)
-    for (let row = 0; row < 4; ++row)
-      for (let k = 0; k < 4; ++k) out[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+    for (let row = 0; row < 4; ++row) {
+      let sum = 0;
+      for (let k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];
+      out.push(sum);
+    }
   return out;
 }
 

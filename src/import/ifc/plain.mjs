@@ -2,7 +2,7 @@
 // Rewrites in an open model what web-ifc leaves to its caller or reads otherwise than the standard means, as entities of
 // the same shape that it reads rightly. Must run before web-ifc makes any geometry. What cannot be rewritten is told.
 import { Axes, unit } from "./axes.mjs";
-import { bodies } from "./bodies.mjs";
+import { Bodies } from "./bodies.mjs";
 import { Curves, Unread } from "./curves.mjs";
 import { gridPlace } from "./grids.mjs";
 import { Profiles } from "./profiles.mjs";
@@ -23,12 +23,14 @@ export class Plain {
     this.curves = new Curves(step, this.axes, chord, radians);
     this.profiles = new Profiles(step, this.axes, this.curves);
     this.solids = new Solids(step, this.axes, this.curves, this.profiles);
+    this.bodies = new Bodies(step);
     this.items = new Map();     // what became of each item
     this.shapes = new Map();    // and of each product's shape
     this.cut = new Set();       // solids of which web-ifc cuts others out
     this.solid = new Set();     // and others that are closed
     this.copies = new Map();    // items made apart, and what they were
     this.done = new Set();      // placements, profiles and operators
+    this.ones = new Set();      // directions of length 1
     this.curved = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE").length > 0;
     this.gridAxes = 0;          // products on a grid without a direction
     this.local = step.ids("IFCGRIDPLACEMENT", "IFCLINEARPLACEMENT").length === 0;  // no placement is of another kind
@@ -76,22 +78,21 @@ export class Plain {
   }
 
   #shape(id) {
-    const all = this.step.args(id)[2] ?? [], { body, left } = bodies(this.step, all);
+    const all = this.step.args(id)[2] ?? [], { body, left } = this.bodies.of(all), made = { parts: [], problems: [], left };
     if (body.length < all.length) this.step.change(id, { 2: body });
-    const parts = [], problems = [];
-    for (const representation of body) {
-      const made = this.#representation(representation.ref);
-      parts.push(...made.parts), problems.push(...made.problems);
-    }
-    return { parts, problems, left };
+    for (const representation of body) this.#representation(representation.ref, made);
+    return made;
   }
 
-  // Items that are not read are left out, so that they take no other with them.
-  #representation(id) {
-    const items = this.step.args(id)[3] ?? [], made = items.map((item) => this.#item(item.ref));
-    const read = items.filter((_, i) => !made[i].lost);
+  // Adds the parts and problems of a representation. Items that are not read are left out, so that they take no other with them.
+  #representation(id, { parts, problems }) {
+    const items = this.step.args(id)[3] ?? [], read = [];
+    for (const item of items) {
+      const made = this.#item(item.ref);
+      parts.push(...made.parts), problems.push(...made.problems);
+      if (!made.lost) read.push(item);
+    }
     if (read.length < items.length) this.step.change(id, { 3: read });
-    return { parts: made.flatMap(({ parts }) => parts), problems: made.flatMap(({ problems }) => problems) };
   }
 
   // {parts, problems, lost}: an item that is lost must not reach web-ifc.
@@ -101,7 +102,7 @@ export class Plain {
     const made = { parts: [], problems: [], lost: false }, type = this.step.type(id);
     this.items.set(id, made);
     try {
-      Object.assign(made, this.#read(id));
+      Object.assign(made, this.#read(id, type));
       if (/SOLID|IFCBLOCK|IFCSPHERE|IFCRIGHT|IFCRECTANGULARPYRAMID|BREP/.test(type)) this.solid.add(id);
     } catch (error) {
       if (!(error instanceof Unread) && !(error instanceof TypeError)) throw error;
@@ -110,13 +111,14 @@ export class Plain {
     return made;
   }
 
-  #read(id) {
-    const { step } = this, type = step.type(id), args = step.args(id), whole = { parts: [[id]], problems: [], lost: false };
+  #read(id, type) {
+    const { step } = this, args = step.args(id), whole = { parts: [[id]], problems: [], lost: false };
     switch (type) {
       case "IFCMAPPEDITEM": {
         this.#operator(args[1].ref);
-        const [, representation] = step.args(args[0].ref);
-        return { ...this.#representation(representation.ref), lost: false };
+        const [, representation] = step.args(args[0].ref), made = { parts: [], problems: [], lost: false };
+        this.#representation(representation.ref, made);
+        return made;
       }
       case "IFCBOOLEANRESULT": case "IFCBOOLEANCLIPPINGRESULT": return this.#boolean(id, args);
       case "IFCCSGSOLID": {
@@ -135,9 +137,11 @@ export class Plain {
         return whole;
       case "IFCEXTRUDEDAREASOLID": {
         this.#profile(args[0].ref);
+        if (this.ones.has(args[2].ref)) return whole;
         const direction = this.axes.point(args[2]), one = unit(direction);
         if (!one) throw new Unread("IFCEXTRUDEDAREASOLID along no direction");
         if (one.some((v, i) => Math.abs(v - direction[i]) > 1e-12)) step.change(id, { 2: step.add("IFCDIRECTION", [one]) });
+        else this.ones.add(args[2].ref);
         return whole;
       }
       case "IFCEXTRUDEDAREASOLIDTAPERED": case "IFCREVOLVEDAREASOLID": case "IFCSWEPTDISKSOLID": case "IFCSWEPTDISKSOLIDPOLYGONAL": case "IFCBLOCK": case "IFCSPHERE":
@@ -213,10 +217,9 @@ export class Plain {
 
   #profile(id) {
     if (this.done.has(id)) return;
-    const { step } = this, type = step.type(id), args = step.args(id);
-    const plain = type === "IFCRECTANGLEPROFILEDEF" || (type === "IFCCIRCLEPROFILEDEF" && args[3] > 0 && args[3] < this.curves.chord / AS_ELEVEN) ||
-      (type.startsWith("IFCARBITRARY") && this.#straight(args[2].ref) && (args[3] ?? []).every((hole) => this.#straight(hole.ref)));
-    if (!plain) {
+    const { step } = this, type = step.type(id);
+    if (!this.#isPlain(id, type)) {
+      const args = step.args(id);
       const ring = (points) => this.#line([...points, points[0]]);
       const area = enumeration(args[0]), one = ({ outer, holes }) =>
         holes.length > 0 ? ["IFCARBITRARYPROFILEDEFWITHVOIDS", [area, null, ring(outer), holes.map(ring)]] : ["IFCARBITRARYCLOSEDPROFILEDEF", [area, null, ring(outer)]];
@@ -224,6 +227,13 @@ export class Plain {
       step.write(id, ...(regions.length === 1 ? one(regions[0]) : ["IFCCOMPOSITEPROFILEDEF", [area, null, regions.map((region) => step.add(...one(region))), null]]));
     }
     this.done.add(id);
+  }
+
+  #isPlain(profile, type) {
+    if (type === "IFCRECTANGLEPROFILEDEF") return true;
+    const args = this.step.args(profile);
+    if (type === "IFCCIRCLEPROFILEDEF") return args[3] > 0 && args[3] < this.curves.chord / AS_ELEVEN;
+    return type.startsWith("IFCARBITRARY") && this.#straight(args[2].ref) && (args[3] ?? []).every((hole) => this.#straight(hole.ref));
   }
 
   #operator(id) {

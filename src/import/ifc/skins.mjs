@@ -10,6 +10,7 @@ export class Skins {
   constructor(step, axes, solids, metres) {
     Object.assign(this, { step, axes, solids, metres });
     this.hosts = new Map();  // what is opened, maybe in several places: its bodies, the direction through it, and its ends in that
+    this.shapes = new Map(); // of extrusions, by all that they are made of
   }
 
   // Opens skins of up to a centimetre. Returns {opening, host, skin_m, opened} of all that are left or were.
@@ -18,16 +19,16 @@ export class Skins {
     for (const id of step.ids("IFCRELVOIDSELEMENT")) {
       const [, , , , host, opening] = step.args(id);
       if (!host || !opening || this.#isRecess(opening.ref)) continue;
-      if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, { bodies: this.#bodies(host.ref, (...of) => this.#faces(...of)) });
+      if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, { bodies: this.#bodies(host.ref, true) });
       // Openings are many, and most reach through: their corners tell.
-      const wall = this.hosts.get(host.ref), hole = this.#bodies(opening.ref, (...of) => this.#corners(...of));
+      const wall = this.hosts.get(host.ref), hole = this.#bodies(opening.ref, false);
       if (wall.bodies.length === 0 || hole.length === 0) continue;
       wall.across ??= mainNormal(wall.bodies);
       wall.ends ??= ends(wall.bodies, wall.across);
       const { across, ends: [low, high] } = wall, [from, to] = ends(hole, across);
       const gaps = [from - low, high - to].map((gap) => gap * this.metres), skin = Math.max(...gaps);
       if (skin < NOTHING_M || skin > TOLD_M || (high - low) * this.metres < 2 * skin) continue;
-      const whole = skin <= OPENED_M ? hole.map((body) => this.#body(body, (...of) => this.#faces(...of))) : [];
+      const whole = skin <= OPENED_M ? hole.map((body) => this.#body(body, true)) : [];
       const opened = skin <= OPENED_M && whole.every((body) => this.#stretch(body, across, gaps));
       found.push({ opening: opening.ref, host: host.ref, skin_m: skin, opened });
     }
@@ -39,9 +40,9 @@ export class Skins {
     return [args[4], args[8]].some((type) => typeof type === "string" && /recess|niche/i.test(type));
   }
 
-  // {points, triangles, item, place, shared}, points in the model's coordinates; [] if they are not simple. `shapeOf`
-  // makes the first two of an item and its type.
-  #bodies(id, shapeOf) {
+  // {points, triangles, item, place, shared}, points in the model's coordinates; [] if they are not simple. Extrusions have
+  // triangles only if they are asked for whole.
+  #bodies(id, whole) {
     const { step, axes } = this, args = step.args(id), shape = args[6];
     if (!shape) return [];
     const bodies = [], at = axes.local(args[5]);
@@ -53,7 +54,7 @@ export class Skins {
         const inner = composed(composed(place, axes.operator(target.ref)), axes.placement(origin));
         return step.args(representation.ref)[3].forEach((one) => add(one.ref, inner, true));
       }
-      const body = this.#body({ item, place, shared }, shapeOf);
+      const body = this.#body({ item, place, shared }, whole);
       if (body) bodies.push(body);
     };
     try {
@@ -64,17 +65,20 @@ export class Skins {
     }
     return bodies;
   }
-  #body({ item, place, shared }, shapeOf) {
-    const made = shapeOf(item, this.step.type(item));
-    return made && { ...made, points: made.points.map((point) => placed(place, point)), item, place, shared };
+  #body({ item, place, shared }, whole) {
+    const made = this.#shape(item, whole);
+    return made && { points: made.points.map((point) => placed(place, point)), triangles: made.triangles, closed: made.closed, item, place, shared };
   }
 
-  #corners(item, type) {
-    return type === "IFCEXTRUDEDAREASOLID" ? { points: this.solids.corners(item) } : this.#faces(item, type);
+  #extrusion(item, whole) {
+    const of = JSON.stringify([whole, this.step.args(item)]);
+    let shape = this.shapes.get(of);
+    if (!shape) this.shapes.set(of, shape = whole ? this.solids.of(item) : { points: this.solids.corners(item) });
+    return shape;
   }
-  #faces(item, type) {
-    const { step } = this;
-    if (type === "IFCEXTRUDEDAREASOLID") { const { points, triangles } = this.solids.of(item); return { points, triangles }; }
+  #shape(item, whole) {
+    const { step } = this, type = step.type(item);
+    if (type === "IFCEXTRUDEDAREASOLID") return this.#extrusion(item, whole);
     if (type === "IFCTRIANGULATEDFACESET") {
       const [list, , , indices] = step.args(item);
       return indices.length > MANY ? null : { points: step.args(list.ref)[0], triangles: indices.map((face) => face.map((i) => i - 1)) };

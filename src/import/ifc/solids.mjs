@@ -134,7 +134,8 @@ export class Solids {
   #ends([profile, position, direction, depth, end]) {
     const at = this.axes.placement(position), d = this.axes.direction(direction);
     // Circles of either end get the chords of the larger one.
-    this.curves.like = Math.max(0, ...[profile, end].map((one) => this.step.args(one.ref)).map((args) => (typeof args[3] === "number" ? args[3] : 0)));
+    const radius = (one) => { const [, , , size] = this.step.args(one.ref); return typeof size === "number" ? size : 0; };
+    this.curves.like = Math.max(0, radius(profile), radius(end));
     let from, to;
     try {
       from = this.profiles.regions(profile);
@@ -142,7 +143,7 @@ export class Solids {
     } finally {
       this.curves.like = 0;
     }
-    const alike = from.length === to.length && from.every((one, i) => one.outer.length === to[i].outer.length && one.holes.length === to[i].holes.length && one.holes.every((hole, k) => hole.length === to[i].holes[k].length));
+    const alike = from === to || from.length === to.length && from.every((one, i) => one.outer.length === to[i].outer.length && one.holes.length === to[i].holes.length && one.holes.every((hole, k) => hole.length === to[i].holes[k].length));
     if (!alike) throw new Unread("IFCEXTRUDEDAREASOLIDTAPERED between profiles of other corners");
     const low = (p) => placed(at, p), high = (p) => placed(at, plus([...p, 0], d, depth)), down = d[2] < 0;
     return { from, to, low, high, down };

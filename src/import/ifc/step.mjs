@@ -8,7 +8,8 @@ const MOST = 100_000;
 
 // The values of a list of web-ifc's, which is freed: lists left in its memory slow down whatever asks for some later.
 export function taken(list) {
-  const all = Array.from({ length: list.size() }, (_, i) => list.get(i));
+  const all = [];
+  for (let i = 0, size = list.size(); i < size; ++i) all.push(list.get(i));
   list.delete();
   return all;
 }
