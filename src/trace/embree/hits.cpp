@@ -9,7 +9,8 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
-constexpr float kMargin = 1.001f;  // far more than the rounding of a deviation
+// Deviations that noise moves a point by at most: it is truncated at five, and rounded.
+constexpr float kFarthest = 5.01f;
 
 // Shades several hits of one triangle. Each kind of normal has its own loop, since a branch would prevent
 // vectorisation.
@@ -28,17 +29,14 @@ constexpr float kMargin = 1.001f;  // far more than the rounding of a deviation
   }
 }
 
-// Whether eight hits stay in their voxels, however far noise moves them. A coordinate of a point, rounded as
-// everywhere, grows or falls with the range, so what ends in one cell at both ends of the noise lies in it between
-// them.
-[[gnu::always_inline]] inline bool stay_in_voxels(const RangeNoise& noise, const Float3& origin, const VoxelGrid& grid,
+// Whether eight hits stay in their voxels, however far noise of these deviations moves them. A coordinate of a point,
+// rounded as everywhere, grows or falls with the range, so what ends in one cell at both ends of the noise lies in it
+// between them.
+[[gnu::always_inline]] inline bool stay_in_voxels(const Floats8& sigmas, const Float3& origin, const VoxelGrid& grid,
                                                   const Hits& hits, std::uint32_t first) {
   Floats8 t;
   load(t, hits.t + first);
-  float farthest = 0;
-  for (std::uint32_t k = 0; k < lanes; ++k) farthest = std::max(farthest, t[k]);
-  const float reach = kMargin * noise.reach_within(farthest);
-  const Floats8 near = t - reach, far = t + reach;
+  const Floats8 reach = kFarthest * sigmas, near = t - reach, far = t + reach;
   const float cells = static_cast<float>(1u << grid.depth());
   Ints8 differ{};
   const auto along = [&](const float* directions, float from, float min) __attribute__((always_inline)) {
@@ -60,12 +58,7 @@ VANTAGE_TARGET_CLONES
 void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                const VoxelGrid* grid) {
   for (std::uint32_t first = 0; first < hits.size; first += lanes) {
-    if (grid && stay_in_voxels(noise, origin, *grid, hits, first)) {
-      std::copy_n(hits.t + first, lanes, hits.range + first);
-      continue;
-    }
     alignas(32) float reflectivity[2 * lanes];
-    alignas(32) std::uint32_t bits[lanes];
     const std::uint32_t last = std::min(first + lanes, hits.size);
     for (std::uint32_t k = first; k < last;) {
       const std::uint32_t triangle = hits.primitive[k];
@@ -74,8 +67,15 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
             reflectivity + (k - first));
       while (k < last && hits.primitive[k] == triangle) ++k;
     }
+    Floats8 sigmas;
+    noise.find_sigmas(hits.t + first, reflectivity, sigmas);
+    if (grid && stay_in_voxels(sigmas, origin, *grid, hits, first)) {
+      std::copy_n(hits.t + first, lanes, hits.range + first);
+      continue;
+    }
+    alignas(32) std::uint32_t bits[lanes];
     noise.draw<lanes>(hits.ray_low + first, hits.ray_high + first, place, bits);
-    noise.displace_eight(hits.t + first, reflectivity, bits, hits.range + first);
+    noise.displace_eight(hits.t + first, sigmas, bits, hits.range + first);
   }
 }
 

@@ -59,14 +59,12 @@ class RangeNoise {
   float displaced(float t, float reflectivity, std::uint32_t bits) const {
     return std::max(0.0f, t + normal_from_bits(bits, rows_) * sigma(t, reflectivity));
   }
-  // displaced() of eight hits, to the bit. Inlined, to be compiled for the caller's target. REQUIRES: enabled().
-  [[gnu::always_inline]] void displace_eight(const float* t, const float* reflectivity, const std::uint32_t* bits,
-                                             float* range) const {
-    Floats8 ts, reflectivities, z, across, down;
+  // sigma() of eight hits, to the bit. Inlined, to be compiled for the caller's target. REQUIRES: enabled().
+  [[gnu::always_inline]] void find_sigmas(const float* t, const float* reflectivity, Floats8& sigmas) const {
+    Floats8 ts, reflectivities, across, down;
     Ints8 column, row;
     load(ts, t);
     load(reflectivities, reflectivity);
-    find_normals(bits, z);
     find_place((ts - model_->min_range) * model_->inverse_span, column, across);
     find_place(reflectivities, row, down);
     const Ints8 first = row * static_cast<std::int32_t>(NoiseModel::side) + column;
@@ -78,7 +76,15 @@ class RangeNoise {
     Floats8 s[4];
     transpose(corners, s);
     const Floats8 upper = s[0] + (s[1] - s[0]) * across, lower = s[2] + (s[3] - s[2]) * across;
-    const Floats8 moved = ts + z * (upper + (lower - upper) * down);
+    sigmas = upper + (lower - upper) * down;
+  }
+  // displaced() of eight hits with these deviations, to the bit. Inlined likewise. REQUIRES: enabled().
+  [[gnu::always_inline]] void displace_eight(const float* t, const Floats8& sigmas, const std::uint32_t* bits,
+                                             float* range) const {
+    Floats8 ts, z;
+    load(ts, t);
+    find_normals(bits, z);
+    const Floats8 moved = ts + z * sigmas;
     store(range, moved > 0.0f ? moved : Floats8{});
   }
   float displaced(float t, float reflectivity, std::uint64_t ray, std::uint32_t place) const {

@@ -49,7 +49,9 @@ TEST(RangeNoise, EightAtOnceAreMovedAsOneByOne) {
       bits[k] =
           random.bits() % 4 == 0 ? odd[random.bits() % odd.size()] ^ (random.bits() & 0x80000000u) : random.bits();
     }
-    noise.displace_eight(t.data(), reflectivity.data(), bits.data(), range.data());
+    Floats8 sigmas;
+    noise.find_sigmas(t.data(), reflectivity.data(), sigmas);
+    noise.displace_eight(t.data(), sigmas, bits.data(), range.data());
     for (std::size_t k = 0; k < 8; ++k) {
       ASSERT_EQ(std::bit_cast<std::uint32_t>(range[k]),
                 std::bit_cast<std::uint32_t>(noise.displaced(t[k], reflectivity[k], bits[k])))
