@@ -55,7 +55,7 @@ ComputePipeline Kernels::compiled(const KernelVariant& variant) const {
 void Kernels::compile(std::span<const KernelVariant> wanted) {
   for (const KernelVariant& variant : wanted)
     if (auto& pipeline = pipelines_[variant]; !pipeline.valid())
-      pipeline = std::async(std::launch::async, [this, variant] { return compiled(variant); }).share();
+      pipeline = std::async(when_, [this, variant] { return compiled(variant); }).share();
 }
 
 BoundPipeline Kernels::get(const TraceSet& set, const KernelVariant& variant) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compute pipelines of one engine on one device. Each is compiled before its first use, so a run pays only for what it
-// uses. A driver takes some tenths of a second for each that it has not seen before, so a job names all of its kernels
-// first, and these are compiled side by side.
+// uses. The driver of a graphics card takes some tenths of a second for each that it has not seen before, so a job
+// names all of its kernels first, and these are compiled side by side. A software device compiles one after the other,
+// each when it is wanted: its compiler takes tens of megabytes a thread.
 #pragma once
 
 #include <array>
@@ -45,8 +46,13 @@ class Kernels {
  public:
   // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. `shared`: whether
   // meshes are shared. All other arguments must outlive it.
-  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set, bool glass, bool shared)
-      : device_(device), traversal_(traversal), set_(set), glass_(glass), shared_(shared) {}
+  Kernels(const Device& device, bool software, const Traversal& traversal, const TraceSet& set, bool glass, bool shared)
+      : device_(device),
+        when_(software ? std::launch::deferred : std::launch::async),
+        traversal_(traversal),
+        set_(set),
+        glass_(glass),
+        shared_(shared) {}
 
   // Begins to compile those of `wanted` that are not known yet, and does not wait for them. REQUIRES, as get() does:
   // for tile_pass, an engine that has one.
@@ -59,6 +65,7 @@ class Kernels {
   ComputePipeline compiled(const KernelVariant& variant) const;
 
   const Device& device_;
+  std::launch when_;
   const Traversal& traversal_;
   const TraceSet& set_;
   bool glass_, shared_;

@@ -27,7 +27,8 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       traversal_(build_traversal(engine)),
       scanners_(make_scanners()),
       device_scene_(device_, commands_, scene_, *traversal_, scanners_),
-      kernels_(device_, *traversal_, scanners_.front().set(), weakens_through_glass(scene_), scene_.scene->shares()),
+      kernels_(device_, info_.software, *traversal_, scanners_.front().set(), weakens_through_glass(scene_),
+               scene_.scene->shares()),
       exact_sizer_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
                    static_cast<double>(rays_per_dispatch())),
       sampled_sizer_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {}
