@@ -429,7 +429,7 @@ class SheetPanel {
       return canvas.text_width(coordinates(k), figures) <= end - after_name &&
              canvas.text_width(facts[k].name, name) <= after_name - x_ - 20;
     });
-    // What stands below a station's coordinates: a line each for what it is registered to, for what it is measured in
+    // Lines below a station's coordinates: one each for what it is registered to, for what it is measured in
     // by, and for what it sees, as far as all stations have room for them.
     enum class Lines { one, two, three };
     const auto lines_of = [&](const StationFacts& f, Lines wanted) {

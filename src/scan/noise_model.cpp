@@ -68,8 +68,8 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
       const auto distance_at = [&](double step) {
         return mix(scanner.min_range_m, scanner.max_range_m, step / intervals);
       };
-      // What is not detected has no noise, and would make the reach large: the darkest cell that has a detected point
-      // in it is the last one, at the nearer end of its distances.
+      // Surfaces that are not detected have no noise, and would make the reach large: the darkest cell that has a
+      // detected point in it is the last one, at the nearer end of its distances.
       const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / intervals;
       model.sigma.push_back(
           static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / intervals, darkest))));

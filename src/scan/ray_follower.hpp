@@ -34,7 +34,7 @@ class RayFollower {
   };
   // A hit as it looks.
   Seen seen(const Float3& origin, const Float3& direction, float t, std::uint32_t triangle) const;
-  // What a ray from start to end meets that is no mirror. Mirrors send it on. Glass counts from the origin on.
+  // The surface that a ray from start to end meets. Mirrors send it on. Glass counts from the origin on.
   Seen follow(const Float3& origin, const Float3& direction, float start, float end) const;
 
   // Puts the points of rays that met a mirror where the scanner does: along the ray, as far as the way was long. Takes

@@ -203,7 +203,8 @@ struct Site::Impl {
     if (!options.noise) log_noise();
   }
 
-  // What a maker does not state makes its scans look better than they are. The built-in scanner claims nothing.
+  // A figure that a maker does not state makes its scans look better than they are. The built-in scanner claims
+  // nothing.
   void log_noise() const {
     for (const Scanner& one : scanners) {
       if (one.name == Scanner().name || one.noise.sigma_m.size() > 1) continue;

@@ -29,7 +29,7 @@ constexpr float kFarthest = 5.01f;
   }
 }
 
-// Whether eight hits stay in their voxels, however far noise of these deviations moves them. A coordinate of a point,
+// True if eight hits stay in their voxels, however far noise of these deviations moves them. A coordinate of a point,
 // rounded as everywhere, grows or falls with the range, so what ends in one cell at both ends of the noise lies in it
 // between them.
 [[gnu::always_inline]] inline bool stay_in_voxels(const Floats8& sigmas, const Float3& origin, const VoxelGrid& grid,

@@ -297,7 +297,7 @@ class VulkanTracer::SampledCount {
     return {kernel, {scanner.noise(), scanner.limits(), job_.masks, t_.traversal_->is_watertight()}, run.turned};
   }
 
-  // On a graphics card those of exact counts, too: whoever counts samples counts the answer by every ray later.
+  // Kernels of exact counts follow on a graphics card: whoever counts samples counts the answer by every ray later.
   void compile_kernels(const Batch& batch) const {
     std::vector<KernelVariant> wanted{{Kernel::reduce}};
     for (const Run& run : batch.runs)

@@ -130,7 +130,7 @@ TEST(NoiseModel, KnowsNoDarkerSurfaceThanIsDetected) {
       }
     }
   EXPECT_LT(model.reach, all.reach / 4);
-  // Where nothing is detected, σ is that of the last step before white.
+  // σ is that of the last step before white where nothing is detected.
   scanner.detection_range_m = 10, scanner.detection_reflectivity = 0.9;
   EXPECT_NEAR(model_sigma(make_noise_model(scanner, 1), 100, 0.3), model_sigma(all, 100, 0.99), 1e-9);
 }

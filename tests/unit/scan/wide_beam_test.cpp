@@ -20,7 +20,7 @@ using test::QuadScene;
 
 constexpr double kExit_m = 0.006, kDivergence = 5e-4;
 constexpr double kWall_m = 10;
-// Of the footprint on the wall, to 1/e².
+// Radius of the footprint on the wall, to 1/e².
 const double kRadius_m = std::hypot(kExit_m, kDivergence* kWall_m) / 2;
 constexpr float kR = 0.5f;
 

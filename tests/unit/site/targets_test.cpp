@@ -302,7 +302,7 @@ TEST(Targets, AreMeasuredNearEnoughInFieldAndInFreeView) {
   EXPECT_THROW(sight_targets(site.simulator(), site.clash(), stations, targets, {.diameter_m = 0}), Error);
 }
 
-// By a scanner that states what its calibration leaves: angles across the line, ranges along it.
+// The scanner states what its calibration leaves: angles across the line, ranges along it.
 TEST(Targets, AreMeasuredAsWellAsTheScannerIsCalibrated) {
   const auto sighted = [](std::optional<double> sigma_m) {
     Site site = tunnel(0.1, 0.3, 0.05, std::array{14.4, 1.0, 10.0});
