@@ -174,12 +174,61 @@ std::size_t unlinked_in(const std::vector<std::size_t>& order, const Matrix& lin
   return unlinked;
 }
 
+// The shortest order of few stations with at most `unlinked` steps without a link, by dynamic programming over the sets
+// of those that were visited (Held and Karp: A Dynamic Programming Approach to Sequencing Problems, 1962); empty if
+// there is none.
+std::vector<std::size_t> shortest_with(const Stops& round, const Matrix& link, std::size_t unlinked) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const std::size_t n = round.stations(), sets = std::size_t{1} << n, states = sets * n, all = sets - 1;
+  // The least way to `last` over the stations of `set`, with so many steps without a link, and the stop before.
+  std::vector<double> least((unlinked + 1) * states, kNever);
+  std::vector<std::uint8_t> before(least.size());
+  const auto at = [&](std::size_t steps, std::size_t set, std::size_t last) { return steps * states + set * n + last; };
+  const auto metres = [&](std::size_t a, std::size_t b) { return round.metres[a + round.first][b + round.first]; };
+  if (round.first == 0) {
+    least[at(0, 1, 0)] = 0;  // the round begins at the first station
+  } else {
+    for (std::size_t k = 0; k < n; ++k) least[at(0, std::size_t{1} << k, k)] = round.metres[0][k + round.first];
+  }
+  for (std::size_t set = 1; set < sets; ++set)
+    for (std::size_t steps = 0; steps <= unlinked; ++steps)
+      for (std::size_t last = 0; last < n; ++last) {
+        const double here = least[at(steps, set, last)];
+        if (here == kNever) continue;
+        for (std::size_t next = 0; next < n; ++next) {
+          const std::size_t then = steps + (link[last][next] > 0 ? 0 : 1);
+          if ((set >> next & 1) != 0 || then > unlinked) continue;
+          const std::size_t to = at(then, set | std::size_t{1} << next, next);
+          if (const double way = here + metres(last, next); way < least[to])
+            least[to] = way, before[to] = static_cast<std::uint8_t>(last);
+        }
+      }
+  std::size_t last = n, steps = 0;
+  double shortest = kNever;
+  for (std::size_t s = 0; s <= unlinked; ++s)
+    for (std::size_t k = 0; k < n; ++k)
+      if (const double way = least[at(s, all, k)] + metres(k, n); way < shortest) shortest = way, last = k, steps = s;
+  if (last == n) return {};
+  std::vector<std::size_t> order{n + round.first};
+  for (std::size_t set = all; set != 0;) {
+    order.push_back(last + round.first);
+    const std::size_t previous = before[at(steps, set, last)];
+    set &= ~(std::size_t{1} << last);
+    if (set == 0) break;
+    if (!(link[previous][last] > 0)) --steps;
+    last = previous;
+  }
+  if (round.first > 0) order.push_back(0);
+  std::ranges::reverse(order);
+  return order;
+}
+
 // Field software registers each scan to the one before, so that a step to a station without a link to the last one
 // costs as much as a long way. How long is tried: the order with the fewest such steps is taken that is not much longer
 // than the shortest. `link`: strengths of the stations' links. `most_m`: no longer walk is taken for links.
 std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::size_t> shortest, const Matrix& link,
                                            double most_m) {
-  constexpr double kMostLonger = 1.25;        // of the shortest walk that is found
+  constexpr double kMostLonger = 1.3;         // of the shortest walk that is found
   constexpr double kStrength = 0.1;           // of the mean leg, for the strongest link instead of the weakest
   constexpr double kWork = 2e6, kMost = 100;  // changes of each order
   const double n = static_cast<double>(round.metres.size());
@@ -207,6 +256,13 @@ std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::
     });
     if (unlinked == 0 && unlinked_m < least_m) break;
   }
+  // Of few stations every order is known.
+  constexpr std::size_t kFew = 15, kMostUnlinked = 3;
+  if (round.stations() > kFew) return best;
+  for (std::size_t fewer = 0; fewer < std::min(unlinked, kMostUnlinked); ++fewer)
+    if (std::vector<std::size_t> order = shortest_with(round, link, fewer);
+        !order.empty() && plain.length(order) <= most_m * (1 + 1e-9) + 1e-9)
+      return order;
   return best;
 }
 
