@@ -256,7 +256,7 @@ std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::
     });
     if (unlinked == 0 && unlinked_m < least_m) break;
   }
-  // Of few stations every order is known.
+  // Every order of few stations is known.
   constexpr std::size_t kFew = 15, kMostUnlinked = 3;
   if (round.stations() > kFew) return best;
   for (std::size_t fewer = 0; fewer < std::min(unlinked, kMostUnlinked); ++fewer)

@@ -54,10 +54,12 @@ double missed_by(const SurveyProblem& problem, const Measures& measures, std::sp
   return missed;
 }
 
-bool needs_attainable(const SurveyProblem& problem) {
-  const auto needs = [](const Objective& objective) { return objective.needs.attainable; };
+bool asks_for(const SurveyProblem& problem, bool RequiredInputs::*input) {
+  const auto needs = [&](const Objective& objective) { return objective.needs.*input; };
   return std::ranges::any_of(problem.objectives, needs) ||
          std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
 }
+
+bool needs_attainable(const SurveyProblem& problem) { return asks_for(problem, &RequiredInputs::attainable); }
 
 }  // namespace vantage

@@ -23,7 +23,9 @@ struct Measures {
 // Throws Error invalid_argument: no objective, one without name or value, two different ones of one name.
 Measures measures_of(const SurveyProblem& problem);
 
-// Whether an objective or a requirement is a share of what is attainable.
+// True if an objective or a requirement needs this input.
+bool asks_for(const SurveyProblem& problem, bool RequiredInputs::*input);
+// True if one is a share of what is attainable.
 bool needs_attainable(const SurveyProblem& problem);
 
 // Sum of violations; 0 if all requirements are met. `values`: of the measures.

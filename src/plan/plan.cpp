@@ -221,12 +221,6 @@ void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked)
   for (PlanEntry& one : result.front) one.violation = violation_of(one, result.problem.requirements);
 }
 
-bool needs_surroundings(const SurveyProblem& problem) {
-  const auto needs = [](const Objective& objective) { return objective.needs.surroundings; };
-  return std::ranges::any_of(problem.objectives, needs) ||
-         std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
-}
-
 // Counts one station with every ray, by which the watch learns how long that takes.
 void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   const std::vector<PlacedStation> one =
@@ -258,7 +252,8 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   require_somewhere_to_stand(site, heights);
   PlanContext context(site, config);
   std::future<void> surroundings;  // put together while candidates are found
-  if (needs_surroundings(problem)) surroundings = std::async(std::launch::async, [&] { site.surroundings(); });
+  if (asks_for(problem, &RequiredInputs::surroundings))
+    surroundings = std::async(std::launch::async, [&] { site.surroundings(); });
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;
   if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);

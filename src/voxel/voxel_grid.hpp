@@ -64,8 +64,7 @@ class VoxelGrid {
   std::uint64_t size_ = 0;
   std::vector<VoxelBrick> bricks_;
   std::vector<BrickSlot> slots_;
-  std::vector<std::uint32_t>
-      brick_at_;  // the brick of each voxel whose index is a multiple of kStep: key() starts there
+  std::vector<std::uint32_t> brick_at_;  // of every kStep-th voxel: where key() begins
   VoxelDemands demands_;
   std::uint64_t total_weight_ = 0;
 };

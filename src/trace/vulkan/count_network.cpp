@@ -93,8 +93,9 @@ class VulkanTracer::ExactCount {
     const RayPattern& pattern = scanner_->pattern();
     schedule_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
                       t_.rows_per_dispatch(pattern));
-    for (const TraceStation& station : stations_)
-      t_.kernels_.compile(t_.count_kernels(*scanner_, station.turn.has_value(), options_));
+    for (const bool turned : {false, true})
+      if (std::ranges::any_of(stations_, [&](const TraceStation& one) { return one.turn.has_value() == turned; }))
+        t_.kernels_.compile(t_.count_kernels(*scanner_, turned, options_));
     if (!options_.skip) return;
     t_.ensure(t_.tiles_.far, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
               "tile far");
