@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "core/normal_table.hpp"
 #include "shared/noise_types.h"
@@ -12,25 +13,25 @@
 
 namespace vantage {
 
-// Column c of the noise table: noise moves no hit up to that distance further than this. REQUIRES: model.enabled().
-using NoiseReaches = std::array<float, NoiseModel::side>;
-inline NoiseReaches noise_reaches(const NoiseModel& model) {
-  NoiseReaches reaches{};
-  for (std::uint32_t c = 0; c < NoiseModel::side; ++c) {
-    float most = c > 0 ? reaches[c - 1] : 0.0f;
-    for (std::uint32_t r = 0; r < NoiseModel::side; ++r)
-      most =
-          std::max(most, model.sigma[r * NoiseModel::side + c] * (static_cast<float>(normal_limit) * (1 + 0x1p-20f)));
-    reaches[c] = most;
-  }
+// Row r and column c of the noise table: noise moves no hit up to that distance further than this, on a surface of that
+// reflectivity or a larger one. REQUIRES: model.enabled().
+using NoiseReaches = std::array<std::array<float, NoiseModel::side>, NoiseModel::side>;
+inline std::unique_ptr<const NoiseReaches> noise_reaches(const NoiseModel& model) {
+  auto reaches = std::make_unique<NoiseReaches>();
+  for (std::uint32_t r = NoiseModel::side; r-- > 0;)
+    for (std::uint32_t c = 0; c < NoiseModel::side; ++c)
+      (*reaches)[r][c] =
+          std::max({model.sigma[r * NoiseModel::side + c] * (static_cast<float>(normal_limit) * (1 + 0x1p-20f)),
+                    c > 0 ? (*reaches)[r][c - 1] : 0.0f, r + 1 < NoiseModel::side ? (*reaches)[r + 1][c] : 0.0f});
   return reaches;
 }
 
-// Upper bound on how far noise moves a hit nearer than t.
-inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t) {
+// Upper bound on how far noise moves a hit nearer than t, on a surface that is at least so bright.
+inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t, float reflectivity = 0) {
   constexpr auto last = static_cast<float>(NoiseModel::side - 1);
-  const float column = (t - model.min_range) * model.inverse_span * last + 1.01f;
-  return reaches[static_cast<std::size_t>(std::clamp(column, 0.0f, last))];
+  const float column = (t - model.min_range) * model.inverse_span * last + 1.01f, row = reflectivity * last - 0.01f;
+  return reaches[static_cast<std::size_t>(std::clamp(row, 0.0f, last))]
+                [static_cast<std::size_t>(std::clamp(column, 0.0f, last))];
 }
 
 }  // namespace vantage

@@ -56,14 +56,14 @@ std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float
 }
 
 // The site of a scene, with a scanner and heads. `surveyed`: corners of triangles, three each; place(extent): a
-// coordinate.
+// coordinate. `finer`: rays are so many times closer, in a part of the turn.
 template <class Place>
 RandomSite with_scanner(RandomStream& random, std::uint64_t seed, double scale, std::shared_ptr<const SceneData> scene,
-                        const std::vector<Float3>& surveyed, const Place& place) {
+                        const std::vector<Float3>& surveyed, const Place& place, double finer = 1) {
   Scanner scanner;
-  scanner.azimuth_step = Angle::degrees(0.8 + random.uniform());
-  scanner.zenith_step = Angle::degrees(0.8 + random.uniform());
-  scanner.horizontal_angle = Angle::degrees(seed % 3 == 0 ? 230 : 360);
+  scanner.azimuth_step = Angle::degrees((0.8 + random.uniform()) / finer);
+  scanner.zenith_step = Angle::degrees((0.8 + random.uniform()) / finer);
+  scanner.horizontal_angle = Angle::degrees((seed % 3 == 0 ? 230 : 360) / (finer > 1 ? finer / 2 : 1));
   scanner.vertical_angle = Angle::degrees(seed % 4 == 0 ? 360 : 300);
   scanner.heading = Angle::degrees(360 * random.uniform());
   scanner.min_range_m = 0.1 * scale;
@@ -132,6 +132,39 @@ RandomSite random_site(std::uint64_t seed) {
   builder.mesh(Role::surveyed, surveyed, 0.4);
   if (seed % 2 == 0) builder.mesh(Role::blocking, blocking, 0.7);
   return with_scanner(random, seed, scale, builder.finish(), surveyed, place);
+}
+
+RandomSite random_fine_site(std::uint64_t seed) {
+  RandomStream random(seed, 3);
+  const double scale = 5;
+  const auto place = [&](double extent) { return static_cast<float>(scale * extent * (2 * random.uniform() - 1)); };
+  const auto s = static_cast<float>(scale);
+  std::vector<Float3> surveyed, blocking;
+  const auto add = [](std::vector<Float3>& to, const std::vector<Float3>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  // A room with boards of two faces, and slats before its walls.
+  add(surveyed, quad({-s, -s, -s}, {2 * s, 0, 0}, {0, 2 * s, 0}));
+  add(surveyed, quad({-s, -s, -s}, {0, 0, 2 * s}, {0, 2 * s, 0}));
+  add(surveyed, quad({-s, -s, -s}, {2 * s, 0, 0}, {0, 0, 2 * s}));
+  for (int k = 0; k < 6; ++k) {
+    const Float3 corner{place(0.8), place(0.8), place(0.8)};
+    const float thick = between(random, 0.002, 0.05) * s;
+    const Float3 u = k % 2 ? Float3{s, 0, 0} : Float3{s * 0.7f, s * 0.6f, s * 0.1f}, v{0, 0, s * 0.9f};
+    add(surveyed, quad(corner, u, v));
+    add(surveyed, quad({corner.x + 0.1f * thick, corner.y + thick, corner.z}, u, v));
+    for (int slat = 0; slat < 8; ++slat) {
+      const float up = 0.11f * static_cast<float>(slat) * s;
+      add(blocking, quad({corner.x, corner.y - 5 * thick, corner.z + up}, u, {0, 0, between(random, 0.02, 0.12) * s}));
+    }
+  }
+  add(surveyed, bumpy_ball(random, {place(1), place(1), place(0.8)}, 0.5f * s));
+  add(blocking, bumpy_ball(random, {place(1), place(1), place(0.8)}, 0.3f * s));
+  SceneBuilder builder;
+  builder.mesh(Role::surveyed, surveyed, 0.05 + 0.8 * random.uniform());
+  builder.mesh(Role::blocking, blocking, 0.7);
+  if (seed % 2) builder.leaning_normals(random, seed % 4 == 1 ? 0.02 : 0.4);
+  return with_scanner(random, seed, 0.2 * scale, builder.finish(), surveyed, place, 10);
 }
 
 RandomSite random_placed_site(std::uint64_t seed) {

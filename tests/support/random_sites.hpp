@@ -18,6 +18,9 @@ struct RandomSite {
 // Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; seven heads
 // anywhere, also on surfaces.
 RandomSite random_site(std::uint64_t seed);
+// A room with boards and slats, and a scanner of which thousands of rays may cross a voxel; some with normals that
+// lean.
+RandomSite random_fine_site(std::uint64_t seed);
 // Walls, and folded meshes that are stored once and placed turned, mirrored and scaled unequally.
 RandomSite random_placed_site(std::uint64_t seed);
 

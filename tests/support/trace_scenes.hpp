@@ -2,6 +2,7 @@
 // Small scenes in the local frame, for the trace tests.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -37,6 +38,20 @@ class SceneBuilder {
       for (const Float3& corner : corners) scene_.local_bounds.extend(widen(scene_.placed(place, corner)));
     }
     shared_.push_back(corners);
+    return *this;
+  }
+  // Gives every corner so far the normal of its triangle, moved by at most `most` along each axis.
+  SceneBuilder& leaning_normals(RandomStream& random, double most) {
+    scene_.normals.resize(scene_.positions.size());
+    for (const auto& triangle : scene_.triangles) {
+      const auto at = [&](std::size_t k) { return widen(scene_.positions[triangle[k]]); };
+      const Vec3 normal = cross(at(1) - at(0), at(2) - at(0));
+      for (const std::uint32_t corner : triangle) {
+        const auto lean = [&] { return most * (2 * random.uniform() - 1); };
+        const Vec3 moved = normal * (1 / std::sqrt(dot(normal, normal))) + Vec3{lean(), lean(), lean()};
+        scene_.normals[corner] = narrow(moved * (1 / std::sqrt(dot(moved, moved))));
+      }
+    }
     return *this;
   }
   std::shared_ptr<const SceneData> finish() {

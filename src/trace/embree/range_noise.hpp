@@ -25,8 +25,10 @@ class RangeNoise {
 
   bool enabled() const { return model_ && model_->enabled(); }
   float reach() const { return enabled() ? model_->reach : 0.0f; }
-  // Upper bound on how far noise moves a hit nearer than t.
-  float reach_within(float t) const { return enabled() ? vantage::reach_within(*model_, reaches_, t) : 0.0f; }
+  // Upper bound on how far noise moves a hit nearer than t, on a surface of at least this reflectivity.
+  float reach_within(float t, float reflectivity = 0) const {
+    return enabled() ? vantage::reach_within(*model_, *reaches_, t, reflectivity) : 0.0f;
+  }
 
   // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
   float sigma(float t, float reflectivity) const {
@@ -130,7 +132,7 @@ class RangeNoise {
 
   std::shared_ptr<const NoiseModel> model_;
   std::span<const float> rows_;
-  NoiseReaches reaches_{};
+  std::shared_ptr<const NoiseReaches> reaches_;
 };
 
 }  // namespace vantage

@@ -13,11 +13,10 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 struct ExactPlane {
   Vec3 normal;
-  double offset = 0, slenderness = HUGE_VAL;
+  double offset = 0, slenderness = HUGE_VAL, diffuse = 1, tilt = 0;
 };
 
 ExactPlane plane_of(const Corners& t) {
@@ -25,6 +24,22 @@ ExactPlane plane_of(const Corners& t) {
   const double area = length(n);
   if (!(area > 0)) return {};
   return {n * (1 / area), dot(n, t[0]) / area, SeenTriangle::slenderness(t[0], t[1], t[2], area)};
+}
+
+// Bound on the distance between the normal of a plane and those that are interpolated from a triangle's corners.
+double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane) {
+  if (scene.normals.empty()) return 0;
+  constexpr double kRounding = 1e-6, kUnknown = 1;
+  double most = 0, sign = 0;
+  for (const Float3& corner : scene.corner_normals(triangle)) {
+    const Vec3 normal = widen(corner);
+    const double size = length(normal);
+    if (!(size > 0)) continue;
+    if (sign == 0) sign = dot(normal, plane) < 0 ? -1 : 1;
+    most = std::max(most, length(normal * (sign / size) - plane));
+  }
+  // Between the corners an angle is no larger than theirs, but a chord may be, by less than a tenth.
+  return most < 0.5 ? 1.1 * most + kRounding : kUnknown;
 }
 
 SampledVoxels::Piece piece_of(const Corners& t) {
@@ -113,11 +128,10 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
       };
       const auto known = std::find_if(own.begin(), own.end(), same);
       of.emplace_back(known - own.begin(), k);
-      if (known == own.end()) {
-        own.push_back(plane);
-      } else {
-        known->slenderness = std::max(known->slenderness, plane.slenderness);
-      }
+      ExactPlane& all = known == own.end() ? own.emplace_back(plane) : *known;
+      all.slenderness = std::max(all.slenderness, plane.slenderness);
+      all.diffuse = std::min(all.diffuse, scene.meshes[scene.mesh_of(lists.triangle[k])].diffuse);
+      all.tilt = std::max(all.tilt, tilt_of(scene, lists.triangle[k], all.normal));
     }
     if (own.size() > most_planes) own.clear();
 
@@ -132,8 +146,13 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
         for (const auto& [place, triangle] : of) {
           if (place == k) pieces_[piece++] = piece_of(corners_of(triangle));
         }
-        planes[plane++] = {narrow(own[k].normal), static_cast<float>(own[k].offset),
-                           std::nextafter(static_cast<float>(own[k].slenderness), HUGE_VALF), from, piece};
+        planes[plane++] = {narrow(own[k].normal),
+                           static_cast<float>(own[k].offset),
+                           std::nextafter(static_cast<float>(own[k].slenderness), HUGE_VALF),
+                           static_cast<float>(own[k].diffuse),
+                           static_cast<float>(own[k].tilt),
+                           from,
+                           piece};
       }
       if (now) crossing_[i] = plane - first;
     }

@@ -30,6 +30,9 @@ class SampledVoxels {
     Float3 normal;  // unit; 0 if a triangle has no area
     float offset;
     float slenderness;  // largest SeenTriangle::slenderness; infinite if a triangle has no area
+    float diffuse;      // the least of a triangle
+    // No hit has a normal farther from that of the plane, as vectors of unit length; 1 or above: nothing is known.
+    float tilt;
     std::uint32_t first, end;
   };
   // Per voxel: its cell, and a box around all that can be hit on its planes there and count. The box is given by its

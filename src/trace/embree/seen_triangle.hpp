@@ -13,6 +13,8 @@
 
 namespace vantage {
 
+inline double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 // A box as seen from a head, at the origin.
 struct SeenBox {
   explicit SeenBox(const Box& box) : middle((box.min + box.max) * 0.5), half((box.max - box.min) * 0.5) {
@@ -25,6 +27,16 @@ struct SeenBox {
   }
   Vec3 middle, half;
   double far;  // no point is farther
+};
+
+// Directions from the head, at most `radius` from the end of the unit vector `middle`.
+struct SeenCone {
+  // Bounds on the product of a vector with such a direction.
+  double least(const Vec3& n) const { return dot(n, middle) - radius * std::sqrt(dot(n, n)); }
+  double most(const Vec3& n) const { return dot(n, middle) + radius * std::sqrt(dot(n, n)); }
+  Vec3 middle;
+  double radius;
+  static constexpr double far = 1;
 };
 
 class SeenTriangle {
@@ -57,6 +69,25 @@ class SeenTriangle {
     const double slope = dot(normal_, d);
     return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
   }
+  // The same for all rays of a cone.
+  bool must_hit(const SeenCone& cone) const { return inside(0, cone) && inside(1, cone) && inside(2, cone); }
+  double nearest_hit(const SeenCone& cone) const {
+    const double slope = cone.least(normal_);
+    return slope > least_slope_ ? height_ / cone.most(normal_) * (1 - doubt(slope)) : 0;
+  }
+  double farthest_hit(const SeenCone& cone) const {
+    const double slope = cone.least(normal_);
+    return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
+  }
+  // Whether for every ray of a cone that meets a plane, normal · p = height > 0, the hit lies before `part` of the way
+  // there, less `pad`. Exact for parallel planes, however grazing the rays.
+  bool is_before(const SeenCone& cone, const Vec3& normal, double height, double part, double pad) const {
+    const double slope = cone.least(normal_), other = cone.most(normal);
+    if (other <= 0) return true;
+    if (!(slope > least_slope_)) return false;
+    return cone.least(normal_ * (part * height) - normal * (height_ * (1 + doubt(slope)))) >
+           pad * cone.most(normal_) * other;
+  }
   // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
   // such a point.
   bool hides(const SeenBox& box, double start) const { return covers(box) && is_before(box, start); }
@@ -71,7 +102,10 @@ class SeenTriangle {
   bool covers(const SeenBox& box) const { return inside(0, box) && inside(1, box) && inside(2, box); }
   // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
   // The edges are those from corner k to the next.
-  bool inside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k]) > tolerance_ * box.far; }
+  template <class Region>
+  bool inside(std::size_t k, const Region& region) const {
+    return region.least(edge_[k]) > tolerance_ * region.far;
+  }
   bool outside(std::size_t k, const SeenBox& box) const { return box.least(edge_[k] * -1) > tolerance_ * box.far; }
   bool is_outside(std::size_t k, const Vec3& point) const {
     return dot(edge_[k], point) < -tolerance_ * std::sqrt(dot(point, point));

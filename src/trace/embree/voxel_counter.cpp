@@ -10,16 +10,19 @@
 // that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. Once that removes
 // few, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
 // included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays. With a
-// limit `stop_at`, as many rays of a voxel are listed as usually suffice, and the rest only if they did not.
+// limit `stop_at`, as many rays of a voxel are listed as usually suffice, and the rest only if they did not. If none of
+// them left a point, most of the voxel is hidden, though not by one triangle: find_hidden() looks which tiles of its
+// window are, since there may be thousands of rays in each.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include "core/target_clones.hpp"
+#include "trace/embree/hit_margins.hpp"
+#include "trace/embree/spread_units.hpp"
 
 namespace vantage {
 namespace {
@@ -34,20 +37,8 @@ constexpr std::uint32_t kWorthProbe = 8;
 constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
-// Bound on the relative error of any distance computed in float here, on any plane tested, however grazing.
-constexpr double trust = 0x1p-7;
-// Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
-constexpr float grazing = 0x1p-10f;
-// If a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
-// plane well beyond the voxel, whatever the rounding.
-constexpr float sure_height = 1.5f * grazing;
-// Distances to planes are computed in float below, with an error less than this part of the farthest, over the cosine.
-// Embree's allowance is at least eight times that, so half as much again is allowed for it.
-constexpr float float_doubt = 0x1p-21f;
-constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
-// Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
-// Above `steep`, cosine / slenderness makes that less than what `steep_part` leaves.
-constexpr float steep = 0x1p-5f, steep_part = 1 - 0x1.8p-13f;
+// Units of a window that are looked at before its tiles are.
+constexpr std::uint32_t kFirstUnits = 64;
 
 // Whether VoxelGrid::cell_of(p) is `cell`.
 bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint32_t, 3>& cell) {
@@ -58,51 +49,6 @@ bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint3
   return in((p.x - min[0]) * grid.inverse_size(), cell[0]) && in((p.y - min[1]) * grid.inverse_size(), cell[1]) &&
          in((p.z - min[2]) * grid.inverse_size(), cell[2]);
 }
-
-// The rays of a window in units of up to `kUnit` neighbours in a row, from its middle on: an occluder of the middle ray
-// may hide all. Spread, any number of units in succession lie all over the window, so that they see what all of its
-// rays see, in proportion; else the units go row by row, and around.
-class SpreadUnits {
- public:
-  static constexpr std::uint32_t kUnit = 8;
-  struct Unit {
-    std::uint32_t row, column, rays;
-  };
-
-  SpreadUnits(const RayRanges& window, bool spread) : window_(window) {
-    for (std::size_t k = 0; k < 2; ++k)
-      if (!window.columns[k].empty())
-        blocks_[k] = (window.columns[k].end - window.columns[k].begin + kUnit - 1) / kUnit;
-    const std::uint32_t rows = window.rows.end - window.rows.begin, of_row = blocks_[0] + blocks_[1];
-    size_ = rows * of_row;
-    start_ = rows / 2 * of_row + of_row / 2;
-    constexpr std::uint32_t kFew = 8;
-    if (!spread || size_ <= kFew) return;
-    constexpr double kGolden = 0.6180339887498949;  // spreads any number of steps around a circle most evenly
-    step_ = static_cast<std::uint32_t>(kGolden * size_);
-    while (std::gcd(step_, size_) != 1) ++step_;  // so that each unit has its turn
-  }
-  std::uint32_t size() const { return size_; }
-  // Index of the unit whose turn is `turn`, for at() and next().
-  std::uint32_t index(std::uint32_t turn) const {
-    return static_cast<std::uint32_t>((start_ + std::uint64_t{turn} * step_) % size_);
-  }
-  std::uint32_t next(std::uint32_t index) const {
-    const std::uint64_t next = std::uint64_t{index} + step_;
-    return static_cast<std::uint32_t>(next < size_ ? next : next - size_);
-  }
-  Unit at(std::uint32_t index) const {
-    const std::uint32_t of_row = blocks_[0] + blocks_[1], row = index / of_row, block = index - row * of_row;
-    const std::size_t k = block < blocks_[0] ? 0 : 1;
-    const std::uint32_t column = window_.columns[k].begin + (block - (k == 0 ? 0 : blocks_[0])) * kUnit;
-    return {window_.rows.begin + row, column, std::min(kUnit, window_.columns[k].end - column)};
-  }
-
- private:
-  const RayRanges& window_;
-  std::array<std::uint32_t, 2> blocks_{};
-  std::uint32_t size_ = 0, step_ = 1, start_ = 0;
-};
 
 Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - head; }
 
@@ -145,10 +91,12 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     for (std::uint64_t times = kMore; !rest_.empty(); times *= kMore) {
       std::swap(rest_, again_);
       rest_.clear();
-      for (const Rest& rest : again_)
-        if (!full(rest.look.voxel))
-          list_rays(rest.look, rest.window, rest.units,
-                    static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(rest.look.voxel), kAll)));
+      for (Rest& rest : again_) {
+        const std::uint32_t i = rest.look.voxel;
+        if (full(i)) continue;
+        if (times == kMore && counts_[i] == rest.count) rest.tiles = find_hidden(rest.look, rest.window);
+        list_rays(rest, static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(i), kAll)));
+      }
       settle();
     }
   }
@@ -270,7 +218,7 @@ void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
 
 // Turns the batch with its scanner, and fills batch_.nearest.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube) {
+void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube& cube) {
   RayBatch& batch = batch_;
   const std::uint32_t n = (batch.size + 7) / 8 * 8;  // whole vectors; the surplus is never read
   if (station_->turn) turn_all(*station_->turn, batch.x.data(), batch.y.data(), batch.z.data(), batch.size);
@@ -279,8 +227,8 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
               nearest_of_all = cube.nearest * trusted, slack = float_doubt * cube.farthest;
   std::fill_n(batch.nearest.data(), n, planes.empty() ? nearest_of_all : infinity);
   for (std::size_t k = 0; k < planes.size(); ++k) {
-    const SampledVoxels::Plane& plane = planes[k];
-    const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = heights_[k],
+    const SampledVoxels::Plane& plane = *planes[k].plane;
+    const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = planes[k].height,
                 sure = steep * plane.slenderness, graze = grazing * plane.slenderness;
     std::uint32_t any = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -323,19 +271,38 @@ bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
   if (distance_[i] + corner < first || distance_[i] - corner > last) return false;
   // Hits whose points count lie within the noise's reach of the cube.
-  const double reach =
-      reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(static_cast<float>(distance_[i] + corner + reach_)))
-                 : 0;
+  const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
+  const double reach = reach_ > 0 ? reach_of(i, distance_[i] + corner + reach_) : 0;
   look.voxel = i;
   look.cube = {{static_cast<float>(x_[i]), static_cast<float>(y_[i]), static_cast<float>(z_[i])},
                static_cast<float>(half + reach + pad_),
                static_cast<float>(distance_[i] - corner - reach - 2 * pad_),
                static_cast<float>(distance_[i] + corner + reach + 2 * pad_)};
-  const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
   look.sure = !planes.empty();
   for (const SampledVoxels::Plane& plane : planes)
     look.sure &= std::abs(height_over(plane, i)) >= sure_height * plane.slenderness * look.cube.farthest;
-  return !look.sure || voxels_.crossing(first_ + i) > 0;
+  return !look.sure ||
+         std::ranges::any_of(planes.first(voxels_.crossing(first_ + i)),
+                             [&](const SampledVoxels::Plane& plane) { return crosses(plane, look.cube); });
+}
+
+// How far noise moves a hit on the planes of voxel number i, nearer than `far`: the less, the brighter they are and the
+// steeper they are seen.
+double SampledVoxelCounter::reach_of(std::uint32_t i, double far) const {
+  const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
+  double least = planes.empty() ? 0 : 1;
+  for (const SampledVoxels::Plane& plane : planes) {
+    const double cosine = std::abs(static_cast<double>(height_over(plane, i))) / far - static_cast<double>(plane.tilt);
+    least = std::min(least, static_cast<double>(plane.diffuse) * cosine);
+  }
+  return static_cast<double>(
+      rays_->noise().reach_within(static_cast<float>(far), static_cast<float>(std::max(least, 0.0))));
+}
+
+// Whether hits on the plane may count.
+bool SampledVoxelCounter::crosses(const SampledVoxels::Plane& plane, const Cube& cube) const {
+  const float across = std::abs(plane.normal.x) + std::abs(plane.normal.y) + std::abs(plane.normal.z);
+  return !(std::abs(plane.offset) > (cube.half + static_cast<float>(4 * pad_)) * across);
 }
 
 // Of the head over a plane of voxel number i. In double, so that rounding, which turned the plane, turned it around the
@@ -404,19 +371,26 @@ void SampledVoxelCounter::list_rays(const Look& look) {
     if (station_->turn) turn_back(*station_->turn, low, high);
     window = rays_of_box(pattern, low, high);
   }
-  if (!window.empty()) list_rays(look, window, 0, wanted(i));
+  if (!window.empty()) list_rays({look, window, 0, counts_[i], {}}, wanted(i));
+}
+
+// Those planes of the voxel on which hits may count.
+std::span<const SampledVoxelCounter::Ahead> SampledVoxelCounter::planes_of(const Look& look) {
+  const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + look.voxel);
+  std::size_t n = 0;
+  for (const SampledVoxels::Plane& plane : look.sure ? planes.first(voxels_.crossing(first_ + look.voxel)) : planes)
+    if (!look.sure || crosses(plane, look.cube)) planes_[n++] = {&plane, height_over(plane, look.voxel)};
+  return std::span(planes_).first(n);
 }
 
 // Lists the rays of the window from number `units` of its units on, at least `enough` if there are as many.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, std::uint32_t units,
-                                    std::uint32_t enough) {
+void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   const RayPattern& pattern = rays_->pattern();
+  const Look& look = rest.look;
   const std::uint32_t i = look.voxel;
   const Cube& cube = look.cube;
-  std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
-  for (std::size_t k = 0; k < planes.size(); ++k) heights_[k] = height_over(planes[k], i);
-  if (look.sure) planes = planes.first(voxels_.crossing(first_ + i));
+  const std::span<const Ahead> planes = planes_of(look);
   // Whole vectors of the batch, which are worth a test.
   std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
@@ -427,10 +401,18 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, s
                  .occluder = look.occluder};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
   static_assert(SpreadUnits::kUnit == RayBatch::step);
-  const SpreadUnits all(window, stop_at_ != 0);
+  const SpreadUnits all(rest.window, stop_at_ != 0);
+  std::uint32_t& units = rest.units;
+  const bool first = units == 0 && stop_at_ != 0;
   for (std::uint32_t index = all.index(units); units < all.size(); index = all.next(index)) {
-    const auto [row, column, many] = all.at(index);
     ++units;
+    if (rest.tiles.hidden != 0) {
+      const std::uint32_t in_row = index / all.of_row();
+      const std::uint32_t tile =
+          8 * (in_row >> rest.tiles.row_shift) + ((index - in_row * all.of_row()) >> rest.tiles.unit_shift);
+      if ((rest.tiles.hidden >> tile & 1) != 0) continue;
+    }
+    const auto [row, column, many] = all.at(index);
     const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
     const std::uint32_t size = batch_.size;
     const auto put = [&](std::uint32_t k) {
@@ -450,9 +432,9 @@ void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, s
     fill_nearest(planes, cube);
     found += list_batch(rays);
     if (full(i)) return;
-    if (found >= enough && units < all.size()) {
+    if ((found >= enough || (first && units >= kFirstUnits)) && units < all.size()) {
       end_rays(rays);
-      rest_.push_back({look, window, units});
+      rest_.push_back(rest);
       return;
     }
     worth = std::min(2 * worth, RayBatch::capacity);

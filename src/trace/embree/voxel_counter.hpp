@@ -61,11 +61,24 @@ class SampledVoxelCounter {
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
     std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
   };
+  // A plane, and the head's height over it.
+  struct Ahead {
+    const SampledVoxels::Plane* plane;
+    float height;
+  };
+  // Tiles of a window: up to 8 × 8 of 2^row_shift rows and 2^unit_shift units of SpreadUnits, and a bit for each of
+  // which no ray leaves a point in the voxel.
+  struct Tiles {
+    std::uint32_t row_shift = 31, unit_shift = 31;
+    std::uint64_t hidden = 0;
+  };
   // A voxel of which some rays were listed, as many as usually suffice: the first `units` of SpreadUnits.
   struct Rest {
     Look look;
     RayRanges window;
     std::uint32_t units;
+    std::uint32_t count;  // of the voxel, before its rays were traced
+    Tiles tiles;
   };
   // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
   struct VoxelRays {
@@ -88,6 +101,8 @@ class SampledVoxelCounter {
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
   }
   bool look_at(std::uint32_t i, Look& look);
+  double reach_of(std::uint32_t i, double far) const;
+  bool crosses(const SampledVoxels::Plane& plane, const Cube& cube) const;
   float height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const;
   Box box_of(const Look& look) const;
   SeenTriangle seen(std::uint32_t triangle) const;  // from the current head
@@ -104,8 +119,10 @@ class SampledVoxelCounter {
   // Points that are still to be counted in voxel number i of the block, or more.
   std::uint32_t wanted(std::uint32_t i) const;
   void list_rays(const Look& look);
-  void list_rays(const Look& look, const RayRanges& window, std::uint32_t units, std::uint32_t enough);
-  void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
+  void list_rays(Rest rest, std::uint32_t enough);
+  Tiles find_hidden(const Look& look, const RayRanges& window);
+  std::span<const Ahead> planes_of(const Look& look);
+  void fill_nearest(std::span<const Ahead> planes, const Cube& cube);
   std::uint32_t list_batch(VoxelRays& rays);
   void end_rays(VoxelRays& rays);
   void settle();
@@ -133,7 +150,8 @@ class SampledVoxelCounter {
   std::array<bool, block> open_;  // by voxel of the block: whether the current station may need to look at it
   std::vector<std::pair<std::uint32_t, SeenTriangle>> met_;
   RayBatch batch_;
-  std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the current voxel
+  std::vector<SeenTriangle> hiders_;                      // of tiles of the window in work
+  std::array<Ahead, SampledVoxels::most_planes> planes_;  // of the voxel in work
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
   std::vector<Look> looks_;

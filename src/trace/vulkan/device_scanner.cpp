@@ -33,7 +33,7 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   cos_azimuth_ = to_device(pattern.cos_azimuth, "cos azimuth");
   if (limits()) upload_limits(device, commands, scene);
   if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
-  if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise), "reaches of noise");
+  if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise)->front(), "reaches of noise");
 }
 
 // Meshes with equal limits share one entry.

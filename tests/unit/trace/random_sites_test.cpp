@@ -14,5 +14,10 @@ TEST(RandomSites, EveryWayOfCountingAgrees) {
   EXPECT_LT(rays.skipping, rays.all);
 }
 
+TEST(RandomSites, EveryWayOfCountingAgreesWhereManyRaysCrossAVoxel) {
+  test::expect_every_way_agrees([](const TraceScene& scene) { return make_embree_tracer(scene); }, 1, 2,
+                                test::random_fine_site);
+}
+
 }  // namespace
 }  // namespace vantage

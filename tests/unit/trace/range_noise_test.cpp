@@ -70,7 +70,9 @@ TEST(RangeNoise, NoPointIsMovedBeyondTheReach) {
     const float moved = std::abs(noise.displaced(t, r, ray, 2) - t) - 1e-5f;  // less the rounding of the sum
     ASSERT_LE(moved, noise.reach());
     ASSERT_LE(moved, noise.reach_within(t));
+    ASSERT_LE(moved, noise.reach_within(t, r));
   }
+  EXPECT_LT(noise.reach_within(10, 0.9f), 0.8f * noise.reach_within(10, 0.05f));
   EXPECT_LT(noise.reach_within(10), noise.reach());
   EXPECT_LE(noise.reach_within(1e9f), noise.reach() * 1.00001f);
 }

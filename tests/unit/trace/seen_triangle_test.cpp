@@ -99,5 +99,40 @@ TEST(SeenTriangle, IsCertainOfSpecks) {
   EXPECT_GT(found.certain, found.hits / 3);
 }
 
+// What holds of a cone holds of each of its rays, and a plane just behind the triangle is known to be.
+TEST(SeenTriangle, KnowsOfAConeWhatItKnowsOfItsRays) {
+  RandomStream random(81);
+  const auto unit = [](const Vec3& p) { return p * (1 / std::sqrt(dot(p, p))); };
+  const auto lean = [&](double most) {
+    const auto one = [&] { return most * (2 * random.uniform() - 1); };
+    return Vec3{one(), one(), one()};
+  };
+  std::size_t covered = 0, before = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const std::vector<Float3> corners = blob(random);
+    const Vec3 a = widen(corners[0]), b = widen(corners[1]), c = widen(corners[2]);
+    const SeenTriangle seen(a, b, c);
+    const SeenCone cone{unit((a + b + c) * (1.0 / 3) + lean(0.5)), std::pow(10, -4 * random.uniform())};
+    Vec3 normal = unit(unit(cross(b - a, c - a)) + lean(k % 2 ? 0 : 0.02));
+    double height = dot(normal, a);
+    if (height < 0) normal = normal * -1, height = -height;
+    height += 0.2;  // beyond the triangle
+    const bool is_covered = seen.must_hit(cone), is_before = seen.is_before(cone, normal, height, 0.999, 1e-3);
+    covered += is_covered, before += is_covered && is_before;
+    for (int r = 0; r < 20; ++r) {
+      const Vec3 d = unit(cone.middle + unit(lean(1)) * (cone.radius * 0.999));
+      if (dot(d - cone.middle, d - cone.middle) > cone.radius * cone.radius) continue;
+      ASSERT_TRUE(!is_covered || seen.must_hit(d));
+      ASSERT_LE(seen.nearest_hit(cone), seen.nearest_hit(d));
+      ASSERT_GE(seen.farthest_hit(cone), seen.farthest_hit(d));
+      if (is_before && dot(normal, d) > 0) {
+        ASSERT_LT(seen.farthest_hit(d), 0.999 * height / dot(normal, d) - 1e-3) << k;
+      }
+    }
+  }
+  EXPECT_GT(covered, 1000u);
+  EXPECT_GT(before, covered / 4);
+}
+
 }  // namespace
 }  // namespace vantage

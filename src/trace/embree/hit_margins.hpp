@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Margins of distances that SampledVoxelCounter works out in float, so that what it leaves out is certain.
+#pragma once
+
+#include "trace/embree/seen_triangle.hpp"
+
+namespace vantage {
+
+// Bound on the relative error of any distance computed in float, on any plane tested, however grazing.
+inline constexpr double trust = 0x1p-7;
+// Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
+inline constexpr float grazing = 0x1p-10f;
+// If a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
+// plane well beyond the voxel, whatever the rounding.
+inline constexpr float sure_height = 1.5f * grazing;
+// Distances to planes are computed in float, with an error less than this part of the farthest, over the cosine.
+// Embree's allowance is at least eight times that, so half as much again is allowed for it.
+inline constexpr float float_doubt = 0x1p-21f;
+inline constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
+// Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
+// Above `steep`, cosine / slenderness makes that less than what `steep_part` leaves.
+inline constexpr float steep = 0x1p-5f, steep_part = 1 - 0x1.8p-13f;
+
+}  // namespace vantage
