@@ -9,11 +9,11 @@
 
 namespace vantage::python {
 
-/// "user_size" of "user-size".
+/// "user_size" of "user-size"; "for_" of "for", which is a word of Python's.
 inline std::string keyword(const std::string& name) {
   std::string word = name;
   std::ranges::replace(word, '-', '_');
-  return word;
+  return word == "for" ? word + "_" : word;
 }
 
 /// A value as the text that a setting's row reads: numbers, texts, truth values, and sequences of them with commas.

@@ -31,7 +31,8 @@ struct SiteOptions {
 
   /// The scanners that stations choose from, complete. Empty: one, made of the members up to `points_per_second`.
   std::vector<Scanner> scanners = {};
-  std::optional<std::string> scanner = {};         ///< A preset, in the form of `load_scanner()`.
+  /// A preset, in the form of `load_scanner()`. Empty: `usual_scanner`, unless `steps` describe another.
+  std::optional<std::string> scanner = {};
   std::optional<std::array<Angle, 2>> steps = {};  ///< Azimuth and zenith.
   std::optional<Angle> heading = {}, horizontal_angle = {}, vertical_angle = {}, zenith_start = {};
   std::optional<double> height_m = {};
@@ -46,6 +47,8 @@ struct SiteOptions {
 
   std::optional<double> user_size_m = {};  ///< Upper bound of the voxel size.
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
+  /// What the scans are for, in the form of `spacing_for()`; the spacing follows from it unless that is given.
+  std::optional<std::string> deliverable = {};
   bool spacing_by_detail = false;          ///< As `SimulatorConfig::spacing_by_detail`.
   std::optional<Angle> max_incidence = {};
   /// If nothing marks the surveyed surface, weigh all but ground to stand on so that ground has a third of coverage at
@@ -70,6 +73,15 @@ struct SiteOptions {
   /// Called on the calling thread with each fact and choice, a sentence each, and with each warning.
   std::function<void(const std::string&)> log = {}, warn = {};
 };
+
+/// The scanner of sites whose options and scene describe none.
+inline constexpr const char* usual_scanner = "rtc360@6mm";
+/// Wanted distance between points, in metres, where nothing tells what the scans are for.
+inline constexpr double usual_spacing_m = 0.02;
+/// Returns the distance between points, in metres, that a deliverable takes: of a drawing "1:N", 0.1 mm of paper, half
+/// the line that is drawn; of an accuracy class of the USIBD, "LOA20" to "LOA50", its bound at 95 %: 50, 15, 5 or 1 mm.
+/// Throws Error invalid_argument.
+double spacing_for(const std::string& deliverable);
 
 /// One row for each setting, in the order in which they are listed.
 const SettingTable<SiteOptions>& site_settings();

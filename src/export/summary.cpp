@@ -479,6 +479,12 @@ std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Est
   return problem.stations_min == problem.stations_max ? ", and so many were asked for" : "";
 }
 
+// "Leica RTC360 @6mm, 23 s a scan"
+std::string scanner_text(const Scanner& scanner) {
+  const double seconds = static_cast<double>(scanner.rays()) / scanner.points_per_second;
+  return scanner.name + ", " + (seconds < 100 ? fixed(seconds, 0) + " s" : fixed(seconds / 60, 0) + " min") + " a scan";
+}
+
 }  // namespace
 
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
@@ -541,6 +547,7 @@ std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
   if (std::string planned = planned_text(result); !planned.empty())
     lines.insert(lines.begin(), {"planned", std::move(planned)});
+  if (result.scanners.size() == 1) lines.insert(lines.begin(), {"scanner", scanner_text(result.scanners.front())});
   for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))

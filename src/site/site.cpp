@@ -55,10 +55,10 @@ double scale_of(const Box& bounds) {
   return std::round(scale / unit) * unit;
 }
 
-// Default spacing: the distance of the scanner's rays at 10 m, square on, the distance at which manufacturers state
-// resolutions, so one station can reach it. Not below the library's default, whose goal a fine pattern reaches easily;
-// not so wide that a voxel would need less than a point.
-double usual_spacing(const Scanner& scanner, const SimulatorConfig& config, double scale) {
+// Spacing for a scanner that is described by its steps: their distance at 10 m, square on, the distance at which
+// manufacturers state resolutions, so one station can reach it. Not below the library's default, whose goal a fine
+// pattern reaches easily; not so wide that a voxel would need less than a point.
+double spacing_of_steps(const Scanner& scanner, const SimulatorConfig& config, double scale) {
   const double step = std::max(scanner.azimuth_step.in_radians(), scanner.zenith_step.in_radians());
   const double usual = config.point_spacing_m * scale;
   return std::max(usual, std::min(10 * step * scale, config.user_size_m / 2));
@@ -186,7 +186,7 @@ struct Site::Impl {
   void resolve() {
     scale = scale_of(scene.bounds());
     scanners = options.scanners;
-    if (scanners.empty()) scanners = {site_scanner(options, scale)};
+    if (scanners.empty()) resolve_scanner();
     for (const Scanner& one : scanners) one.check();
     noise = noise_source(options, scanners.front());
     choose_devices(config, options);
@@ -203,6 +203,16 @@ struct Site::Impl {
     if (!options.noise) log_noise();
   }
 
+  void resolve_scanner() {
+    const bool open = !options.scanner && !options.steps && scale == 1;
+    if (open) options.scanner = usual_scanner;
+    scanners = {site_scanner(options, scale)};
+    if (!open) return;
+    choose("scanner", usual_scanner, "no scanner was named");
+    const double seconds = static_cast<double>(scanners[0].rays()) / scanners[0].points_per_second;
+    log("scanner: none was named, so a " + scanners[0].name + " is assumed, " + rounded(seconds, 2) + " s a scan");
+  }
+
   // A figure that a maker does not state makes its scans look better than they are. The built-in scanner claims
   // nothing.
   void log_noise() const {
@@ -217,15 +227,21 @@ struct Site::Impl {
   void resolve_density() {
     const std::optional<double> detail = common_detail(scene);
     config.user_size_m = options.user_size_m.value_or(config.user_size_m * scale);
-    config.point_spacing_m =
-        options.spacing_m.value_or(detail.value_or(usual_spacing(scanners.front(), config, scale)));
+    const bool by_steps = !options.scanner && options.scanners.empty();
+    const double usual = options.deliverable ? spacing_for(*options.deliverable)
+                         : by_steps          ? spacing_of_steps(scanners.front(), config, scale)
+                                             : usual_spacing_m * scale;
+    config.point_spacing_m = options.spacing_m.value_or(options.deliverable ? usual : detail.value_or(usual));
     const bool details_differ = asks_for_detail(scene) && !detail;
     config.spacing_by_detail = options.spacing_by_detail || (details_differ && !options.spacing_m);
     if (!options.user_size_m)
       choose("user-size", rounded(config.user_size_m), scale == 1 ? "the usual size" : "by the size of the scene");
     if (!options.spacing_m)
       choose("spacing", rounded(config.point_spacing_m),
-             detail ? "the detail that all surveyed nodes ask for" : "the scanner's own steps at 10 m");
+             options.deliverable ? "what " + *options.deliverable + " takes"
+             : detail            ? "the detail that all surveyed nodes ask for"
+             : by_steps          ? "the scanner's own steps at 10 m"
+                                 : "the usual distance between points");
     if (!details_differ || !config.spacing_by_detail) return;
     choose("spacing-by-detail", "true", "nodes ask for details that differ");
     log("surveyed nodes are wanted as densely as the detail that they ask for, others with a point every " +

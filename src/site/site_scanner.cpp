@@ -5,7 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/parse.hpp"
 #include "vantage/error.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage {
 namespace {
@@ -21,6 +23,19 @@ bool same(const Scanner& a, Scanner b) {
 }
 
 }  // namespace
+
+double spacing_for(const std::string& deliverable) {
+  constexpr double kHalfALine_m = 1e-4;  // on paper
+  constexpr Interval kScales{.low = 1, .high = 10'000};
+  if (deliverable.starts_with("1:"))
+    return kHalfALine_m * parse_number(deliverable.substr(2), "scale of \"" + deliverable + "\"", kScales);
+  try {
+    return largest_error_m(accuracy_class_from_string(deliverable));
+  } catch (const Error&) {
+    throw Error(Errc::invalid_argument,
+                "'" + deliverable + "' is neither the scale of a drawing, such as 1:50, nor one of LOA20 to LOA50");
+  }
+}
 
 Scanner site_scanner(const SiteOptions& options, double scale) {
   Scanner scanner;

@@ -223,6 +223,14 @@ void add_measure(Rows& rows) {
       .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
               measurable)
       .by_scene()
+      .optional("for", "1:N|LOA20..LOA50",
+                "What the scans are for, which sets the spacing: a drawing at this scale (1:50: 5 mm), or an accuracy "
+                "class (LOA30: 15 mm); 20 mm otherwise",
+                &SiteOptions::deliverable,
+                [](const std::string& text, const std::string& what) {
+                  named(what, [&] { return spacing_for(text); });
+                  return text;
+                })
       .flag("spacing-by-detail",
             "Use the detail of nodes as their spacing; the default if details differ and no spacing is given",
             &SiteOptions::spacing_by_detail)

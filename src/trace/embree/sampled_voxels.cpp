@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "trace/embree/seen_triangle.hpp"
+#include "trace/embree/surface.hpp"
 
 namespace vantage {
 namespace {
@@ -24,22 +25,6 @@ ExactPlane plane_of(const Corners& t) {
   const double area = length(n);
   if (!(area > 0)) return {};
   return {n * (1 / area), dot(n, t[0]) / area, SeenTriangle::slenderness(t[0], t[1], t[2], area)};
-}
-
-// Bound on the distance between the normal of a plane and those that are interpolated from a triangle's corners.
-double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane) {
-  if (scene.normals.empty()) return 0;
-  constexpr double kRounding = 1e-6, kUnknown = 1;
-  double most = 0, sign = 0;
-  for (const Float3& corner : scene.corner_normals(triangle)) {
-    const Vec3 normal = widen(corner);
-    const double size = length(normal);
-    if (!(size > 0)) continue;
-    if (sign == 0) sign = dot(normal, plane) < 0 ? -1 : 1;
-    most = std::max(most, length(normal * (sign / size) - plane));
-  }
-  // Between the corners an angle is no larger than theirs, but a chord may be, by less than a tenth.
-  return most < 0.5 ? 1.1 * most + kRounding : kUnknown;
 }
 
 SampledVoxels::Piece piece_of(const Corners& t) {

@@ -2,6 +2,7 @@
 #include "trace/embree/surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vantage {
@@ -22,6 +23,22 @@ Surface::Surface(std::shared_ptr<const SceneData> scene, std::shared_ptr<const P
   }
 }
 
+double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane) {
+  if (scene.normals.empty()) return 0;
+  constexpr double kRounding = 1e-6, kUnknown = 1;
+  double most = 0, sign = 0;
+  for (const Float3& corner : scene.corner_normals(triangle)) {
+    const Vec3 normal = widen(corner);
+    const double size = std::sqrt(dot(normal, normal));
+    if (!(size > 0)) continue;
+    if (sign == 0) sign = dot(normal, plane) < 0 ? -1 : 1;
+    const Vec3 off = normal * (sign / size) - plane;
+    most = std::max(most, std::sqrt(dot(off, off)));
+  }
+  // Between the corners an angle is no larger than theirs, but a chord may be, by less than a tenth.
+  return most < 0.5 ? 1.1 * most + kRounding : kUnknown;
+}
+
 Facet Surface::facet(std::uint32_t triangle) const {
   const auto corners = scene_->corners(triangle);
   Facet facet;
@@ -36,6 +53,7 @@ Facet Surface::facet(std::uint32_t triangle) const {
     for (std::size_t k = 0; k < 3; ++k) facet.normals[k] = widen(normals[k]);
   }
   facet.plane = planes_->normal(triangle);
+  facet.tilt = tilt_of(*scene_, triangle, facet.plane);
   facet.diffuse = diffuse_[mesh(triangle)];
   return facet;
 }

@@ -23,6 +23,8 @@ struct Facet {
   std::array<Vec3, 3> normals;
   Vec3 plane;  // unit normal
   double diffuse = 0;
+  // No hit has a normal farther from the plane's, turned the same way, as vectors of unit length; 1: nothing is known.
+  double tilt = 0;
 
   // Weights of the second and third corner at distance t.
   [[gnu::always_inline]] std::array<double, 2> weights(const Float3& o, const Float3& d, float t) const {
@@ -54,6 +56,9 @@ struct Facet {
     return n * (dot(n, widen(d)) > 0 ? -1.0 : 1.0);
   }
 };
+
+// Facet::tilt of a triangle with this unit normal.
+double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane);
 
 // Tables over the triangles of a scene. Immutable; safe to use from any thread.
 class Surface {

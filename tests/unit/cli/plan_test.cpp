@@ -333,7 +333,8 @@ TEST_F(Plan, AsksForTheStationsThatPayByDefault) {
   const auto front = json_of(plan("plan", {"--link", "0"}));
   EXPECT_EQ(front["pays"]["least_m2"], 25);
   EXPECT_TRUE(front["met"]);
-  EXPECT_EQ(front["summary"][0]["heading"], "planned");
+  EXPECT_EQ(front["summary"][0]["heading"], "scanner");
+  EXPECT_EQ(front["summary"][1]["heading"], "planned");
   EXPECT_TRUE(front["further"]["m2"].is_number());
   const auto same = json_of(
       {"plan", scene_, "--engine", "embree", "--config", path("plan/config.json"), "-o", path("again"), "--no-report"});

@@ -98,8 +98,10 @@ TEST(SurveyQuestion, ChoosesAmongStepsOfTheSitesScanner) {
   SurveyQuestion question;
   question.search_steps = {"0.2", "0.1"};
   EXPECT_EQ(survey_problem(site, question).scanners.size(), 2u);
-  question.search_steps = {"6mm"};
-  EXPECT_NE(refused(question).find("search-step: '6mm'"), std::string::npos);
+  question.search_steps = {"6mm", "12mm"};  // of the usual scanner
+  EXPECT_EQ(survey_problem(site, question).scanners.size(), 2u);
+  question.search_steps = {"7mm"};
+  EXPECT_NE(refused(question).find("has no setting \"7mm\""), std::string::npos);
 }
 
 TEST(SurveyQuestion, RefusesWhatContradictsItself) {

@@ -114,6 +114,7 @@ std::string section(const std::string& title, const SettingTable<Options>& table
   for (const SettingRow<Options>& setting : table) {
     std::string keyword = setting.name;
     std::ranges::replace(keyword, '-', '_');
+    if (keyword == "for") keyword += '_';  // a word of Python's
     text += "| `--" + setting.name + "` | " + cell(setting.unit.empty() ? "–" : setting.unit) + " | `" + keyword +
             "` | " + cell(setting.help) + " |\n";
   }

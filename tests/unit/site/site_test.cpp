@@ -84,6 +84,38 @@ TEST(Site, TellsWhatItChoseAndWhy) {
   EXPECT_EQ(why_of(usual, "user-size"), "the usual size");
 }
 
+// What a surveyor is likely to have, in place of a scanner that exists nowhere; and a spacing of what is to be made.
+TEST(Site, AssumesAUsualScannerWhereNoneIsDescribed) {
+  std::vector<std::string> lines;
+  SiteOptions options = on_embree();
+  options.log = [&](const std::string& line) { lines.push_back(line); };
+  const Site site(floor_of(20), options);
+  EXPECT_EQ(site.scanner().name, load_scanner(usual_scanner).name);
+  EXPECT_EQ(why_of(site, "scanner"), "no scanner was named");
+  EXPECT_EQ(lines.at(0), "scanner: none was named, so a Leica RTC360 @6mm is assumed, 23 s a scan");
+  EXPECT_EQ(site.simulator_config().point_spacing_m, usual_spacing_m);
+  options.steps = {Angle::degrees(0.1), Angle::degrees(0.1)};
+  const Site other(floor_of(20), options);
+  EXPECT_EQ(other.scanner().name, Scanner().name);
+  EXPECT_EQ(why_of(other, "scanner"), "");
+  EXPECT_NEAR(other.simulator_config().point_spacing_m, 0.01745, 1e-5) << "its own steps at 10 m";
+}
+
+TEST(Site, TakesTheSpacingOfWhatIsToBeMade) {
+  SiteOptions options = on_embree();
+  for (const auto& [deliverable, spacing_m] : std::initializer_list<std::pair<const char*, double>>{
+           {"1:50", 0.005}, {"1:100", 0.01}, {"1:2.5", 0.00025}, {"LOA20", 0.05}, {"loa30", 0.015}, {"LOA40", 0.005}}) {
+    options.deliverable = deliverable;
+    EXPECT_DOUBLE_EQ(Site(floor_of(20), options).simulator_config().point_spacing_m, spacing_m) << deliverable;
+  }
+  options.spacing_m = 0.03;
+  EXPECT_EQ(Site(floor_of(20), options).simulator_config().point_spacing_m, 0.03);
+  for (const char* wrong : {"1:0", "1:", "50", "LOA60", "1:nan", ""}) {
+    options.deliverable = wrong;
+    EXPECT_THROW(Site(floor_of(20), options), Error) << wrong;
+  }
+}
+
 TEST(Site, MakesGroundAndSimulatorOnce) {
   SiteOptions options = on_embree();
   options.user_size_m = 0.5, options.spacing_m = 0.2;
