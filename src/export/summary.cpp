@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "plan/answer.hpp"
 #include "scene/room_floors.hpp"
 
 namespace vantage {
@@ -464,9 +465,10 @@ std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Est
     if (entry.stations.size() - problem.existing.size() >= problem.stations_max &&
         (fewer || (result.further && result.further->m2 >= result.pays->least_m2)))
       return ", with as many stations as are allowed";
+    if (!fewer) return "";
     const bool in_time =
         std::ranges::any_of(problem.requirements, [](const Requirement& r) { return r.objective.needs.time; });
-    return fewer && in_time ? ", in the time on site that is allowed" : "";
+    return in_time ? ", in the time on site that is allowed" : ", as far as links reach";
   }
   for (const Requirement& requirement : problem.requirements) {
     if (requirement.bound != Requirement::Bound::at_least || !requirement.objective.needs.attainable) continue;
@@ -643,6 +645,11 @@ std::string unmet_text(const PlanResult& result) {
       if (missed < least) least = missed, best = value;
     }
     if (result.front.empty() || !(least > 0)) continue;
+    if (requires_what_pays(result, requirement)) {
+      text += "what pays is " + percent(requirement.limit) + " of what is attainable; the best network has " +
+              (std::isnan(best) ? std::string("an unknown share") : percent(best)) + "\n";
+      continue;
+    }
     text += "no network has its " + in_words(requirement) +
             (std::isnan(best) ? "" : ": the best has " + value_text(requirement, best)) + "\n";
   }

@@ -70,6 +70,10 @@ std::size_t answer(const PlanResult& result) {
   return answer(result.front, result.problem);
 }
 
+bool requires_what_pays(const PlanResult& result, const Requirement& requirement) {
+  return result.pays && requires_capture(requirement) && requirement.limit == result.pays->capture;
+}
+
 bool met(const PlanResult& result) {
   if (result.front.empty()) return false;
   const PlanEntry& entry = result.front[answer(result)];
@@ -93,6 +97,13 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     const double value = entry.value(objective.name);
     if (requirement.missed_by(entry.estimate(objective.name)) == 0) continue;
     const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
+    if (requires_what_pays(result, requirement) && !ended_early) {
+      help.push_back("not met: what pays is " + percent(requirement.limit) +
+                     " of what is attainable, and stations with "
+                     "such links capture " +
+                     percent(value) + "; allow weaker links, or tie the rest by targets");
+      continue;
+    }
     help.push_back(advice(requirement, value, ended_early));
     if (objective.kind != Objective::Kind::coverage || ended_early) continue;
     if (all_placed(result))

@@ -205,15 +205,21 @@ std::optional<FurtherStation> further_station(const PlanResult& result, PlanCont
   return further;
 }
 
-// A limit on the stations or on the time on site ended the plan before all stations that pay were placed: nothing more
-// than what the answer captures is then required, unless the problem asked for it.
+// Share of what is attainable that pays and is left out without a question, where nothing links it.
+constexpr double kLittleUnlinked = 0.02;
+
+// A limit on the stations or on the time on site ended the plan before all stations that pay were placed, or links
+// leave little of what pays out: nothing more than what the answer captures is then required, unless the problem asked
+// for it.
 void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked) {
   if (!result.pays || result.front.empty()) return;
   const PlanEntry& entry = result.front[answer(result)];
   const bool all_placed = entry.stations.size() - asked.existing.size() >= asked.stations_max;
-  if (!all_placed && !limit_of(asked, Objective::Kind::time, Requirement::Bound::at_most)) return;
   const double captured = entry.value("capture");
   if (std::isnan(captured)) return;
+  const bool cut_short = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled,
+             little = !cut_short && result.pays->capture - captured <= kLittleUnlinked;
+  if (!all_placed && !little && !limit_of(asked, Objective::Kind::time, Requirement::Bound::at_most)) return;
   for (std::size_t k = 0; k < asked.requirements.size(); ++k)
     if (Requirement& requirement = result.problem.requirements[k];
         requires_capture(requirement) && requirement.limit > captured)

@@ -277,6 +277,21 @@ TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
       "16 stations capture 86.2 % of what is attainable, with as many stations as are allowed;"));
 }
 
+// Nobody asked for that share, so nothing speaks of one that was asked for.
+TEST(Summary, SaysWhatLinksLeaveOutOfWhatPays) {
+  PlanResult result = fewest_result(21, {0.86, 0.002}, 0.96);
+  result.pays = {.least_m2 = 25, .stations = 19, .capture = 0.96};
+  const std::string all = summary_text(result) + unmet_text(result);
+  EXPECT_NE(all.find("not met: what pays is 96.0 % of what is attainable, and stations with such links capture 86.0 %; "
+                     "allow weaker links"),
+            std::string::npos)
+      << all;
+  EXPECT_NE(all.find("what pays is 96.0 % of what is attainable; the best network has 86.0 %"), std::string::npos)
+      << all;
+  EXPECT_EQ(all.find("asked for"), std::string::npos) << all;
+  EXPECT_EQ(all.find("at least"), std::string::npos) << all;
+}
+
 TEST(Summary, OfAPlanForAShareSaysWhetherItIsMet) {
   const auto text = [](double captured, double error) {
     return planned_text(fewest_result(9, {captured, error}, 0.9));
