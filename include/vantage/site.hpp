@@ -49,7 +49,7 @@ struct SiteOptions {
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
   /// What the scans are for, in the form of `spacing_for()`; the spacing follows from it unless that is given.
   std::optional<std::string> deliverable = {};
-  bool spacing_by_detail = false;          ///< As `SimulatorConfig::spacing_by_detail`.
+  bool spacing_by_detail = false;  ///< As `SimulatorConfig::spacing_by_detail`.
   std::optional<Angle> max_incidence = {};
   /// If nothing marks the surveyed surface, weigh all but ground to stand on so that ground has a third of coverage at
   /// most. Scans do not need it.

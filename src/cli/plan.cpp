@@ -354,7 +354,7 @@ void add_plan(CLI::App& app, Program& program) {
       app, program, "plan",
       "Find where to stand: the linked stations that pay, the fewest for a share of a site, or a front of networks",
       plan_survey,
-      {"vantage plan site.ifc --scanner rtc360@6mm --spacing 0.02",
+      {"vantage plan site.ifc --scanner x7@11mm --for 1:50",
        "vantage plan site.glb --capture 0.95 --max-time 10min -o hall",
        "vantage plan site.glb --stations 12    the most that twelve stations can capture"});
 }
