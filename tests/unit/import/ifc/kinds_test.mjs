@@ -43,6 +43,15 @@ test("a body under another name is read, and a product without one is told", () 
   told(found, "no body", "IfcBuildingElementProxy air 0Made", "Clearance");
 });
 
+test("a body of drawings gives way to one of the model", () => {
+  for (const both of [true, false]) {
+    const t = new StepText(), plan = t.add("IFCGEOMETRICREPRESENTATIONSUBCONTEXT", "'Body'", "'Plan'", "*", "*", "*", "*", t.context, "$", ".PLAN_VIEW.", "$");
+    const flat = t.representation([t.box([2, 2, 2])], "Body", "SweptSolid", plan), body = t.representation([t.box([1, 1, 1])], "Body", "SweptSolid", t.subcontext("Body"));
+    t.product("IFCBUILDINGELEMENTPROXY", "thing", t.shape(both ? [flat, body] : [flat]));
+    near(readBack(t.text()).products.get("thing").volume, both ? 1 : 8, 1e-6);
+  }
+});
+
 test("a clearance is not cut out of a wall", () => {
   const t = new StepText();
   const wall = t.product("IFCWALL", "thing", t.shape([t.representation([t.box([4, 0.2, 3])])]));
@@ -421,6 +430,18 @@ test("map conversions place the site in their coordinate system", () => {
   named.product("IFCWALL", "thing", named.shape([named.representation([named.box([4, 0.2, 3])])]));
   mapped(named, [1000, 2000, 0, null, null, null], { name: "our own" });
   told(readBack(named.text()), "our own", "give the setting crs");
+});
+
+test("a map conversion without a unit of the map counts in the model's", () => {
+  for (const [unit, crs] of [["millimetre", "EPSG:25832"], ["foot", ""]]) {
+    const t = new StepText({ unit });
+    t.product("IFCWALL", "thing", t.shape([t.representation([t.box([4, 0.2, 3])])]));
+    mapped(t, [500_000 / t.metres, 5_400_000 / t.metres, 120 / t.metres, null, null, null]);
+    const found = readBack(t.text());
+    assert.equal(found.crs, crs);
+    told(found, "500000.00 E, 5400000.00 N, 120.00 m");
+    spans(found.products.get("thing"), [500_000, 5_400_000, 120], [500_004, 5_400_000.2, 123], 1e-3);
+  }
 });
 
 test("property sets of IFC 2x3 stand for a map conversion", () => {
