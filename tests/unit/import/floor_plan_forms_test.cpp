@@ -333,6 +333,35 @@ TEST_F(FloorPlanFormsTest, ThousandsOfWallLinesEndInTime) {
                [&] { load_within(write("plan.dxf", crossing.str()), kSeconds); });
 }
 
+// Two rooms with double walls and a passage between them, without a door that tells the unit.
+DrawingText without_doors(int unit, double scale) {
+  DrawingText d(unit, scale);
+  d.polyline(kWall, {{-0.2, -0.2}, {9.2, -0.2}, {9.2, 4.2}, {-0.2, 4.2}});
+  d.polyline(kWall,
+             {{0, 0}, {5, 0}, {5, 1}, {5.2, 1}, {5.2, 0}, {9, 0}, {9, 4}, {5.2, 4}, {5.2, 2}, {5, 2}, {5, 4}, {0, 4}});
+  d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 6, 2, "East");
+  return d;
+}
+
+TEST_F(FloorPlanFormsTest, AUnitInWhichWallsAreNoneIsAsked) {
+  enum { inches = 1, feet, millimetres = 4, centimetres, metres };
+  const double foot = 0.3048, inch = 0.0254;
+  for (const auto& [unit, scale] :
+       {std::pair{metres, 1.0}, std::pair{millimetres, 1e3}, std::pair{feet, 1 / foot}, std::pair{inches, 1 / inch}})
+    expect_rooms("stated rightly", without_doors(unit, scale), {{"West", 200'000}, {"East", 152'000}});
+  for (const auto& [unit, scale, meant] :
+       {std::tuple(inches, 1e3, "in mm"), std::tuple(centimetres, 1e3, "in mm"), std::tuple(metres, 1 / foot, "in ft"),
+        std::tuple(feet, 1.0, "in m"), std::tuple(centimetres, 1 / inch, "in in")}) {
+    const std::filesystem::path file = write("plan.dxf", without_doors(unit, scale).str());
+    expect_error(Errc::malformed_file, std::string("its walls and rooms are those of a building ") + meant,
+                 [&] { Scene::load(file); });
+  }
+  DrawingText single(metres);  // a corridor between single lines is no wall in feet
+  single.rectangle(kWall, 0, 0, 12, 8), single.line(kWall, 0, 3.2, 12, 3.2), single.line(kWall, 0, 4.8, 12, 4.8);
+  single.text("A-TEXT", 1, 1, "Hall");
+  EXPECT_EQ(load(single).rooms().size(), 1u);
+}
+
 TEST_F(FloorPlanFormsTest, UnitsOfTheHeaderAreMany) {
   for (const auto& [code, scale] : {std::pair(10, 1 / 0.9144), std::pair(14, 10.0), std::pair(21, 3937.0 / 1200)})
     expect_rooms(std::to_string(code).c_str(), room(code, scale), kOne);
