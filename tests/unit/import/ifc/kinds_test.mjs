@@ -465,6 +465,22 @@ test("rooms stand where their site is", () => {
   for (const [corner, wanted] of [[low, [1000, 10, -2005]], [high, [1004, 13, -2000]]]) corner.forEach((v, i) => near(v, wanted[i], 1e-3));
 });
 
+test("products of one file may share a GlobalId, which some programs do not keep unique", () => {
+  const t = new StepText();
+  for (const [name, x] of [["first", 0], ["second", 3]]) t.product("IFCBUILDINGELEMENTPROXY", name, t.shape([t.representation([t.box([1, 1, 1], [x, 0, 0])])]));
+  const [first, second] = [...t.text().matchAll(/IFCBUILDINGELEMENTPROXY\('([^']*)'/g)].map(([, guid]) => guid);
+  const found = readBack(t.text().replace(second, first));
+  spans(found.products.get("first"), [0, 0, 0], [1, 1, 1]);
+  spans(found.products.get("second"), [3, 0, 0], [4, 1, 1]);
+  assert.deepEqual(found.notes, []);
+});
+
+test("a model without any surface says what it has instead", () => {
+  const t = new StepText(), plane = t.add("IFCPLANE", t.axes());
+  t.product("IFCBUILDINGELEMENTPROXY", "thing", t.shape([t.representation([t.add("IFCRECTANGULARTRIMMEDSURFACE", plane, "0.", "0.", "1.", "1.", ".T.", ".T.")])]));
+  assert.throws(() => readBack(t.text()), /no product with a shape .*IfcBuildingElementProxy thing .*IfcRectangularTrimmedSurface is not read/);
+});
+
 test("several files are one site", () => {
   const part = (unit, name, corner, conversion) => {
     const t = new StepText({ unit });
