@@ -266,6 +266,30 @@ TEST_F(FloorPlanFormsTest, WallsThatMissEachOtherByCentimetresAreJoined) {
   EXPECT_NE(notes_of(load(open)).find("1 door and 1 passage"), std::string::npos) << notes_of(load(open));
 }
 
+TEST_F(FloorPlanFormsTest, WallsEndAtTheFacesOfWidePolylines) {
+  for (const double wide : {0.06, 0.1, 0.3})
+    for (const double miss : {0.0, 0.027}) {  // at its north end
+      const auto outer = [&] {
+        DrawingText d(6);
+        const double h = wide / 2;
+        d.polyline(kWall, {{-h, -h}, {6 + h, -h}, {6 + h, 4 + h}, {-h, 4 + h}}, true, wide);
+        d.arc("A-DOOR", 2.8, 0, 0.9, 0, 90), d.line("A-DOOR", 2.8, 0, 2.8, 0.9);
+        d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 5, 2, "East");
+        return d;
+      };
+      const std::string what = std::to_string(wide) + ", " + std::to_string(miss);
+      DrawingText lines = outer();
+      lines.line(kWall, 4.4, 0, 4.4, 4 - miss), lines.line(kWall, 4.5, 0, 4.5, 4 - miss);
+      expect_rooms(("two lines, " + what).c_str(), lines, kTwo);
+      DrawingText middle = outer();  // into the middle of the wall
+      for (const double x : {4.4, 4.5}) middle.line(kWall, x, -wide / 2, x, 4 - miss);
+      expect_rooms(("to the middle, " + what).c_str(), middle, kTwo);
+      DrawingText single = outer();
+      single.line(kWall, 4.45, 0, 4.45, 4 - miss);
+      expect_rooms(("one line, " + what).c_str(), single, kTwo);
+    }
+}
+
 TEST_F(FloorPlanFormsTest, SingleLinesAreWallsFromWallToWall) {
   DrawingText straight = room();
   straight.line(kWall, 4.45, 0, 4.45, 4);
