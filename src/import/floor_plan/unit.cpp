@@ -88,7 +88,7 @@ Scale scale_of(const Drawing& drawing, const std::string& unit) {
     throw importer::Refused(std::string("the drawing's unit is not clear: ") + by + " states " + stated->name +
                             ", but its doors are " + rounded(*width) + " wide, as in " + doors->name +
                             "; give the setting unit: " + sizes(drawing));
-  const bool sure = doors != nullptr;
+  const bool sure = width && fits(*width, *stated);
   return {stated->metres, std::string("unit ") + stated->name + ", by its header", sure, sure ? "" : sizes(drawing)};
 }
 

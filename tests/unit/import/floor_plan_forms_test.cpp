@@ -380,6 +380,10 @@ TEST_F(FloorPlanFormsTest, AUnitInWhichWallsAreNoneIsAsked) {
     expect_error(Errc::malformed_file, std::string("its walls and rooms are those of a building ") + meant,
                  [&] { Scene::load(file); });
   }
+  DrawingText thick(14, 10);  // decimetres, which the doors confirm, though its walls are none but in inches
+  thick.rectangle(kWall, -1, -1, 13, 9), thick.rectangle(kWall, 0, 0, 12, 8);
+  thick.arc("A-DOOR", 2, 0, 0.9, 0, 90), thick.text("A-TEXT", 1, 1, "Vault");
+  expect_rooms("doors confirm it", thick, {{"Vault", 960'000}}, 25'000);
   DrawingText single(metres);  // a corridor between single lines is no wall in feet
   single.rectangle(kWall, 0, 0, 12, 8), single.line(kWall, 0, 3.2, 12, 3.2), single.line(kWall, 0, 4.8, 12, 4.8);
   single.text("A-TEXT", 1, 1, "Hall");
