@@ -13,7 +13,8 @@
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
 #   readers    point clouds in PLY as the Point Cloud Library reads them (needs pcl-tools)
-#   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; 200 random files of meshes
+#   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; floor plans as GDAL (needs gdal-bin), dxf-writer and
+#              @tarikjabiri/dxf do; 200 random files of meshes
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -76,6 +77,7 @@ readers() {
 writers() {
   npm ci --prefix tests/writers >/dev/null
   run node --no-warnings tests/writers/meshes.mjs "$PWD/build/release/vantage"
+  run node tests/writers/plans.mjs "$PWD/build/release/vantage"
   VANTAGE_SEEDS=1..200 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='RandomMeshTest.*'
 }
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }

@@ -314,6 +314,8 @@ bool is_drawing(const std::filesystem::path& file) {
       flags = std::atoi(value.c_str());
     } else if (entity == "3DFACE" && (code == "30" || code == "31" || code == "32" || code == "33")) {
       reach(std::atof(value.c_str()));
+    } else if (entity == "MESH" && code == "30") {
+      reach(std::atof(value.c_str()));
     } else if (entity == "VERTEX" && code == "30") {
       height = std::atof(value.c_str());
     }

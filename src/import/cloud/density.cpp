@@ -96,7 +96,8 @@ std::size_t choose_cell(const Density& density, double memory, double bytes_each
   if (!density.too_thin())
     throw Refused("its surfaces take more memory than there is, even in cells of 50 cm; export parts of it");
   throw Refused("its points, " + std::to_string(density.points()) +
-                " in all, are too thin for surfaces: cells of 50 cm mostly hold fewer than 6; export more of them");
+                " in all, are too thin for surfaces: cells of 50 cm mostly hold fewer than 6; export more of them, or "
+                "give the setting unit if its coordinates are no metres");
 }
 
 }  // namespace vantage::importer

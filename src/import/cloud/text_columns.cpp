@@ -162,11 +162,12 @@ struct Title {
   bool direction = false;  // it says east or north, and no letter of an axis, which geodesists may give to the other
 };
 
-// Tells whether these look like northings before eastings: of UTM and the like, Swiss LV95, or Krovak.
+// Tells whether these look like northings before eastings: of UTM and the like, Gauss-Krueger of zones 2 to 4, whose
+// number leads the easting, Swiss LV95, or Krovak.
 bool north_first(double a, double b) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  return (within(a, 2.6e6, 1e7) && within(b, 1e5, 9e5)) || (within(a, 1.07e6, 1.3e6) && within(b, 2.48e6, 2.84e6)) ||
-         (a < -9e5 && within(b, -9.1e5, -4e5));
+  return (within(a, 2.6e6, 1e7) && within(b, 1e5, 9e5)) || (within(a, 5.2e6, 6.2e6) && within(b, 2.3e6, 4.7e6)) ||
+         (within(a, 1.07e6, 1.3e6) && within(b, 2.48e6, 2.84e6)) || (a < -9e5 && within(b, -9.1e5, -4e5));
 }
 constexpr const char* kGiveOrder = "give the setting columns, e.g. y,x,z where northings come first, or x,y,z";
 

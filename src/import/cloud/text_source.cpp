@@ -186,24 +186,35 @@ class TextSource final : public PointSource {
     return p != Eigen::Vector3d::Zero();
   }
 
+  // By how much points leave the planes of their columns, as seen from the origin and from the head. Angles would not
+  // do: from far away all are small. Without columns, the scanner stands amid its points.
   bool moved_already(std::uint64_t columns, std::uint64_t rows, const Eigen::Vector3d& head) {
     constexpr std::uint64_t kMost = 200'000;
     constexpr std::size_t kLeast = 30;
-    std::array<std::vector<double>, 2> turns;  // of azimuths from point to point, as from the origin and from the head
+    std::array<double, 2> astray{};
+    std::array<std::vector<double>, 2> distances;
+    std::size_t pairs = 0;
     std::optional<Eigen::Vector3d> last;
     for (std::uint64_t k = 0; k < std::min(columns * rows, kMost); ++k) {
       if (k % rows == 0) last.reset();
       Eigen::Vector3d p;
       if (!read_point(columns * rows, p)) continue;
-      for (std::size_t from = 0; last && from < 2; ++from) {
-        const Eigen::Vector3d a = *last - from * head, b = p - from * head;
-        turns[from].push_back(std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y())));
+      pairs += last.has_value();
+      for (std::size_t from = 0; from < 2; ++from) {
+        const Eigen::Vector3d b = p - from * head;
+        distances[from].push_back(b.norm());
+        if (!last) continue;
+        const Eigen::Vector3d a = *last - from * head;
+        const double longer = std::max(a.head<2>().norm(), b.head<2>().norm());
+        if (longer > 0) astray[from] += std::abs(a.x() * b.y() - a.y() * b.x()) / longer;
       }
       last = p;
     }
-    if (turns[0].size() < kLeast) return false;
-    for (auto& all : turns) std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2));
-    return turns[1][turns[1].size() / 2] < turns[0][turns[0].size() / 2];
+    if (pairs >= kLeast) return astray[1] < astray[0];
+    if (distances[0].empty()) return false;
+    for (auto& all : distances)
+      std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2));
+    return distances[1][distances[1].size() / 2] < distances[0][distances[0].size() / 2];
   }
 
   ByteFile file_;

@@ -278,6 +278,7 @@ Storey storey_of(const std::filesystem::path& file, const Settings& settings) {
   const Point origin = scale_to_metres(drawing, scale.metres);
   const std::vector<Swing> swings = take_swings(drawing);
   Walls walls = find_walls(drawing);
+  doubt_unit(scale, walls.faces);
   constexpr double kSmallest_m = 1, kLargest_m = 3000;
   const Bounds box = bounds(walls.solid);
   const double wide = std::max(box.high.x - box.low.x, box.high.y - box.low.y);

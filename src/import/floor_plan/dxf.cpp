@@ -2,6 +2,7 @@
 #include "import/floor_plan/dxf.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -130,6 +131,87 @@ bool DxfText::next(Entity& entity) {
     if (!foreign && !embedded && group.code < kExtended) entity.groups.push_back(group);
   }
   throw truncated();
+}
+
+namespace {
+
+std::map<std::string_view, Group> variables_of(const Entity& header) {
+  std::map<std::string_view, Group> out;
+  std::string_view name;
+  for (const Group& group : header.groups)
+    if (group.code == 9)
+      name = group.value;
+    else if (!name.empty())
+      out.try_emplace(name, group);
+  return out;
+}
+
+}  // namespace
+
+void read_dxf(const std::filesystem::path& file, const DxfTaker& taker) {
+  DxfText text(file);
+  std::string_view section;
+  bool in_block = false;
+  Entity entity, open;  // the one at hand, and one that is not handed on yet
+  std::vector<Entity> parts;
+  const auto finish = [&] {
+    if (!open.type.empty()) taker.entity(open, parts, in_block);
+    open.type = {};
+    parts.clear();
+  };
+  while (text.next(entity)) {
+    if (entity.type == "SECTION") {
+      finish();
+      section = entity.text(2);
+      if (section == "HEADER") taker.header(variables_of(entity));
+    } else if (entity.type == "ENDSEC") {
+      finish();
+      section = {}, in_block = false;
+    } else if (section == "TABLES") {
+      if (entity.type == "LAYER") taker.layer(entity);
+    } else if (section == "BLOCKS" && (entity.type == "BLOCK" || entity.type == "ENDBLK")) {
+      finish();
+      in_block = entity.type == "BLOCK";
+      if (in_block) taker.begin_block(entity);
+    } else if (section == "ENTITIES" || in_block) {
+      const bool part =
+          (entity.type == "VERTEX" && open.type == "POLYLINE") || (entity.type == "ATTRIB" && open.type == "INSERT");
+      if (part) {
+        parts.push_back(entity);
+      } else {
+        finish();
+        std::swap(open, entity);
+      }
+    }
+  }
+  finish();
+}
+
+const DxfUnit* unit_of_code(int code) {
+  constexpr double kSurveyFoot_m = 1200.0 / 3937;
+  static constexpr std::array kUnits{DxfUnit{"in", 1, 0.0254},
+                                     DxfUnit{"ft", 2, 0.3048},
+                                     DxfUnit{"mi", 3, 1609.344},
+                                     DxfUnit{"mm", 4, 0.001},
+                                     DxfUnit{"cm", 5, 0.01},
+                                     DxfUnit{"m", 6, 1.0},
+                                     DxfUnit{"km", 7, 1000},
+                                     DxfUnit{"microinch", 8, 2.54e-8},
+                                     DxfUnit{"mil", 9, 2.54e-5},
+                                     DxfUnit{"yd", 10, 0.9144},
+                                     DxfUnit{"angstrom", 11, 1e-10},
+                                     DxfUnit{"nm", 12, 1e-9},
+                                     DxfUnit{"micrometre", 13, 1e-6},
+                                     DxfUnit{"dm", 14, 0.1},
+                                     DxfUnit{"dam", 15, 10},
+                                     DxfUnit{"hm", 16, 100},
+                                     DxfUnit{"Gm", 17, 1e9},
+                                     DxfUnit{"US survey foot", 21, kSurveyFoot_m},
+                                     DxfUnit{"US survey inch", 22, kSurveyFoot_m / 12},
+                                     DxfUnit{"US survey yard", 23, 3 * kSurveyFoot_m},
+                                     DxfUnit{"US survey mile", 24, 5280 * kSurveyFoot_m}};
+  const auto found = std::ranges::find(kUnits, code, &DxfUnit::code);
+  return found == kUnits.end() ? nullptr : &*found;
 }
 
 }  // namespace vantage::floor_plan

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,5 +56,22 @@ class DxfText {
   Group ahead_;  // the group of code 0 that begins the next entity
   bool begun_ = false;
 };
+
+// Takes what a file holds, in its order. Entities come with the vertices or attributes that follow them.
+struct DxfTaker {
+  std::function<void(const std::map<std::string_view, Group>&)> header;  // variables by name: the first group of each
+  std::function<void(const Entity&)> layer, begin_block;
+  std::function<void(const Entity&, const std::vector<Entity>& parts, bool in_block)> entity;
+};
+// Views live as long as the call. Throws Refused.
+void read_dxf(const std::filesystem::path& file, const DxfTaker& taker);
+
+// A unit of $INSUNITS.
+struct DxfUnit {
+  const char* name;
+  int code;
+  double metres;
+};
+const DxfUnit* unit_of_code(int code);  // null if it means none
 
 }  // namespace vantage::floor_plan

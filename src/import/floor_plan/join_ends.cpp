@@ -81,11 +81,15 @@ class Ends {
   Point& at(std::size_t end) { return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b; }
   Point other(std::size_t end) { return at(end ^ 1U); }
 
+  bool wide(std::size_t line) const { return lines_[line].width >= kThinnestWall_m; }
+  // A wide line is a wall by itself: lines of other walls end at its faces, not in its middle.
+  bool may_join(std::size_t end, std::size_t line) const { return line != end / 2 && wide(line) == wide(end / 2); }
+
   bool loose(std::size_t end, const Grid& grid) {
     const Point p = at(end);
     bool meets = false;
     grid.visit(p, p, [&](std::size_t l) {
-      meets = meets || (l != end / 2 && distance(nearest_on(lines_[l], p), p) <= kJoined);
+      meets = meets || (may_join(end, l) && distance(nearest_on(lines_[l], p), p) <= kJoined);
     });
     return !meets;
   }
@@ -98,7 +102,7 @@ class Ends {
         if (!best || move.by < best->by) best = move;
       };
       grid.visit(p, p, [&](std::size_t l) {
-        if (l == end / 2) return;
+        if (!may_join(end, l)) return;
         for (const std::size_t e : {2 * l, 2 * l + 1})
           if (const double by = distance(at(e), p); by <= kTolerance_m) better(to_end, {end, e, at(e), by});
         if (distance(nearest_on(lines_[l], p), p) > kTolerance_m) return;
@@ -122,12 +126,12 @@ class Ends {
       if (!done[end]) grid.add(end, at(end), at(end));
     std::vector<bool> closed(2 * lines_.size());
     for (const std::size_t end : loose_) {
-      if (done[end] || closed[end] || lines_[end / 2].width >= kThinnestWall_m) continue;
+      if (done[end] || closed[end] || wide(end / 2)) continue;
       const Point p = at(end), outward = (p - other(end)) * (1 / distance(p, other(end)));
       std::optional<std::size_t> best;
       const Point reach{kThickestWall_m, kThickestWall_m};
       grid.visit(p - reach, p + reach, [&](std::size_t e) {
-        if (e / 2 == end / 2 || closed[e] || done[e] || lines_[e / 2].width >= kThinnestWall_m) return;
+        if (e / 2 == end / 2 || closed[e] || done[e] || wide(e / 2)) return;
         const Point to = at(e) - p, way = (at(e) - other(e)) * (1 / distance(at(e), other(e)));
         const double wide = length(to);
         const bool side_by_side = wide >= kThinnestWall_m && wide <= kThickestWall_m && dot(way, outward) > 0.98 &&

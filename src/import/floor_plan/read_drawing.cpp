@@ -139,44 +139,24 @@ class Reader {
   Blocks blocks;
   Content model;
 
-  void read(DxfText& text) {
-    Entity entity;
-    while (text.next(entity)) {
-      if (entity.type == "SECTION") {
-        finish();
-        section_ = entity.text(2);
-        if (section_ == "HEADER") read_header(entity);
-      } else if (entity.type == "ENDSEC") {
-        finish();
-        section_ = {};
-      } else if (section_ == "TABLES") {
-        if (entity.type == "LAYER") add_layer(entity);
-      } else if (section_ == "BLOCKS" && entity.type == "BLOCK") {
-        finish();
-        begin_block(entity);
-      } else if (section_ == "BLOCKS" && entity.type == "ENDBLK") {
-        finish();
-        into_ = nullptr;
-      } else if (section_ == "ENTITIES" || section_ == "BLOCKS") {
-        take(entity);
-      }
-    }
-    finish();
+  void read(const std::filesystem::path& file) {
+    read_dxf(file, {.header = [&](const auto& variables) { read_header(variables); },
+                    .layer = [&](const Entity& layer) { add_layer(layer); },
+                    .begin_block = [&](const Entity& block) { begin_block(block); },
+                    .entity = [&](const Entity& entity, const std::vector<Entity>& parts,
+                                  bool in_block) { add_entity(entity, parts, layers, in_block ? *block_ : model); }});
   }
 
  private:
-  void read_header(const Entity& header) {
-    std::string_view variable;
-    for (const Group& group : header.groups) {
-      if (group.code == 9)
-        variable = group.value;
-      else if (variable == "$DWGCODEPAGE")
-        layers.code_page = group.value;
-      else if (variable == "$INSUNITS")
-        drawing_.unit_code = integer(group);
-      else if (variable == "$LUNITS")
-        drawing_.in_inches = integer(group) == 3 || integer(group) == 4;
-    }
+  void read_header(const std::map<std::string_view, Group>& variables) {
+    const auto value = [&](std::string_view name) {
+      const auto found = variables.find(name);
+      return found == variables.end() ? Group{} : found->second;
+    };
+    layers.code_page = value("$DWGCODEPAGE").value;
+    drawing_.unit_code = integer(value("$INSUNITS"));
+    const int shown = integer(value("$LUNITS"));
+    drawing_.in_inches = shown == 3 || shown == 4;
   }
   void add_layer(const Entity& layer) {
     constexpr int kFrozen = 1;
@@ -189,34 +169,14 @@ class Reader {
   }
   void begin_block(const Entity& block) {
     constexpr int kExternal = 4 | 8;
-    into_ = &blocks[layers.block_key(block.text(2))];
-    into_->name = plain_name(std::string(block.text(2)), layers.code_page);
-    into_->base = {block.number(10), block.number(20)};
-    into_->external = (block.integer(70) & kExternal) != 0;
-  }
-  // Vertices and attributes belong to the entity before them.
-  void take(Entity& entity) {
-    const bool part =
-        (entity.type == "VERTEX" && open_.type == "POLYLINE") || (entity.type == "ATTRIB" && open_.type == "INSERT");
-    if (part) {
-      parts_.push_back(entity);
-      return;
-    }
-    finish();
-    std::swap(open_, entity);
-  }
-  void finish() {
-    Content* const into = section_ == "ENTITIES" ? &model : into_;
-    if (!open_.type.empty() && into) add_entity(open_, parts_, layers, *into);
-    open_.type = {};
-    parts_.clear();
+    block_ = &blocks[layers.block_key(block.text(2))];
+    block_->name = plain_name(std::string(block.text(2)), layers.code_page);
+    block_->base = {block.number(10), block.number(20)};
+    block_->external = (block.integer(70) & kExternal) != 0;
   }
 
   Drawing& drawing_;
-  std::string_view section_;
-  Content* into_ = nullptr;  // the block at hand
-  Entity open_;
-  std::vector<Entity> parts_;
+  Content* block_ = nullptr;  // the one at hand
 };
 
 }  // namespace
@@ -224,8 +184,7 @@ class Reader {
 Drawing read_drawing(const std::filesystem::path& file, const std::vector<std::string>& wall_layers) {
   Drawing drawing;
   Reader reader(drawing);
-  DxfText text(file);
-  reader.read(text);
+  reader.read(file);
   for (const std::string& name : drawing.layers) {
     Kind kind = kind_of(name);
     if (!wall_layers.empty()) {

@@ -6,9 +6,8 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
-#include <span>
-#include <string_view>
 
+#include "import/floor_plan/dxf.hpp"
 #include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/swings.hpp"
 #include "import/program.hpp"
@@ -16,48 +15,18 @@
 namespace vantage::floor_plan {
 namespace {
 
-struct Unit {
-  const char* name;
-  int code;  // of $INSUNITS
-  double metres;
-};
 constexpr int kInch = 1;
-constexpr std::array kUnits{Unit{"m", 6, 1.0}, Unit{"cm", 5, 0.01}, Unit{"mm", 4, 0.001}, Unit{"in", kInch, 0.0254},
-                            Unit{"ft", 2, 0.3048}};
-// That a header may state, too.
-constexpr double kSurveyFoot_m = 1200.0 / 3937;
-constexpr std::array kOtherUnits{Unit{"mi", 3, 1609.344},
-                                 Unit{"km", 7, 1000},
-                                 Unit{"microinch", 8, 2.54e-8},
-                                 Unit{"mil", 9, 2.54e-5},
-                                 Unit{"yd", 10, 0.9144},
-                                 Unit{"angstrom", 11, 1e-10},
-                                 Unit{"nm", 12, 1e-9},
-                                 Unit{"micrometre", 13, 1e-6},
-                                 Unit{"dm", 14, 0.1},
-                                 Unit{"dam", 15, 10},
-                                 Unit{"hm", 16, 100},
-                                 Unit{"Gm", 17, 1e9},
-                                 Unit{"US survey foot", 21, kSurveyFoot_m},
-                                 Unit{"US survey inch", 22, kSurveyFoot_m / 12},
-                                 Unit{"US survey yard", 23, 3 * kSurveyFoot_m},
-                                 Unit{"US survey mile", 24, 5280 * kSurveyFoot_m}};
+const std::array kUnits{*unit_of_code(6), *unit_of_code(5), *unit_of_code(4), *unit_of_code(kInch), *unit_of_code(2)};
 // Widths of doors. The ranges of any two of the units do not meet, so at most one fits.
 constexpr double kNarrowestDoor = 0.65, kWidestDoor = 1.3;
 
-bool fits(double door, const Unit& unit) {
+bool fits(double door, const DxfUnit& unit) {
   return door * unit.metres >= kNarrowestDoor && door * unit.metres <= kWidestDoor;
 }
 
-const Unit* by_doors(double width) {
-  const auto found = std::ranges::find_if(kUnits, [&](const Unit& unit) { return fits(width, unit); });
+const DxfUnit* by_doors(double width) {
+  const auto found = std::ranges::find_if(kUnits, [&](const DxfUnit& unit) { return fits(width, unit); });
   return found == kUnits.end() ? nullptr : &*found;
-}
-
-const Unit* by_code(int code) {
-  for (const std::span<const Unit> units : {std::span<const Unit>(kUnits), std::span<const Unit>(kOtherUnits)})
-    if (const auto found = std::ranges::find(units, code, &Unit::code); found != units.end()) return &*found;
-  return nullptr;
 }
 
 // The median radius of swings: those of doors by name if there are any, else all.
@@ -89,7 +58,7 @@ std::string sizes(const Drawing& drawing) {
   for (const Area& area : drawing.areas)
     for (const auto& ring : area.rings) std::ranges::for_each(ring, reach);
   std::string out;
-  for (const Unit& unit : kUnits)
+  for (const DxfUnit& unit : kUnits)
     out += std::string(out.empty() ? "" : ", ") + unit.name + " (" + rounded((high.x - low.x) * unit.metres) + " x " +
            rounded((high.y - low.y) * unit.metres) + " m)";
   return out;
@@ -99,15 +68,15 @@ std::string sizes(const Drawing& drawing) {
 
 Scale scale_of(const Drawing& drawing, const std::string& unit) {
   if (!unit.empty()) {
-    for (const Unit& known : kUnits)
+    for (const DxfUnit& known : kUnits)
       if (unit == known.name) return {known.metres, std::string("unit ") + known.name + ", as given"};
     throw importer::Refused("the unit \"" + unit + "\" is not m, cm, mm, in or ft");
   }
   const auto width = door_width(drawing);
-  const Unit* doors = width ? by_doors(*width) : nullptr;
-  const Unit* stated = by_code(drawing.unit_code);
+  const DxfUnit* doors = width ? by_doors(*width) : nullptr;
+  const DxfUnit* stated = unit_of_code(drawing.unit_code);
   const char* by = "its header ($INSUNITS)";
-  if (!stated && drawing.in_inches) stated = by_code(kInch), by = "its header ($LUNITS, feet and inches)";
+  if (!stated && drawing.in_inches) stated = unit_of_code(kInch), by = "its header ($LUNITS, feet and inches)";
   if (!stated && doors)
     return {doors->metres, std::string("unit ") + doors->name + ", as its doors are " + rounded(*width) + " wide"};
   if (!stated)
@@ -119,7 +88,31 @@ Scale scale_of(const Drawing& drawing, const std::string& unit) {
     throw importer::Refused(std::string("the drawing's unit is not clear: ") + by + " states " + stated->name +
                             ", but its doors are " + rounded(*width) + " wide, as in " + doors->name +
                             "; give the setting unit: " + sizes(drawing));
-  return {stated->metres, std::string("unit ") + stated->name + ", by its header"};
+  const bool sure = width && fits(*width, *stated);
+  return {stated->metres, std::string("unit ") + stated->name + ", by its header", sure, sure ? "" : sizes(drawing)};
+}
+
+void doubt_unit(const Scale& scale, const std::vector<WallFace>& faces) {
+  // Whether most lines are those of walls, and there is a room between them, if all were so many times as large.
+  const auto suits = [&](double factor) {
+    constexpr double kRoom_m2 = 6;
+    double walls_m = 0, others_m = 0;
+    bool room = false;
+    for (const WallFace& face : faces) {
+      const double wide = factor * face.wide_m();
+      if (wide >= kThinnestWall_m && wide <= kThickestWall_m) walls_m += face.perimeter_m;
+      if (wide <= kThickestWall_m) continue;
+      others_m += face.perimeter_m;
+      room = room || factor * factor * face.area_m2 >= kRoom_m2;
+    }
+    return room && walls_m >= others_m;
+  };
+  if (scale.sure || suits(1)) return;
+  for (const DxfUnit& unit : kUnits)
+    if (suits(unit.metres / scale.metres))
+      throw importer::Refused("the drawing's unit is not clear (" + scale.note +
+                              "): its walls and rooms are those of a " + "building in " + unit.name +
+                              "; give the setting unit: " + scale.sizes);
 }
 
 }  // namespace vantage::floor_plan

@@ -194,12 +194,15 @@ Shape single_walls(const std::vector<Line>& rest, const Shape& solid) {
   return areas(united(std::move(kept)));
 }
 
-Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const auto& wanted, bool by_name) {
+Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const auto& wanted, bool by_name,
+               std::vector<WallFace>& faces_out) {
   std::vector<Line> thin;
   std::map<long, std::vector<Line>> wide;  // by millimetres
   for (const Line& line : lines_in)
     (line.width < kThinnestWall_m ? thin : wide[std::lround(1000 * line.width)]).push_back(line);
   Faces found = faces_of(thin);
+  for (const auto* some : {&found.walls, &found.others})
+    for (const Shape& face : *some) faces_out.push_back({area(face), perimeter(face)});
   std::vector<Shape> parts = std::move(found.walls);
   for (const auto& [width_mm, own] : wide)
     parts.push_back(strip(chained(lines(own)), static_cast<double>(width_mm) / 2000));
@@ -296,7 +299,7 @@ Walls find_walls(const Drawing& drawing) {
         "); leave these out, or name the layers of walls with the setting wall-layer");
   Joined joined = join_ends(std::move(own));
   out.joined_ends = joined.ends, out.farthest_join_m = joined.farthest_m;
-  out.solid = solid_of(drawing, joined.lines, wanted, out.by_name);
+  out.solid = solid_of(drawing, joined.lines, wanted, out.by_name, out.faces);
   fill_gaps(out);
   return out;
 }

@@ -13,7 +13,14 @@ namespace vantage::floor_plan {
 // what is narrower than kThickestWall_m.
 inline constexpr double kThinnestWall_m = 0.03, kThickestWall_m = 0.62, kSingleLine_m = 0.1;
 
+// A face between lines.
+struct WallFace {
+  double area_m2 = 0, perimeter_m = 0;
+  double wide_m() const { return perimeter_m > 0 ? 2 * area_m2 / perimeter_m : 0; }  // about that of a long one
+};
+
 struct Walls {
+  std::vector<WallFace> faces;      // between their lines: walls and rooms
   Shape solid;                      // what walls and columns cover
   std::vector<std::string> layers;  // that they are drawn on
   bool by_name = false;             // whether names tell these

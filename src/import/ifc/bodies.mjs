@@ -24,10 +24,12 @@ export class Bodies {
     let body = drawn.filter(({ kind }) => kind.key === "body");
     for (const fallback of FALLBACKS) if (body.length === 0) body = drawn.filter(({ kind }) => kind.key === fallback);
     if (body.length === 0) body = drawn;
+    // A body of drawings, beside one of the model.
+    if (body.some(({ kind }) => !kind.plan)) body = body.filter(({ kind }) => !kind.plan);
     return { body: body.map(({ ref }) => ref), left: all.filter((one) => !body.includes(one)).map(({ kind }) => kind.label) };
   }
 
-  // {key, label, drawn}: whether it may be a body.
+  // {key, label, drawn, plan}: whether it may be a body, and whether its context is one of drawings.
   #kind(id) {
     const [context, identifier, type] = this.step.args(id), told = JSON.stringify([context, text(identifier), text(type)]);
     let kind = this.#kinds.get(told);
@@ -40,6 +42,6 @@ export class Bodies {
     const name = identifier || (of === "IFCGEOMETRICREPRESENTATIONSUBCONTEXT" ? text(about[0]) : ""), key = name.toLowerCase();
     const plan = /plan|sketch|annotation/i.test(text(about[1]));
     const drawn = !NO_BODY.includes(key) && !NO_SURFACE.includes(type) && (!plan || key === "body");
-    return { key, label: name || type || "nameless", drawn };
+    return { key, label: name || type || "nameless", drawn, plan };
   }
 }

@@ -33,7 +33,8 @@ export class Site {
   }
 
   toGlb() {
-    if (this.shapes.size === 0) throw new Error("it holds no product with a shape; export the model with its geometry");
+    if (this.shapes.size === 0)
+      throw new Error(`it holds no product with a shape${this.notes.length > 0 ? ` (${this.notes[0]})` : ""}; export the model with its geometry`);
     this.#addShapes();
     const glass = this.materials.some((material) => material.alphaMode);
     return this.glb.bytes({
@@ -80,6 +81,7 @@ export class Building {
     this.nodeOf = new Map();    // by express id
     this.meshesOf = new Map();  // by their first geometry: what is known of them
     this.parents = this.#parents();
+    this.elsewhere = new Set(site.shown);  // in files before this one
     this.twice = [];
   }
 
@@ -119,7 +121,7 @@ export class Building {
       shown = new Map();  // web-ifc gave the product up
     }
     if (index >= 0) {
-      if (guid && this.site.shown.has(guid)) { this.twice.push(id); return null; }
+      if (guid && this.elsewhere.has(guid)) { this.twice.push(id); return null; }
       this.site.shown.add(guid);
       this.site.shapes.set(this.node(id), { mesh: index, matrix: product(this.place, place) });
     }
@@ -233,7 +235,7 @@ export class Building {
   addRooms() {
     for (const id of this.step.ids("IFCSPACE")) {
       const guid = this.step.args(id)[0], triangles = [];
-      if (guid && this.site.shown.has(guid)) continue;  // in another file, too
+      if (guid && this.elsewhere.has(guid)) continue;  // in another file, too
       this.site.shown.add(guid);
       for (const part of taken(this.api.GetFlatMesh(this.model, id).geometries)) {
         const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, part.flatTransformation));

@@ -40,10 +40,10 @@ function places(models) {
   if (first && mapped.length < models.length)
     notes.push(`${models.filter((model) => !mapped.includes(model)).map(({ name }) => name).join(", ")}: without a map conversion, placed by that of ${first.name}`);
   if (first) {
-    const { crs: code, name, place } = first.located;
+    const { crs: code, feet, name, place } = first.located;
     const at = `${place[12].toFixed(2)} E, ${(-place[14]).toFixed(2)} N, ${place[13].toFixed(2)} m`;
     notes.push(`it stands on the map by its map conversion, its origin at ${at}` + (code ? ` in ${code.length > 40 ? name || "its coordinate system" : code}`
-      : `; the coordinate system${name ? `, "${name}",` : ""} has no EPSG number: give the setting crs for maps`));
+      : feet ? "" : `; the coordinate system${name ? `, "${name}",` : ""} has no EPSG number: give the setting crs for maps`));
   }
   return { notes, crs: crs[0] ?? "", of: ({ located }) => located?.place ?? first?.located.place ?? identity() };
 }

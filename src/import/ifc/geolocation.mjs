@@ -4,7 +4,7 @@ import { metresOf } from "./units.mjs";
 
 const value = (one) => (typeof one === "object" && one ? one.value : one);
 
-// null, or {crs, name, place, notes}: `crs` is EPSG:N, well-known text or ""; `place` takes the model, in metres with Y
+// null, or {crs, feet, name, place, notes}: `crs` is EPSG:N, well-known text or "", also if it counts in `feet`; `place` takes the model, in metres with Y
 // up, to the map, null if the conversion is empty. `metres`: of the model's unit.
 export function geolocation(step, metres, mentions) {
   const given = conversion(step, mentions);
@@ -19,8 +19,10 @@ export function geolocation(step, metres, mentions) {
     unit = 1;
     notes.push("its map conversion has no unit of the map; easting and northing are taken as metres");
   }
-  // The site is in metres: coordinates of a system in feet are no longer its own.
-  if (crs && Math.abs(unit - 1) > 1e-9) notes.push(`its coordinate system${name ? `, "${name}",` : ""} counts in units of ${unit} m, and the site is in metres: it is not used for maps`);
+  // The site is in metres: coordinates of a system in feet are no longer its own. Millimetres are those of the file, as
+  // systems count in metres or feet.
+  const metric = Math.abs(Math.log10(unit) - Math.round(Math.log10(unit))) < 1e-9;
+  if (crs && !metric) notes.push(`its coordinate system${name ? `, "${name}",` : ""} counts in units of ${unit} m, and the site is in metres: it is not used for maps`);
   let grow = scale * unit / metres;
   if (Math.abs(grow - 1) > 0.05) {
     notes.push(`its map conversion would make the site ${grow.toPrecision(3)} times as large by its scale, which is not applied`);
@@ -29,7 +31,7 @@ export function geolocation(step, metres, mentions) {
   const long = Math.hypot(abscissa, ordinate) || 1, [c, s] = [abscissa / long, ordinate / long], [fx, fy, fz] = factors.map((f) => f * grow);
   // (x, y, z) is (x, z, -y) with Y up.
   const place = [c * fx, 0, -s * fx, 0, 0, fz, 0, 0, s * fy, 0, c * fy, 0, east * unit, height * unit, -north * unit, 1];
-  return { crs: Math.abs(unit - 1) > 1e-9 ? "" : crs, name, place, notes };
+  return { crs: metric ? crs : "", feet: Boolean(crs) && !metric, name, place, notes };
 }
 
 const code = (text) => {

@@ -39,9 +39,8 @@ double finite_or_0(ai_real value) { return std::isfinite(value) ? static_cast<do
 
 class AssimpScene {
  public:
-  AssimpScene(const aiScene& scene, const std::filesystem::path& file, const std::string& format)
-      : scene_(scene), format_(format) {
-    const Declared declared = declared_units(scene, file, format);
+  AssimpScene(const aiScene& scene, const std::string& format) : scene_(scene), format_(format) {
+    const Declared declared = declared_units(scene, format);
     model_.unit = declared.unit, model_.up = declared.up, model_.rounded = true;
     model_.nodes[0].outer_from_node = declared.gltf_from_file;
   }
@@ -72,8 +71,7 @@ class AssimpScene {
         throw Refused("a face of mesh " + std::string(mesh.mName.C_Str()) + " names a vertex that is not there");
       part.indices.insert(part.indices.end(), face.mIndices, face.mIndices + 3);
     }
-    // Normals of DXF are those of its faces and add nothing.
-    if (mesh.HasNormals() && format_ != "dxf")
+    if (mesh.HasNormals())
       for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
         const aiVector3D& n = mesh.mNormals[v];
         part.normals.push_back(glm::vec3(glm::dvec3(finite_or_0(n.x), finite_or_0(n.y), finite_or_0(n.z))));
@@ -142,7 +140,7 @@ Model read_with_assimp(const std::filesystem::path& file, const std::string& for
     if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // which assimp has caught
     throw Refused("it cannot be read: " + why);
   }
-  return AssimpScene(*scene, file, format).read();
+  return AssimpScene(*scene, format).read();
 }
 
 }  // namespace vantage::importer

@@ -11,6 +11,7 @@ std::string convert(const std::filesystem::path& file, const std::string& format
                 : format == "obj" ? read_obj(file)
                 : format == "x3d" ? read_x3d(file)
                 : format == "dae" ? read_collada(file)
+                : format == "dxf" ? read_dxf(file)
                                   : read_with_assimp(file, format);
   model.nodes[0].name = file.stem().string();
   return glb_of(model);

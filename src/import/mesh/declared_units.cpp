@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and axes by format, given what assimp 5.2 already applies: it turns Z to Y for DXF and 3DS, and leaves FBX
-// unchanged.
+// Units and axes by format, given what assimp 5.2 already applies: it turns Z to Y for 3DS, and leaves FBX unchanged.
 #include "import/mesh/declared_units.hpp"
 
 #include <assimp/scene.h>
 
-#include <array>
 #include <cmath>
-#include <fstream>
 
 namespace vantage::importer {
 namespace {
@@ -34,39 +31,12 @@ Declared of_fbx(const aiScene& scene) {
   return declared;
 }
 
-// $INSUNITS of a DXF's header, a group 70 after its name; 0 if there is none.
-int insertion_units(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::string line, code, value;
-  const auto next = [&](std::string& out) {
-    if (!std::getline(stream, out)) return false;
-    out.erase(0, out.find_first_not_of(" \t"));
-    while (!out.empty() && (out.back() == '\r' || out.back() == ' ')) out.pop_back();
-    return true;
-  };
-  while (next(line) && line != "ENTITIES")
-    if (line == "$INSUNITS" && next(code) && next(value) && code == "70") return std::atoi(value.c_str());
-  return 0;
-}
-
 }  // namespace
 
-Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format) {
+Declared declared_units(const aiScene& scene, const std::string& format) {
   if (format == "fbx") return of_fbx(scene);
   Declared declared;
-  if (format == "3ds") {
-    declared.up = true;
-  } else if (format == "dxf") {
-    declared.up = true;
-    struct Code {
-      int code;
-      double metres;
-    };
-    constexpr std::array kCodes{Code{1, 0.0254}, Code{2, 0.3048}, Code{4, 0.001}, Code{5, 0.01}, Code{6, 1.0}};
-    const int given = insertion_units(file);
-    for (const Code& known : kCodes)
-      if (known.code == given) scale(declared, known.metres);
-  }
+  declared.up = true;
   return declared;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "import/mesh/model.hpp"
@@ -16,7 +15,7 @@ struct Declared {
   glm::dmat4 gltf_from_file{1};   // to metres and Y up, as far as declared
 };
 
-// `format` by its extension: "fbx", "3ds", "dxf".
-Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format);
+// `format` by its extension: "fbx" or "3ds".
+Declared declared_units(const aiScene& scene, const std::string& format);
 
 }  // namespace vantage::importer

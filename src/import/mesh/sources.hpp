@@ -14,7 +14,8 @@ Model read_stl(const std::filesystem::path& file);
 Model read_obj(const std::filesystem::path& file);
 Model read_x3d(const std::filesystem::path& file);
 Model read_collada(const std::filesystem::path& file);
-// FBX, 3DS and DXF, of which `format` is the extension, without the dot.
+Model read_dxf(const std::filesystem::path& file);
+// FBX and 3DS, of which `format` is the extension, without the dot.
 Model read_with_assimp(const std::filesystem::path& file, const std::string& format);
 
 }  // namespace vantage::importer

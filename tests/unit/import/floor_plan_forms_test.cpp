@@ -266,6 +266,30 @@ TEST_F(FloorPlanFormsTest, WallsThatMissEachOtherByCentimetresAreJoined) {
   EXPECT_NE(notes_of(load(open)).find("1 door and 1 passage"), std::string::npos) << notes_of(load(open));
 }
 
+TEST_F(FloorPlanFormsTest, WallsEndAtTheFacesOfWidePolylines) {
+  for (const double wide : {0.06, 0.1, 0.3})
+    for (const double miss : {0.0, 0.027}) {  // at its north end
+      const auto outer = [&] {
+        DrawingText d(6);
+        const double h = wide / 2;
+        d.polyline(kWall, {{-h, -h}, {6 + h, -h}, {6 + h, 4 + h}, {-h, 4 + h}}, true, wide);
+        d.arc("A-DOOR", 2.8, 0, 0.9, 0, 90), d.line("A-DOOR", 2.8, 0, 2.8, 0.9);
+        d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 5, 2, "East");
+        return d;
+      };
+      const std::string what = std::to_string(wide) + ", " + std::to_string(miss);
+      DrawingText lines = outer();
+      lines.line(kWall, 4.4, 0, 4.4, 4 - miss), lines.line(kWall, 4.5, 0, 4.5, 4 - miss);
+      expect_rooms(("two lines, " + what).c_str(), lines, kTwo);
+      DrawingText middle = outer();  // into the middle of the wall
+      for (const double x : {4.4, 4.5}) middle.line(kWall, x, -wide / 2, x, 4 - miss);
+      expect_rooms(("to the middle, " + what).c_str(), middle, kTwo);
+      DrawingText single = outer();
+      single.line(kWall, 4.45, 0, 4.45, 4 - miss);
+      expect_rooms(("one line, " + what).c_str(), single, kTwo);
+    }
+}
+
 TEST_F(FloorPlanFormsTest, SingleLinesAreWallsFromWallToWall) {
   DrawingText straight = room();
   straight.line(kWall, 4.45, 0, 4.45, 4);
@@ -331,6 +355,39 @@ TEST_F(FloorPlanFormsTest, ThousandsOfWallLinesEndInTime) {
   }
   expect_error(Errc::malformed_file, "cross more than 100,000 times",
                [&] { load_within(write("plan.dxf", crossing.str()), kSeconds); });
+}
+
+// Two rooms with double walls and a passage between them, without a door that tells the unit.
+DrawingText without_doors(int unit, double scale) {
+  DrawingText d(unit, scale);
+  d.polyline(kWall, {{-0.2, -0.2}, {9.2, -0.2}, {9.2, 4.2}, {-0.2, 4.2}});
+  d.polyline(kWall,
+             {{0, 0}, {5, 0}, {5, 1}, {5.2, 1}, {5.2, 0}, {9, 0}, {9, 4}, {5.2, 4}, {5.2, 2}, {5, 2}, {5, 4}, {0, 4}});
+  d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 6, 2, "East");
+  return d;
+}
+
+TEST_F(FloorPlanFormsTest, AUnitInWhichWallsAreNoneIsAsked) {
+  enum { inches = 1, feet, millimetres = 4, centimetres, metres };
+  const double foot = 0.3048, inch = 0.0254;
+  for (const auto& [unit, scale] :
+       {std::pair{metres, 1.0}, std::pair{millimetres, 1e3}, std::pair{feet, 1 / foot}, std::pair{inches, 1 / inch}})
+    expect_rooms("stated rightly", without_doors(unit, scale), {{"West", 200'000}, {"East", 152'000}});
+  for (const auto& [unit, scale, meant] :
+       {std::tuple(inches, 1e3, "in mm"), std::tuple(centimetres, 1e3, "in mm"), std::tuple(metres, 1 / foot, "in ft"),
+        std::tuple(feet, 1.0, "in m"), std::tuple(centimetres, 1 / inch, "in in")}) {
+    const std::filesystem::path file = write("plan.dxf", without_doors(unit, scale).str());
+    expect_error(Errc::malformed_file, std::string("its walls and rooms are those of a building ") + meant,
+                 [&] { Scene::load(file); });
+  }
+  DrawingText thick(14, 10);  // decimetres, which the doors confirm, though its walls are none but in inches
+  thick.rectangle(kWall, -1, -1, 13, 9), thick.rectangle(kWall, 0, 0, 12, 8);
+  thick.arc("A-DOOR", 2, 0, 0.9, 0, 90), thick.text("A-TEXT", 1, 1, "Vault");
+  expect_rooms("doors confirm it", thick, {{"Vault", 960'000}}, 25'000);
+  DrawingText single(metres);  // a corridor between single lines is no wall in feet
+  single.rectangle(kWall, 0, 0, 12, 8), single.line(kWall, 0, 3.2, 12, 3.2), single.line(kWall, 0, 4.8, 12, 4.8);
+  single.text("A-TEXT", 1, 1, "Hall");
+  EXPECT_EQ(load(single).rooms().size(), 1u);
 }
 
 TEST_F(FloorPlanFormsTest, UnitsOfTheHeaderAreMany) {

@@ -70,6 +70,7 @@ TEST_F(FormatTest, IsToldByContent) {
       {"flat_faces.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\n3DFACE\n30\n0\n31\n0\n0\nENDSEC\n0\nEOF\n",
        "a floor plan in DXF"},
       {"polyface.dxf", polyface_dxf(2.5), "DXF"},
+      {"mesh.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n0\nMESH\n30\n0\n30\n2.5\n0\nENDSEC\n0\nEOF\n", "DXF"},
       {"flat_polyface.dxf", polyface_dxf(0), "a floor plan in DXF"},
   };
   for (const Sample& sample : samples) {

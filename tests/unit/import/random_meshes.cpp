@@ -42,8 +42,8 @@ class Generator {
 
   RandomMeshFile write() {
     using Write = void (Generator::*)();
-    constexpr std::array<Write, 6> kWriters{&Generator::ply, &Generator::stl,     &Generator::obj,
-                                            &Generator::x3d, &Generator::collada, &Generator::gltf};
+    constexpr std::array<Write, 7> kWriters{&Generator::ply,     &Generator::stl,  &Generator::obj, &Generator::x3d,
+                                            &Generator::collada, &Generator::gltf, &Generator::dxf};
     const Write writer = kWriters[seed_ % kWriters.size()];
     national_ = chance(0.4);
     const bool holes = writer == &Generator::collada;
@@ -487,6 +487,90 @@ class Generator {
     out_.options.unit = Unit::metre, out_.options.up = UpAxis::y;
     save("glb", builder.glb(),
          std::string(doubles ? " double" : "") + (restart ? " restart" : "") + (levels ? " levels" : ""));
+  }
+
+  // Each solid on a layer of its own: as faces, a mesh of faces or a MESH; as it is, or in a block that is turned, and
+  // perhaps mirrored, where it is placed.
+  void dxf() {
+    struct DxfUnit {
+      int code;
+      double metres;
+    };
+    const DxfUnit unit = one_of({DxfUnit{4, 0.001}, DxfUnit{6, 1}, DxfUnit{2, 0.3048}, DxfUnit{5, 0.01}});
+    const auto group = [](int code, const std::string& value) { return std::to_string(code) + "\n" + value + "\n"; };
+    const auto at = [&](int code, const glm::dvec3& p) {
+      std::string out;
+      for (int c = 0; c < 3; ++c) out += group(code + 10 * c, text_of(p[c] / unit.metres));
+      return out;
+    };
+    std::string blocks, entities, choices;
+    for (const Solid& solid : solids_) {
+      const bool placed = chance(0.6), mirrored = placed && chance(0.4), by_insert = placed && chance(0.5);
+      const glm::dvec3 origin = placed ? rounded(solid.points[0]) : glm::dvec3(0);
+      const double angle = placed ? between(0, 2 * std::numbers::pi) : 0;
+      const std::string layer = by_insert ? "0" : solid.name;
+      const auto local = [&](std::uint32_t v) {
+        const glm::dvec3 q = solid.points[v] - origin;
+        const glm::dvec3 turned{std::cos(angle) * q.x + std::sin(angle) * q.y,
+                                std::cos(angle) * q.y - std::sin(angle) * q.x, q.z};
+        return mirrored ? glm::dvec3(-turned.x, turned.y, turned.z) : turned;
+      };
+      // A block's faces show outward in its own coordinates.
+      const auto wound = [&](auto polygon) {
+        if (mirrored) std::ranges::reverse(polygon);
+        return polygon;
+      };
+      std::string drawn;
+      const int form = whole(0, 2);
+      if (form == 0) {
+        for (const auto& t : triangles(solid)) {
+          drawn += group(0, "3DFACE") + group(8, layer);
+          const auto corners = wound(t);
+          for (int k = 0; k < 4; ++k) drawn += at(10 + k, local(corners[static_cast<std::size_t>(std::min(k, 2))]));
+        }
+      } else if (form == 1) {
+        drawn += group(0, "POLYLINE") + group(8, layer) + group(66, "1") + group(70, "64");
+        const auto vertex = [&](const std::string& groups) { drawn += group(0, "VERTEX") + group(8, layer) + groups; };
+        for (std::uint32_t v = 0; v < solid.points.size(); ++v) vertex(at(10, local(v)) + group(70, "192"));
+        for (const auto& t : triangles(solid)) {
+          std::string groups = at(10, glm::dvec3(0)) + group(70, "128");
+          int code = 71;
+          for (const std::uint32_t v : wound(t))
+            groups += group(code++, (chance(0.3) ? "-" : "") + std::to_string(v + 1));
+          vertex(groups);
+        }
+        drawn += group(0, "SEQEND");
+      } else {
+        std::string faces;
+        std::size_t numbers = 0;
+        for (const Solid::Face& face : solid.faces) {
+          faces += group(90, std::to_string(face.outline.size()));
+          for (const std::uint32_t v : wound(face.outline)) faces += group(90, std::to_string(v));
+          numbers += face.outline.size() + 1;
+        }
+        drawn += group(0, "MESH") + group(8, layer) + group(71, "2") + group(91, "0") +
+                 group(92, std::to_string(solid.points.size()));
+        for (std::uint32_t v = 0; v < solid.points.size(); ++v) drawn += at(10, local(v));
+        drawn += group(93, std::to_string(numbers)) + faces + group(94, "0") + group(95, "0") + group(90, "0");
+      }
+      choices += std::string(placed ? " placed" : " drawn") + (mirrored ? " mirrored" : "") + std::to_string(form);
+      if (!placed) {
+        entities += drawn;
+        continue;
+      }
+      const std::string name = "B" + solid.name;
+      blocks += group(0, "BLOCK") + group(8, "0") + group(2, name) + group(70, "0") + at(10, glm::dvec3(0)) + drawn +
+                group(0, "ENDBLK");
+      entities += group(0, "INSERT") + group(8, by_insert ? solid.name : "0") + group(2, name) + at(10, origin) +
+                  group(41, mirrored ? "-1" : "1") + group(50, text_of(angle * 180 / std::numbers::pi));
+    }
+    const auto section = [&](const std::string& name, const std::string& content) {
+      return group(0, "SECTION") + group(2, name) + content + group(0, "ENDSEC");
+    };
+    save("dxf",
+         section("HEADER", group(9, "$INSUNITS") + group(70, std::to_string(unit.code))) + section("BLOCKS", blocks) +
+             section("ENTITIES", entities) + group(0, "EOF"),
+         " unit " + std::to_string(unit.code) + choices);
   }
 
   std::mt19937_64 rng_;

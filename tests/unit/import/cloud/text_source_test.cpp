@@ -132,6 +132,10 @@ TEST_F(TextColumnsTest, WhatIsNotClearIsAsked) {
                     return fixed_text(5.4e6 + y) + " " + fixed_text(512'000 + x) + " " + fixed_text(z);
                   }),
                   "could be northings");
+  expect_question(text_of([](int, double x, double y, double z) {  // of Gauss-Krueger
+                    return fixed_text(5.4e6 + y) + " " + fixed_text(3'512'000 + x) + " " + fixed_text(z);
+                  }),
+                  "could be northings");
   const auto told =
       open_text(write("a.xyz", text_of([](int, double x, double y, double z) {
                         return fixed_text(5.4e6 + y) + " " + fixed_text(512'000 + x) + " " + fixed_text(z);
@@ -158,7 +162,8 @@ TEST_F(TextSourceTest, PtxPlacesEachScan) {
 }
 
 // Two scans of a room by a scanner that turns, with its place before a matrix that moves nothing.
-std::string ptx_without_matrix(bool moved, const std::vector<Eigen::Vector3d>& heads) {
+// `grid`: columns are told.
+std::string ptx_without_matrix(bool moved, const std::vector<Eigen::Vector3d>& heads, bool grid = true) {
   std::string text;
   for (const Eigen::Vector3d& head : heads) {
     constexpr int kColumns = 12, kRows = 9;
@@ -166,7 +171,7 @@ std::string ptx_without_matrix(bool moved, const std::vector<Eigen::Vector3d>& h
       for (const double value : values) text += fixed_text(value, '.', 6) + " ";
       text += "\n";
     };
-    text += std::to_string(kColumns) + "\n" + std::to_string(kRows) + "\n";
+    text += std::to_string(grid ? kColumns : kColumns * kRows) + "\n" + std::to_string(grid ? kRows : 1) + "\n";
     line({head.x(), head.y(), head.z()});
     line({0, 1, 0}), line({-1, 0, 0}), line({0, 0, 1});  // x of the scanner points north
     line({1, 0, 0, 0}), line({0, 1, 0, 0}), line({0, 0, 1, 0}), line({0, 0, 0, 1});
@@ -183,17 +188,25 @@ std::string ptx_without_matrix(bool moved, const std::vector<Eigen::Vector3d>& h
 }
 
 TEST_F(TextSourceTest, PtxMayTellItsPlaceBeforeTheMatrixAlone) {
-  const std::vector<Eigen::Vector3d> heads{{10, 20, 2}, {14, 21, 2}};
-  const auto as_scanned = open_text(write("a.ptx", ptx_without_matrix(false, heads))),
-             as_moved = open_text(write("b.ptx", ptx_without_matrix(true, heads)));
-  const auto a = points_of(*as_scanned), b = points_of(*as_moved);
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LT((a[k].position - b[k].position).norm(), 1e-4) << k;
-  for (const auto& source : {as_scanned.get(), as_moved.get()}) {
-    EXPECT_EQ(source->scans().at(1).position, heads[1]);
-    EXPECT_EQ(source->notes().size(), 1u);
-  }
-  EXPECT_EQ(points_of(*as_scanned).size(), a.size());
+  using Heads = std::vector<Eigen::Vector3d>;
+  for (const Heads& heads :
+       {Heads{{10, 20, 2}, {14, 21, 2}}, Heads{{500'010, 5'400'020, 302}, {500'014, 5'400'021, 302}},
+        Heads{{2'600'004, 1'200'003, 500}, {2'600'000, 1'200'003, 500}}})
+    for (const bool grid : {true, false}) {
+      const auto as_scanned = open_text(write("a.ptx", ptx_without_matrix(false, heads, grid))),
+                 as_moved = open_text(write("b.ptx", ptx_without_matrix(true, heads, grid)));
+      const auto a = points_of(*as_scanned), b = points_of(*as_moved);
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        EXPECT_LT((a[k].position - b[k].position).norm(), 1e-4) << k;
+        EXPECT_LT((a[k].position - heads[a[k].scan]).norm(), 4) << k;
+      }
+      for (const auto& source : {as_scanned.get(), as_moved.get()}) {
+        EXPECT_EQ(source->scans().at(1).position, heads[1]);
+        EXPECT_EQ(source->notes().size(), 1u);
+      }
+      EXPECT_EQ(points_of(*as_scanned).size(), a.size());
+    }
 }
 
 TEST_F(TextSourceTest, SaysWhatIsWrongAndWhere) {

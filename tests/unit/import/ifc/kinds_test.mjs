@@ -43,6 +43,15 @@ test("a body under another name is read, and a product without one is told", () 
   told(found, "no body", "IfcBuildingElementProxy air 0Made", "Clearance");
 });
 
+test("a body of drawings gives way to one of the model", () => {
+  for (const both of [true, false]) {
+    const t = new StepText(), plan = t.add("IFCGEOMETRICREPRESENTATIONSUBCONTEXT", "'Body'", "'Plan'", "*", "*", "*", "*", t.context, "$", ".PLAN_VIEW.", "$");
+    const flat = t.representation([t.box([2, 2, 2])], "Body", "SweptSolid", plan), body = t.representation([t.box([1, 1, 1])], "Body", "SweptSolid", t.subcontext("Body"));
+    t.product("IFCBUILDINGELEMENTPROXY", "thing", t.shape(both ? [flat, body] : [flat]));
+    near(readBack(t.text()).products.get("thing").volume, both ? 1 : 8, 1e-6);
+  }
+});
+
 test("a clearance is not cut out of a wall", () => {
   const t = new StepText();
   const wall = t.product("IFCWALL", "thing", t.shape([t.representation([t.box([4, 0.2, 3])])]));
@@ -423,6 +432,18 @@ test("map conversions place the site in their coordinate system", () => {
   told(readBack(named.text()), "our own", "give the setting crs");
 });
 
+test("a map conversion without a unit of the map counts in the model's", () => {
+  for (const [unit, crs] of [["millimetre", "EPSG:25832"], ["foot", ""]]) {
+    const t = new StepText({ unit });
+    t.product("IFCWALL", "thing", t.shape([t.representation([t.box([4, 0.2, 3])])]));
+    mapped(t, [500_000 / t.metres, 5_400_000 / t.metres, 120 / t.metres, null, null, null]);
+    const found = readBack(t.text());
+    assert.equal(found.crs, crs);
+    told(found, "500000.00 E, 5400000.00 N, 120.00 m");
+    spans(found.products.get("thing"), [500_000, 5_400_000, 120], [500_004, 5_400_000.2, 123], 1e-3);
+  }
+});
+
 test("property sets of IFC 2x3 stand for a map conversion", () => {
   const t = new StepText({ schema: "ifc2x3", unit: "millimetre" });
   t.product("IFCWALL", "thing", t.shape([t.representation([t.box([4, 0.2, 3])])]));
@@ -442,6 +463,22 @@ test("rooms stand where their site is", () => {
   mapped(t, [1000, 2000, 10, null, null, null]);
   const [low, high] = readBack(t.text()).rooms.get("101");
   for (const [corner, wanted] of [[low, [1000, 10, -2005]], [high, [1004, 13, -2000]]]) corner.forEach((v, i) => near(v, wanted[i], 1e-3));
+});
+
+test("products of one file may share a GlobalId, which some programs do not keep unique", () => {
+  const t = new StepText();
+  for (const [name, x] of [["first", 0], ["second", 3]]) t.product("IFCBUILDINGELEMENTPROXY", name, t.shape([t.representation([t.box([1, 1, 1], [x, 0, 0])])]));
+  const [first, second] = [...t.text().matchAll(/IFCBUILDINGELEMENTPROXY\('([^']*)'/g)].map(([, guid]) => guid);
+  const found = readBack(t.text().replace(second, first));
+  spans(found.products.get("first"), [0, 0, 0], [1, 1, 1]);
+  spans(found.products.get("second"), [3, 0, 0], [4, 1, 1]);
+  assert.deepEqual(found.notes, []);
+});
+
+test("a model without any surface says what it has instead", () => {
+  const t = new StepText(), plane = t.add("IFCPLANE", t.axes());
+  t.product("IFCBUILDINGELEMENTPROXY", "thing", t.shape([t.representation([t.add("IFCRECTANGULARTRIMMEDSURFACE", plane, "0.", "0.", "1.", "1.", ".T.", ".T.")])]));
+  assert.throws(() => readBack(t.text()), /no product with a shape .*IfcBuildingElementProxy thing .*IfcRectangularTrimmedSurface is not read/);
 });
 
 test("several files are one site", () => {
