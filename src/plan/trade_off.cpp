@@ -2,9 +2,11 @@
 #include "plan/trade_off.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "cover/connected_growth.hpp"
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
@@ -68,22 +70,29 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
   const std::size_t existing = choice.asked.existing, visiting = problem.existing.size() - existing;
   const std::vector<std::size_t> numbers = trade_off_numbers(choice.placed(), std::numeric_limits<std::size_t>::max());
   const auto here = std::ranges::find(numbers, choice.placed());
-  std::vector<CoverSolution> networks{evaluate_cover(problem, choice.network.chosen)};
-  std::vector<std::size_t> now = choice.network.chosen;
-  for (auto number = here; number != numbers.begin() && !stop.stop_requested();) {
-    --number;
-    bool dropped = true;
-    while (dropped && now.size() > existing + *number) dropped = drop_one(problem, now);
-    if (!dropped) break;
-    now = improve_by_swaps(problem, columns, std::move(now), unimproved);
-    networks.insert(networks.begin(), evaluate_cover(problem, now));
-  }
-  for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
-    problem.most = problem.fewest = *number - visiting;
-    CoverSolution more = grow_and_swap(problem, columns, networks.back().chosen, unimproved);
-    if (more.chosen.size() == networks.back().chosen.size()) break;
-    networks.push_back(std::move(more));
-  }
+  std::vector<CoverSolution> fewer, networks{evaluate_cover(problem, choice.network.chosen)};
+  const auto drop = [&] {
+    std::vector<std::size_t> now = choice.network.chosen;
+    for (auto number = here; number != numbers.begin() && !stop.stop_requested();) {
+      --number;
+      bool dropped = true;
+      while (dropped && now.size() > existing + *number) dropped = drop_one(problem, now);
+      if (!dropped) break;
+      now = improve_by_swaps(problem, columns, std::move(now), unimproved);
+      fewer.push_back(evaluate_cover(problem, now));
+    }
+  };
+  const auto grow = [&] {
+    CoverProblem larger = problem;
+    for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
+      larger.most = larger.fewest = *number - visiting;
+      CoverSolution more = grow_and_swap(larger, columns, networks.back().chosen, unimproved);
+      if (more.chosen.size() == networks.back().chosen.size()) break;
+      networks.push_back(std::move(more));
+    }
+  };
+  parallel::beside(grow, drop);
+  networks.insert(networks.begin(), std::make_move_iterator(fewer.rbegin()), std::make_move_iterator(fewer.rend()));
   return networks;
 }
 
