@@ -77,6 +77,14 @@ class OnSite {
   /// Metres from one ground point to another along the search area; empty if it does not connect them. Throws Error
   /// invalid_argument for a point that is not within 1000 km of the scene.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
+  /// Two of some points, and a length of the way between them.
+  struct Way {
+    std::size_t a = 0, b = 0;
+    double metres = 0;
+  };
+  /// Whether the way between two points is longer than a length, for each of many: much faster than way_m() of each. 0
+  /// if the search area does not connect them. Throws as way_m().
+  std::vector<std::uint8_t> longer(std::span<const Vec3> points, std::span<const Way> than) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
   /// to three stations elsewhere (Or-opt), until neither helps. With `link`, consecutive stations are linked as far as
   /// the links allow by a walk that is at most 1.25 times as long, and takes `most_min` or less. The round is begun at

@@ -365,6 +365,10 @@ std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
   for (const Vec3& end : {from, to}) require_in_reach(end, impl_->origin, "the end of a way is");
   return impl_->ways.between(from, to);
 }
+std::vector<std::uint8_t> OnSite::longer(std::span<const Vec3> points, std::span<const Way> than) const {
+  for (const Vec3& point : points) require_in_reach(point, impl_->origin, "the end of a way is");
+  return impl_->ways.longer(points, than);
+}
 double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
 const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
 

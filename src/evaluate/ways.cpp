@@ -180,6 +180,19 @@ Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&
   for (const auto& [a, b] : knights)
     if (!linked(a, b)) link(a, b);
   for (const auto& [a, b] : gaps(cell_of)) link(a, b);
+
+  part_.resize(places_.size(), 0);  // 0: not known yet
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t k = 0; k < places_.size(); ++k) {
+    if (part_[k] != 0) continue;
+    part_[k] = k + 1;
+    for (open.assign(1, k); !open.empty();) {
+      const std::uint32_t at = open.back();
+      open.pop_back();
+      for (const Link& l : links_[at])
+        if (part_[l.to] == 0) part_[l.to] = k + 1, open.push_back(l.to);
+    }
+  }
 }
 
 // Pairs of places across a short gap in the ground: a doorway too narrow to stand in is walked through.
@@ -241,11 +254,7 @@ std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
   return (seen == near.end() ? near.front() : *seen).second;
 }
 
-std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t place) const {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (const auto found = known_.find(place); found != known_.end()) return found->second;
-  }
+std::vector<float> Ways::distances_within(std::uint32_t place, double most_m) const {
   std::vector<float> far(places_.size(), std::numeric_limits<float>::infinity());
   using Entry = std::pair<float, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
@@ -256,10 +265,20 @@ std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t pla
     open.pop();
     if (metres > far[at]) continue;
     for (const Link& link : links_[at]) {
-      if (const float sum = metres + link.metres; sum < far[link.to]) far[link.to] = sum, open.emplace(sum, link.to);
+      if (const float sum = metres + link.metres; sum < far[link.to] && static_cast<double>(sum) <= most_m)
+        far[link.to] = sum, open.emplace(sum, link.to);
     }
   }
-  auto found = std::make_shared<const std::vector<float>>(std::move(far));
+  return far;
+}
+
+std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t place) const {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (const auto found = known_.find(place); found != known_.end()) return found->second;
+  }
+  auto found =
+      std::make_shared<const std::vector<float>>(distances_within(place, std::numeric_limits<double>::infinity()));
   const std::scoped_lock lock(mutex_);
   if (known_.size() >= kMostKnown) known_.clear();
   known_[place] = found;
@@ -292,6 +311,37 @@ std::vector<std::vector<std::optional<double>>> Ways::between_all(std::span<cons
       metres[i][j] = between(points[i], points[j], places[i], places[j], from_place);
   });
   return metres;
+}
+
+std::vector<std::uint8_t> Ways::longer(std::span<const Vec3> points, std::span<const OnSite::Way> than) const {
+  std::vector<std::uint8_t> asked(points.size(), 0), found(than.size(), 0);
+  for (const OnSite::Way& one : than) asked[one.a] = asked[one.b] = 1;
+  std::vector<std::optional<std::uint32_t>> places(points.size());
+  parallel::for_all(std::size_t{0}, points.size(), [&](std::size_t k) {
+    if (asked[k] != 0) places[k] = nearest(points[k]);
+  });
+  // Those with one source of `between` follow each other.
+  std::vector<std::pair<std::uint32_t, std::size_t>> order;
+  for (std::size_t k = 0; k < than.size(); ++k)
+    if (const auto a = places[than[k].a], b = places[than[k].b]; a && b && part_[*a] == part_[*b])
+      order.emplace_back(std::min(*a, *b), k);
+  std::ranges::sort(order);
+  std::vector<std::size_t> firsts;
+  for (std::size_t at = 0; at < order.size(); ++at)
+    if (at == 0 || order[at].first != order[at - 1].first) firsts.push_back(at);
+  firsts.push_back(order.size());
+  parallel::for_all(std::size_t{0}, firsts.size() - 1, [&](std::size_t group) {
+    const auto same = std::span(order).subspan(firsts[group], firsts[group + 1] - firsts[group]);
+    double most_m = 0;
+    for (const auto& [source, k] : same) most_m = std::max(most_m, than[k].metres);
+    const auto far = std::make_shared<const std::vector<float>>(distances_within(same.front().first, most_m));
+    for (const auto& [source, k] : same) {
+      const auto& [a, b, limit_m] = than[k];
+      const auto way = between(points[a], points[b], places[a], places[b], [&](std::uint32_t) { return far; });
+      found[k] = !way || *way > limit_m;
+    }
+  });
+  return found;
 }
 
 std::optional<double> Ways::between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,

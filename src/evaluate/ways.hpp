@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "vantage/on_site.hpp"
 #include "vantage/placement.hpp"
 
 namespace vantage {
@@ -25,6 +26,8 @@ class Ways {
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
   // The same for all pairs of points, in parallel: of points i < j the element [i][j].
   std::vector<std::vector<std::optional<double>>> between_all(std::span<const Vec3> points) const;
+  // Whether the way between two of `points` is longer than this, for each in parallel; 0 if none connects them.
+  std::vector<std::uint8_t> longer(std::span<const Vec3> points, std::span<const OnSite::Way> than) const;
   // The ground that such a way leads over, from `from` to `to`, without points on straight stretches; the straight line
   // where there is none.
   std::vector<Vec3> path(const Vec3& from, const Vec3& to) const;
@@ -42,6 +45,8 @@ class Ways {
   std::optional<double> between(const Vec3& from, const Vec3& to, std::optional<std::uint32_t> a,
                                 std::optional<std::uint32_t> b, const DistancesFrom& distances_from) const;
   std::shared_ptr<const std::vector<float>> distances_from(std::uint32_t place) const;
+  // Infinity for places that are farther than `most_m`.
+  std::vector<float> distances_within(std::uint32_t place, double most_m) const;
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> gaps(
       const std::vector<std::pair<std::int64_t, std::int64_t>>& cell_of) const;
@@ -51,6 +56,7 @@ class Ways {
   std::vector<Vec3> places_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
   std::vector<std::vector<Link>> links_;
+  std::vector<std::uint32_t> part_;  // by place: connected ones have the same
   // Cache of places asked for before, limited in size: networks of a search share stations.
   mutable std::mutex mutex_;
   mutable std::unordered_map<std::uint32_t, std::shared_ptr<const std::vector<float>>> known_;

@@ -9,6 +9,27 @@
 #include "plan/sample_seen.hpp"
 
 namespace vantage {
+namespace {
+
+// The part of each candidate, of those that links of at least `link` connect.
+std::vector<std::size_t> parts_of(const StationGraph& graph, double link) {
+  const std::size_t none = graph.size();
+  std::vector<std::size_t> part(none, none), open;
+  for (std::size_t k = 0; k < none; ++k) {
+    if (part[k] != none) continue;
+    part[k] = k;
+    for (open.assign(1, k); !open.empty();) {
+      const std::size_t at = open.back();
+      open.pop_back();
+      for (const StationGraph::Overlap& other : graph.overlaps(at))
+        if (part[other.candidate] == none && static_cast<double>(other.share) >= link)
+          part[other.candidate] = k, open.push_back(other.candidate);
+    }
+  }
+  return part;
+}
+
+}  // namespace
 
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals) {
   return [&simulator, sample_voxels, goals = std::move(goals)](std::span<const PlacedStation> stations,
@@ -74,6 +95,7 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
     for (std::size_t k = column; k < column + count; ++k) matrix_.add(known.column(k));
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
   const std::size_t first = graph_.size();
+  bring_back_ties();
   graph_.extend(around_, stations_.size());
   if (errors_ > 0) {
     sampled_.extend(around_, stations_.size());
@@ -89,13 +111,16 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
         positions, least_m_, [&](std::size_t i, std::size_t j) { return !spacing_.sees(positions[i], positions[j]); },
         first);
   }
+  if (past_stairs_) leave_out_ties(links_from(first));
   return count == stations.size();
 }
 
 void CandidateTable::take_least_overlaps(double errors) {
   if (errors_ == 0) sampled_ = graph_;
   errors_ = errors;
+  bring_back_ties();
   lower_overlaps(0);
+  if (past_stairs_) leave_out_ties({});
 }
 
 void CandidateTable::lower_overlaps(std::size_t first) {
@@ -111,14 +136,57 @@ void CandidateTable::lower_overlaps(std::size_t first) {
     }
 }
 
+std::vector<CandidateTable::Pair> CandidateTable::links_from(std::size_t first) const {
+  std::vector<Pair> links;
+  for (std::size_t i = first; i < graph_.size(); ++i)
+    for (const StationGraph::Overlap& other : graph_.overlaps(i)) {
+      if (other.candidate >= i) break;
+      if (static_cast<double>(other.share) >= link_) links.emplace_back(other.candidate, i);
+    }
+  return links;
+}
+
+void CandidateTable::keep_to_stairs(PastStairs past_stairs, double link) {
+  count_all_links();
+  past_stairs_ = std::move(past_stairs), link_ = link;
+  leave_out_ties(links_from(0));
+}
+
+void CandidateTable::count_all_links() {
+  bring_back_ties();
+  ties_.clear();
+  past_stairs_ = nullptr;
+}
+
+void CandidateTable::bring_back_ties() {
+  for (const auto& [pair, share] : ties_) graph_.set_overlap(pair.first, pair.second, share);
+}
+
+void CandidateTable::leave_out_ties(std::vector<Pair> further) {
+  const std::vector<std::uint8_t> past = past_stairs_(stations_, further);
+  for (std::size_t k = 0; k < further.size(); ++k)
+    if (past[k] != 0) ties_.emplace(further[k], 0.0F);
+  for (auto& [pair, share] : ties_) {
+    share = graph_.overlap(pair.first, pair.second);
+    if (static_cast<double>(share) >= link_) graph_.set_overlap(pair.first, pair.second, 0);
+  }
+  const std::vector<std::size_t> part = parts_of(graph_, link_);
+  for (const auto& [pair, share] : ties_)
+    if (part[pair.first] != part[pair.second]) graph_.set_overlap(pair.first, pair.second, share);
+}
+
 void CandidateTable::take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap) {
+  bring_back_ties();
+  std::vector<Pair> taken;
   for (std::size_t a = 0; a < chosen.size(); ++a)
     for (std::size_t b = a + 1; b < chosen.size(); ++b) {
       const auto share = static_cast<float>(overlap(a, b));
       if (share == 0 && graph_.overlap(chosen[a], chosen[b]) == 0) continue;
       graph_.set_overlap(chosen[a], chosen[b], share);
       known_.insert(std::minmax(chosen[a], chosen[b]));
+      if (static_cast<double>(share) >= link_) taken.push_back(std::minmax(chosen[a], chosen[b]));
     }
+  if (past_stairs_) leave_out_ties(std::move(taken));
 }
 
 double CandidateTable::overlap_error(std::span<const std::size_t> network, double share) const {

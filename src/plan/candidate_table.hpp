@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -35,6 +36,10 @@ inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
+// Whether a link of each of these pairs of stations ties storeys past the stair.
+using PastStairs = std::function<std::vector<std::uint8_t>(std::span<const PlacedStation>,
+                                                           std::span<const std::pair<std::size_t, std::size_t>>)>;
+
 // Lower bound of a share of which a sample of `size` shows `share`, by so many standard errors (Wilson: Probable
 // Inference, the Law of Succession, and Statistical Inference, 1927). REQUIRES: size > 0.
 double least_share(double share, double size, double errors);
@@ -62,6 +67,10 @@ class CandidateTable {
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
   // Whether a pair's overlap was taken in.
   bool is_known(std::size_t i, std::size_t j) const { return known_.contains(std::minmax(i, j)); }
+  // From now on links of at least `link` that tie storeys past the stair do not count, wherever others connect the
+  // stations of both ends: the graph tells that they share nothing.
+  void keep_to_stairs(PastStairs past_stairs, double link);
+  void count_all_links();  // as before
   // Standard error of a sampled overlap of that share, for the station of a network that sees least of the sample.
   double overlap_error(std::span<const std::size_t> network, double share) const;
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
@@ -70,14 +79,21 @@ class CandidateTable {
   const StationGraph& graph() const { return graph_; }
 
  private:
-  void lower_overlaps(std::size_t first);  // of pairs with candidate `first` or a later one
+  using Pair = std::pair<std::size_t, std::size_t>;       // the lower one first
+  void lower_overlaps(std::size_t first);                 // of pairs with candidate `first` or a later one
+  std::vector<Pair> links_from(std::size_t first) const;  // of the same pairs
+  void bring_back_ties();
+  void leave_out_ties(std::vector<Pair> further);  // and those of `further` that are some
 
   TraceColumns surveyed_, surroundings_;
   StationSpacing spacing_;
   double unsampled_, errors_ = 0;
-  StationGraph sampled_;                                 // as the sample shows it; empty while errors_ is 0
-  std::set<std::pair<std::size_t, std::size_t>> known_;  // pairs that were taken in, the lower one first
-  std::vector<double> least_m_;                          // by station
+  StationGraph sampled_;         // as the sample shows it; empty while errors_ is 0
+  std::set<Pair> known_;         // pairs that were taken in
+  PastStairs past_stairs_;       // empty: all links count
+  double link_ = 0;              // least share of one that does
+  std::map<Pair, float> ties_;   // past stairs, with their shares
+  std::vector<double> least_m_;  // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;
   StationGraph graph_;

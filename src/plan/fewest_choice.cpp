@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <set>
 #include <utility>
 
+#include "core/graph.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
+#include "evaluate/storey_ties.hpp"
 #include "plan/limits.hpp"
 #include "plan/what_pays.hpp"
 
@@ -23,6 +26,8 @@ constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
+// Further stations, at both ends of a stair, for each tie past it.
+constexpr std::size_t kForStair = 2;
 
 // Finds the most coverage of as many stations as there is time for.
 void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_token& stop) {
@@ -36,6 +41,24 @@ void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_toke
     choice.one_fewer.reset();
     choice.network = min_connected_cover(cover_problem(choice), stop).best;
   }
+}
+
+std::size_t ties_past_stairs(const FewestChoice& choice) {
+  const std::vector<std::size_t>& chosen = choice.network.chosen;
+  return ties_past_stairs(choice.stations_of(choice.network), choice.past_stairs, [&](std::size_t a, std::size_t b) {
+    return choice.table.graph().linked(chosen[a], chosen[b], choice.asked.link);
+  });
+}
+
+bool takes_hardly_more(const FewestChoice& choice, const CoverSolution& before, std::size_t ties) {
+  return choice.network.violation <= before.violation &&
+         choice.network.chosen.size() <= before.chosen.size() + kForStair * ties;
+}
+
+// Whether as many stations are connected and capture no less than without an average one of them.
+bool holds_as_much(const FewestChoice& choice, const CoverSolution& before) {
+  const auto placed = static_cast<double>(choice.placed());
+  return choice.network.link >= choice.asked.link && choice.network.coverage >= (1 - 1 / placed) * before.coverage;
 }
 
 }  // namespace
@@ -175,6 +198,61 @@ bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> bef
   for (std::size_t unit = 0; unit < had.size(); ++unit)
     if (!had[unit].empty() && has[unit].empty()) return true;
   return false;
+}
+
+std::size_t ties_past_stairs(std::span<const PlacedStation> stations, const PastStairs& past_stairs,
+                             const std::function<bool(std::size_t, std::size_t)>& linked) {
+  const std::size_t all = components(stations.size(), linked).count;
+  const Components level = components(stations.size(), [&](std::size_t a, std::size_t b) {
+    return !crosses_storeys(stations[a], stations[b]) && linked(a, b);
+  });
+  if (level.count == all) return 0;
+  std::vector<std::pair<std::size_t, std::size_t>> crossing;
+  for (std::size_t a = 0; a < stations.size(); ++a)
+    for (std::size_t b = a + 1; b < stations.size(); ++b)
+      if (level.of[a] != level.of[b] && linked(a, b)) crossing.emplace_back(a, b);
+  const std::vector<std::uint8_t> past = past_stairs(stations, crossing);
+  std::set<std::pair<std::size_t, std::size_t>> along;
+  for (std::size_t k = 0; k < crossing.size(); ++k)
+    if (past[k] == 0) along.insert(std::minmax(level.of[crossing[k].first], level.of[crossing[k].second]));
+  const auto joined = [&](std::size_t a, std::size_t b) { return along.contains(std::minmax(a, b)); };
+  return components(level.count, joined).count - all;
+}
+
+bool keep_to_stairs(FewestChoice& choice, const std::stop_token& stop) {
+  if (!choice.past_stairs || choice.along_stairs) return false;
+  const std::size_t ties = ties_past_stairs(choice);
+  if (ties == 0) return false;
+  CoverSolution before = choice.network;
+  std::optional<CoverSolution> one_fewer = std::move(choice.one_fewer);
+  choice.one_fewer.reset();
+  choice.table.keep_to_stairs(choice.past_stairs, choice.asked.link);
+  CoverSolution now = evaluate_cover(cover_problem(choice), before.chosen);
+  const bool any_other = now.link < choice.asked.link;
+  if (any_other) {
+    choose_from(choice, choice.asked.most_coverage ? std::nullopt : std::optional(std::move(now)), stop);
+    strengthen(choice, stop);
+    if (choice.asked.most_coverage ? holds_as_much(choice, before) : takes_hardly_more(choice, before, ties)) {
+      choice.along_stairs = {.before = std::move(before), .unavoidable = ties_past_stairs(choice)};
+      return true;
+    }
+  }
+  choice.table.count_all_links();
+  choice.past_stairs = nullptr;
+  choice.network = std::move(before), choice.one_fewer = std::move(one_fewer);
+  return false;
+}
+
+void leave_stairs(FewestChoice& choice, const std::stop_token& stop) {
+  choice.table.count_all_links();
+  choice.past_stairs = nullptr;
+  const CoverProblem problem = cover_problem(choice);
+  std::vector<std::size_t> network = problem.existing;  // some of which may be there for their units since
+  for (const std::size_t k : choice.along_stairs->before.chosen)
+    if (std::ranges::find(network, k) == network.end()) network.push_back(k);
+  choice.along_stairs.reset();
+  choose_from(choice, evaluate_cover(problem, std::move(network)), stop);
+  strengthen(choice, stop);
 }
 
 void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double radius_m, const Progress& progress) {

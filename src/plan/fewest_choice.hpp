@@ -60,6 +60,13 @@ struct FewestChoice {
   std::optional<CoverSolution> one_fewer = {};  // the best network of one station fewer, which is not feasible
   const UnitsToVisit* to_visit = nullptr;       // borrowed
   std::vector<std::size_t> visiting = {};       // stations of units that had none; they stay, as existing ones do
+  PastStairs past_stairs = {};                  // empty: all links are alike
+  // The choice without links past the stair, if they do not count.
+  struct AlongStairs {
+    CoverSolution before = {};    // the network that has such ties
+    std::size_t unavoidable = 0;  // ties that no others replace
+  };
+  std::optional<AlongStairs> along_stairs = {};
 
   // All stations of a network, or those besides the existing ones.
   std::vector<PlacedStation> stations_of(const CoverSolution& solution) const;
@@ -99,6 +106,16 @@ bool visit_units(FewestChoice& choice, const std::stop_token& stop);
 // True if a network has no station in some unit where the one before has one.
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
                   std::span<const PlacedStation> after);
+
+// Number of links past the stair that alone tie storeys of a network. `linked`: whether two of its stations are.
+std::size_t ties_past_stairs(std::span<const PlacedStation> stations, const PastStairs& past_stairs,
+                             const std::function<bool(std::size_t, std::size_t)>& linked);
+// Chooses again without links past the stair (candidate_table.hpp) if they alone tie storeys of the network. Returns
+// true if it found a network of hardly more stations; otherwise the choice is as before, and all links are alike from
+// now on.
+bool keep_to_stairs(FewestChoice& choice, const std::stop_token& stop);
+// Goes back to the network before, since the one along stairs does not hold.
+void leave_stairs(FewestChoice& choice, const std::stop_token& stop);
 
 // Adds allowed positions within `radius_m` of the chosen stations, and of the best network of one fewer, to the table,
 // and chooses again from the present network.

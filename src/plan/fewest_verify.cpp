@@ -160,14 +160,16 @@ SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
 
 VerifiedNetworks::VerifiedNetworks(const SurveyProblem& problem, const Measures& measures,
                                    const PlacementOracle& oracle, NetworkEvaluator& evaluator,
-                                   std::uint64_t sample_voxels, const PlanWatch& watch, VisitOrder visit_order)
+                                   std::uint64_t sample_voxels, const PlanWatch& watch, VisitOrder visit_order,
+                                   TiesPastStairs ties_past_stairs)
     : problem_(problem),
       measures_(measures),
       oracle_(oracle),
       evaluator_(evaluator),
       sample_voxels_(sample_voxels),
       watch_(watch),
-      visit_order_(std::move(visit_order)) {}
+      visit_order_(std::move(visit_order)),
+      ties_past_stairs_(std::move(ties_past_stairs)) {}
 
 void VerifiedNetworks::add(std::span<const PlacedStation> placed) {
   const SurveyProblem narrowed = with_stations(problem_, placed.size());
@@ -192,7 +194,8 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   if (ordered.front.empty()) return;
   for (PlanEntry& entry :
        confirm_front(ordered, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
-    entry.violation = strict_violation(entry, problem_.requirements);
+    entry.violation =
+        strict_violation(entry, problem_.requirements) + kMissingLink * static_cast<double>(ties_past_stairs(entry));
     entries_.push_back(std::move(entry));
   }
   // Every voxel's points take some 12 bytes a voxel; only what may be the answer keeps them.
@@ -201,6 +204,14 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   });
   for (PlanEntry& entry : entries_)
     if (&entry != &*answer) entry.field = {};
+}
+
+double VerifiedNetworks::violation_of(const PlanEntry& entry) const {
+  return strict_violation(entry, problem_.requirements) + kMissingLink * static_cast<double>(ties_past_stairs(entry));
+}
+
+void VerifiedNetworks::judge_again() {
+  for (PlanEntry& entry : entries_) entry.violation = violation_of(entry);
 }
 
 const PlanEntry* VerifiedNetworks::best() const {
@@ -268,6 +279,17 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   strengthen(choice, stop);
 }
 
+bool keep_to_stairs(FewestChoice& choice, VerifiedNetworks& verified, const std::stop_token& stop) {
+  if (choice.along_stairs || verified.entries().empty()) return false;
+  const PlanEntry& last = verified.entries().back();
+  if (verified.ties_past_stairs(last) == 0 || last.stations.size() != choice.network.chosen.size()) return false;
+  choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
+  const bool kept = keep_to_stairs(choice, stop);
+  if (!kept) choice.past_stairs = nullptr;
+  verified.judge_again();
+  return kept;
+}
+
 void check_links(FewestChoice& choice, const PlacementOracle& oracle, const LeastOverlaps& least_overlaps,
                  const std::stop_token& stop) {
   // False if stopped.
@@ -298,10 +320,12 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   const PlanEntry *best = verified.best(), &last = verified.entries().back();
   if (!best) return false;
   const Margins missing = shortfall(*best, choice.asked, verified.problem().requirements);
-  if (missing.coverage == 0 && missing.link == 0) return false;
+  const std::size_t ties = verified.ties_past_stairs(*best);
+  const bool unlinked = missing.link > 0 || ties > 0;
+  if (missing.coverage == 0 && !unlinked) return false;
   // The last one verified is the chosen one.
   const double known = choice.network.violation;
-  if (last.exact && missing.link > 0 && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
+  if (last.exact && unlinked && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
     choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostLinkErrors);
     choice.table.take_least_overlaps(choice.link_errors);
     choice.table.take_in(in_order_of(last.stations, choice), last.scan_overlap_matrix);
@@ -309,10 +333,12 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   }
   const double told = choice.network.violation;  // by the links of every ray
   const bool was_known = known > 0 && told >= known;
-  if (was_known && missing.link == 0) return false;
+  if (was_known && !unlinked) return false;
   const std::vector<std::size_t> before = choice.network.chosen;
   if (!was_known) raise_margins(choice, missing, stop);
-  if (const auto links = last.links(); links && choice.network.violation > 0 && missing.link > 0)
+  if (ties > 0 && choice.network.violation > 0)
+    look_between(choice, oracle, choice.stations_of(choice.network), links_of(choice), stop);
+  else if (const auto links = last.links(); links && choice.network.violation > 0 && unlinked)
     look_between(choice, oracle, last.stations, *links, stop);
   if (choice.network.violation == 0) return true;
   return choice.network.chosen != before && (known == 0 || choice.network.violation < told);

@@ -24,16 +24,21 @@ class VerifiedNetworks {
  public:
   // Returns the order in which to visit stations, as indices.
   using VisitOrder = std::function<std::vector<std::size_t>(std::span<const PlacedStation>)>;
-  // Borrows all but the order. `sample_voxels`: sample of the search, for the entries' searched values; 0: every ray.
+  // Returns the number of links past the stair that alone tie storeys of a network, and that others could replace.
+  using TiesPastStairs = std::function<std::size_t(const Evaluation&)>;
+  // Borrows all but the functions. `sample_voxels`: sample of the search, for the entries' searched values; 0: every
+  // ray.
   VerifiedNetworks(const SurveyProblem& problem, const Measures& measures, const PlacementOracle& oracle,
                    NetworkEvaluator& evaluator, std::uint64_t sample_voxels, const PlanWatch& watch,
-                   VisitOrder visit_order = {});
+                   VisitOrder visit_order = {}, TiesPastStairs ties_past_stairs = {});
 
   // Evaluates a network of these stations besides the existing ones, or the front of a search for as many stations. Its
   // stations are numbered in the order of visiting.
   void add(std::span<const PlacedStation> placed);
   void add(const SearchOutcome& found, std::size_t placed);
 
+  // Judges all networks anew: other ties count than before.
+  void judge_again();
   // Gives the last network a value that its choice knows, if the time was over before it was evaluated.
   void fill_in(const std::string& measure, double value);
 
@@ -41,12 +46,18 @@ class VerifiedNetworks {
   const std::vector<PlanEntry>& entries() const { return entries_; }
   // The network with the least violation among those evaluated in full; null if there is none.
   const PlanEntry* best() const;
+  // Such a tie counts as a missing link.
+  std::size_t ties_past_stairs(const PlanEntry& entry) const {
+    return entry.exact && ties_past_stairs_ ? ties_past_stairs_(entry) : 0;
+  }
 
   // Among the networks evaluated in full, or all if none was: those of fewest stations that meet the requirements, else
   // those with the least violation; of these, the non-dominated ones.
   std::vector<PlanEntry> front() const;
 
  private:
+  double violation_of(const PlanEntry& entry) const;
+
   const SurveyProblem& problem_;
   const Measures& measures_;
   const PlacementOracle& oracle_;
@@ -54,6 +65,7 @@ class VerifiedNetworks {
   std::uint64_t sample_voxels_;
   const PlanWatch& watch_;
   VisitOrder visit_order_;
+  TiesPastStairs ties_past_stairs_;
   std::vector<PlanEntry> entries_;
 };
 
@@ -63,6 +75,10 @@ SurveyProblem with_stations(SurveyProblem problem, std::size_t placed);
 // Verifies the chosen network. Returns the overstatement of its coverage by the sample of a search, or the coverage
 // margin if that is not known.
 double verify(const FewestChoice& choice, VerifiedNetworks& verified);
+
+// Keeps to stairs (fewest_choice.hpp) where only every ray shows that the last verified network, the chosen one, has
+// ties past them. Returns true if another network is chosen.
+bool keep_to_stairs(FewestChoice& choice, VerifiedNetworks& verified, const std::stop_token& stop);
 
 // Chooses anew with margins raised, by somewhat more than what is missing.
 void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/seconds_since.hpp"
+#include "evaluate/storey_ties.hpp"
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
 #include "plan/spread_positions.hpp"
@@ -185,6 +186,11 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   const TableMaker make_table(context, simulator, candidates.coverage());
   FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
   if (context.to_visit) choice.to_visit = &*context.to_visit;
+  if (choice.asked.link > 0)
+    choice.past_stairs = [&context](std::span<const PlacedStation> stations,
+                                    std::span<const std::pair<std::size_t, std::size_t>> pairs) {
+      return past_stairs(stations, pairs, context.on_site());
+    };
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
@@ -221,10 +227,22 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
     refine();
     if (out_of_reach(choice)) choose_anew(choice, kLeastHelp, watch.stop);
   }
+  keep_to_stairs(choice, watch.stop);
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
   return choice;
+}
+
+// Counts ties of evaluated networks, unless the choice found that they have to be.
+VerifiedNetworks::TiesPastStairs count_ties(const FewestChoice& choice) {
+  return [&choice](const Evaluation& evaluation) -> std::size_t {
+    const ScanOverlapMatrix& overlap = evaluation.scan_overlap_matrix;
+    if (!choice.past_stairs || overlap.size() != evaluation.stations.size()) return 0;
+    const auto linked = [&](std::size_t a, std::size_t b) { return overlap(a, b) >= choice.asked.link; };
+    const std::size_t ties = ties_past_stairs(evaluation.stations, choice.past_stairs, linked);
+    return ties - std::min(ties, choice.along_stairs ? choice.along_stairs->unavoidable : 0);
+  };
 }
 
 // Verifies the choice and repairs it if it is not feasible by every ray; otherwise tries fewer stations. Returns the
@@ -238,13 +256,29 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   double overstated = verify(choice, verified);
   std::size_t traced = choice.network.chosen.size();
   const auto affordable = [&](std::size_t stations) { return traced + choice.network.chosen.size() <= stations; };
-  for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
-       ++k) {
-    if (!repair(choice, verified, context.oracle(), watch.stop)) break;
+  const auto verify_again = [&] {
     visit_units(choice, watch.stop);
     check_links(choice, context, simulator, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
+  };
+  const auto repair_all = [&] {
+    for (std::size_t k = 0; k < kRepairs && least_violation() > 0 && affordable(kRepairStations) && !report.stopped();
+         ++k) {
+      if (keep_to_stairs(choice, verified, watch.stop))
+        calibrate(choice, context, simulator, watch);
+      else if (least_violation() == 0 || !repair(choice, verified, context.oracle(), watch.stop))
+        break;
+      verify_again();
+    }
+  };
+  repair_all();
+  if (const PlanEntry* best = verified.best();
+      choice.along_stairs && best && verified.ties_past_stairs(*best) > 0 && !report.stopped()) {
+    leave_stairs(choice, watch.stop);
+    verified.judge_again();
+    verify_again();
+    repair_all();
   }
   for (std::size_t k = 0; k < kNewChoices && least_violation() == 0 && affordable(kFewerStations) && !report.stopped();
        ++k, traced += choice.network.chosen.size())
@@ -323,9 +357,9 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
                        const PlanConfig& config, const PlanWatch& watch) {
   const SurveyProblem problem = context.problem();
   FewestReport report(watch);
-  VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
-                            watch, visit_order(context, watch));
   FewestChoice choice = choose_number(context, simulator, *candidates, watch, report);
+  VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
+                            watch, visit_order(context, watch), count_ties(choice));
   SearchOutcome found;
   PlanResult result;
   if (choice.table.stations().size() <= choice.asked.existing) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/graph.hpp"
 #include "sites/random_site.hpp"
 #include "sites/site.hpp"
 #include "support/site_of.hpp"
@@ -145,6 +146,43 @@ TEST(PlansOfParts, MendTheLinksThatCanBeMended) {
   const auto links = result.front[answer(result)].links();
   ASSERT_TRUE(links);
   EXPECT_EQ(links->parts.size(), 2u);
+}
+
+// The windows of the house show its garden, and the rooms over each other the same of it. The truth about the site
+// tells the hall and the landing, which the stair leads from and to.
+TEST(PlansWithStairs, TieStoreysInTheStairwell) {
+  const test::TemporaryFolder folder;
+  const test::KnownSite site = test::make_site("house");
+  test::write_site(site, {}, folder / "site.glb");
+  SiteOptions fine;
+  fine.engine = Engine::embree;
+  fine.steps = {Angle::degrees(0.2), Angle::degrees(0.2)};
+  fine.user_size_m = 0.1, fine.spacing_m = 0.05;
+  Site house = Site::open(folder / "site.glb", fine);
+  SurveyQuestion question;
+  question.targets = 0;
+  const PlanResult result = plan(house, question);
+  const PlanEntry& entry = result.front[answer(result)];
+  EXPECT_TRUE(met(result));
+  const auto in_stairwell = [&](const PlacedStation& station) {
+    return std::ranges::any_of(site.places, [&](const test::Place& place) {
+      return (place.name == "hall" || place.name == "landing") &&
+             within(place, station.ground - site.offset, -0.2, 0.5);
+    });
+  };
+  const auto parts = [&](bool only_by_the_stair) {
+    return components(entry.stations.size(),
+                      [&](std::size_t a, std::size_t b) {
+                        const PlacedStation &one = entry.stations[a], &other = entry.stations[b];
+                        const bool same_storey = std::abs(one.ground.z - other.ground.z) < 1;
+                        return entry.scan_overlap_matrix(a, b) >= 0.3 &&
+                               (!only_by_the_stair || same_storey || (in_stairwell(one) && in_stairwell(other)));
+                      })
+        .count;
+  };
+  EXPECT_EQ(parts(false), 1u);
+  EXPECT_EQ(parts(true), 1u) << "storeys are tied past the stair";
+  EXPECT_TRUE(entry.storey_ties.empty());
 }
 
 // The larger two only with VANTAGE_WHOLE_SITES=1.

@@ -13,6 +13,7 @@
 #include <random>
 #include <string>
 
+#include "evaluate/storey_ties.hpp"
 #include "evaluate/ways.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
@@ -577,6 +578,45 @@ TEST(StoreyTies, GiveWayToALinkOnTheStair) {
   gallery.network.stations[3].status = StationStatus::clash;
   EXPECT_EQ(storey_ties_of(gallery.network, gallery.on_site).size(), 1u) << "one that is left out ties nothing";
   EXPECT_TRUE(storey_ties_of({.stations = gallery.network.stations}, gallery.on_site).empty()) << "nothing is known";
+}
+
+TEST(StoreyTies, WaysAreLongerThanALengthWhereTheyAreLonger) {
+  const Gallery gallery;
+  std::vector<Vec3> points;
+  for (const PlacedStation& station : gallery.network.stations) points.push_back(station.ground);
+  points.push_back({60, 60, 0});  // off the ground
+  std::vector<OnSite::Way> than;
+  std::vector<std::uint8_t> expected;
+  for (std::size_t a = 0; a < points.size(); ++a)
+    for (std::size_t b = 0; b < points.size(); ++b)
+      for (const double off : {-0.01, 0.01}) {
+        const auto way = gallery.on_site.way_m(points[a], points[b]);
+        than.push_back({a, b, way.value_or(50) + off});
+        expected.push_back(way && off < 0);
+      }
+  EXPECT_EQ(gallery.on_site.longer(points, than), expected);
+  EXPECT_TRUE(gallery.on_site.longer({}, {}).empty());
+  EXPECT_THROW(gallery.on_site.longer({{Vec3{1e9, 0, 0}}}, {}), Error);
+}
+
+// Those that nobody walks along are the links that are told, were each the only one between the storeys.
+TEST(StoreyTies, ArePastStairs) {
+  const Gallery gallery;
+  const std::vector<PlacedStation>& stations = gallery.network.stations;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t a = 0; a < stations.size(); ++a)
+    for (std::size_t b = a + 1; b < stations.size(); ++b) pairs.emplace_back(a, b);
+  const std::vector<std::uint8_t> past = past_stairs(stations, pairs, gallery.on_site);
+  ASSERT_EQ(past.size(), pairs.size());
+  std::size_t told = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Evaluation two{.stations = {stations[pairs[k].first], stations[pairs[k].second]}};
+    two.scan_overlap_matrix = ScanOverlapMatrix(2);
+    two.scan_overlap_matrix.set(0, 1, 0.9);
+    EXPECT_EQ(past[k] != 0, !storey_ties_of(two, gallery.on_site).empty()) << pairs[k].first << pairs[k].second;
+    told += past[k];
+  }
+  EXPECT_EQ(told, 2u) << "both from below the gallery, and not those from the foot of the ramp";
 }
 
 }  // namespace

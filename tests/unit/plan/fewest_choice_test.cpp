@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <iterator>
+#include <map>
 #include <random>
 
+#include "core/graph.hpp"
 #include "unit/plan/floor_survey.hpp"
 
 namespace vantage {
@@ -194,6 +199,241 @@ TEST(Choose, TakesTheMostCoverageOfSoManyStations) {
         continue;
       EXPECT_LE(swapped.coverage, choice.network.coverage + 1e-9);
     }
+}
+
+// Two storeys by construction. Each candidate is at the place x of its number, sees voxels of its own, and shares some
+// with those that it is linked to: the surroundings are 100 voxels for each candidate and each pair.
+struct Storeys {
+  using Pair = std::pair<std::size_t, std::size_t>;
+  std::vector<double> z;                 // by candidate
+  std::vector<std::uint32_t> captures;   // elements of its own
+  std::map<Pair, std::uint32_t> shared;  // voxels, of 100 and more that each sees
+  std::vector<Pair> past = {};           // links that nobody walks along
+
+  static std::size_t number(const PlacedStation& station) { return static_cast<std::size_t>(station.position.x); }
+  std::vector<PlacedStation> stations() const {
+    std::vector<PlacedStation> all;
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      const Vec3 ground{static_cast<double>(k), 0, z[k]};
+      all.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+    }
+    return all;
+  }
+  TraceColumns columns() const {
+    return [this](std::span<const PlacedStation> some, const Progress&) {
+      std::vector<std::size_t> first{0};
+      for (const std::uint32_t own : captures) first.push_back(first.back() + own);
+      CoverageMatrix matrix(std::vector<std::uint32_t>(first.back(), 1), 1);
+      for (const PlacedStation& one : some) {
+        std::vector<std::uint32_t> amounts(first.back(), 0);
+        for (std::size_t e = first[number(one)]; e < first[number(one) + 1]; ++e) amounts[e] = 1;
+        matrix.add(std::span<const std::uint32_t>(amounts));
+      }
+      return matrix;
+    };
+  }
+  TraceColumns surroundings() const {
+    return [this](std::span<const PlacedStation> some, const Progress&) {
+      const std::size_t each = 100, voxels = each * (z.size() + shared.size());
+      CoverageMatrix matrix(std::vector<std::uint32_t>(voxels, 1), 1);
+      for (const PlacedStation& one : some) {
+        std::vector<std::uint32_t> seen(voxels, 0);
+        std::size_t left = each, pair = z.size();
+        for (const auto& [ends, count] : shared) {
+          if (ends.first == number(one) || ends.second == number(one)) {
+            for (std::uint32_t k = 0; k < count; ++k) seen[each * pair + k] = 1;
+            left -= count;
+          }
+          ++pair;
+        }
+        for (std::size_t k = 0; k < left; ++k) seen[each * number(one) + k] = 1;  // each sees 100 in all
+        matrix.add(std::span<const std::uint32_t>(seen));
+      }
+      return matrix;
+    };
+  }
+  bool is_past(std::size_t a, std::size_t b) const {
+    return std::ranges::find(past, Pair(std::minmax(a, b))) != past.end();
+  }
+  PastStairs past_stairs() const {
+    return [this](std::span<const PlacedStation> some, std::span<const Pair> pairs) {
+      std::vector<std::uint8_t> found;
+      for (const auto& [a, b] : pairs) found.push_back(is_past(number(some[a]), number(some[b])));
+      return found;
+    };
+  }
+  FewestChoice choice(const FewestAsked& asked) const {
+    FewestChoice made{.asked = asked, .table = CandidateTable(columns(), surroundings(), {})};
+    made.past_stairs = past_stairs();
+    const std::vector<PlacedStation> all = stations();
+    look(made.table, {}, all, columns()(all, {}), {}, {});
+    choose(made, {}, {});
+    return made;
+  }
+  FewestChoice choice(double coverage) const {
+    return choice({.most = z.size(), .captured = true, .coverage = coverage, .link = 0.3});
+  }
+  // Whether links of 0.3 connect these candidates, without those past the stair.
+  bool connected_on_foot(std::span<const std::size_t> some) const {
+    return components(some.size(), [&](std::size_t i, std::size_t j) {
+             const Pair pair = std::minmax(some[i], some[j]);
+             return shared.contains(pair) && shared.at(pair) >= 30 && !is_past(pair.first, pair.second);
+           }).count == 1;
+  }
+  double captured(std::span<const std::size_t> some) const {
+    double own = 0, all = 0;
+    for (std::size_t k = 0; k < z.size(); ++k)
+      all += captures[k], own += std::ranges::find(some, k) != some.end() ? captures[k] : 0;
+    return own / all;
+  }
+  // The least number of candidates that capture so much and are connected on foot, among all sets of them.
+  std::size_t fewest_on_foot(double coverage) const {
+    std::size_t fewest = z.size() + 1;
+    for (std::uint32_t bits = 1; bits < (1u << z.size()); ++bits) {
+      std::vector<std::size_t> some;
+      for (std::size_t k = 0; k < z.size(); ++k)
+        if ((bits >> k & 1) != 0) some.push_back(k);
+      if (captured(some) >= coverage && connected_on_foot(some)) fewest = std::min(fewest, some.size());
+    }
+    return fewest;
+  }
+};
+
+// Rooms 0 and 1 over each other see each other through the garden; 2 and 3 are the foot and the head of the stair.
+Storeys rooms_and_stair() {
+  return {.z = {0, 3, 0, 3},
+          .captures = {40, 40, 5, 5},
+          .shared = {{{0, 1}, 45}, {{0, 2}, 35}, {{1, 3}, 35}, {{2, 3}, 31}},
+          .past = {{0, 1}}};
+}
+
+TEST(KeepToStairs, TiesStoreysAlongTheStair) {
+  const Storeys storeys = rooms_and_stair();
+  FewestChoice choice = storeys.choice(0.8);
+  std::ranges::sort(choice.network.chosen);
+  ASSERT_EQ(choice.network.chosen, (std::vector<std::size_t>{0, 1})) << "the plain choice ties them past the stair";
+  EXPECT_TRUE(keep_to_stairs(choice, {}));
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_TRUE(storeys.connected_on_foot(choice.network.chosen));
+  EXPECT_GE(storeys.captured(choice.network.chosen), 0.8);
+  EXPECT_EQ(choice.network.chosen.size(), storeys.fewest_on_foot(0.8));
+  ASSERT_TRUE(choice.along_stairs);
+  EXPECT_EQ(choice.along_stairs->unavoidable, 0u);
+  EXPECT_FALSE(keep_to_stairs(choice, {})) << "they are tied already";
+  // Every ray shows the stair's link to be too weak.
+  ScanOverlapMatrix exact(2);
+  exact.set(0, 1, 0.2);
+  const std::vector<std::size_t> stair{2, 3};
+  choice.table.take_in(stair, exact);
+  leave_stairs(choice, {});
+  std::ranges::sort(choice.network.chosen);
+  EXPECT_EQ(choice.network.chosen, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(choice.network.violation, 0);
+}
+
+TEST(KeepToStairs, LeavesAChoiceWithoutTiesAlone) {
+  Storeys storeys = rooms_and_stair();
+  storeys.past.clear();
+  FewestChoice choice = storeys.choice(0.8);
+  const std::vector<std::size_t> chosen = choice.network.chosen;
+  EXPECT_FALSE(keep_to_stairs(choice, {}));
+  EXPECT_EQ(choice.network.chosen, chosen);
+  EXPECT_TRUE(choice.past_stairs) << "what every ray shows may need it";
+}
+
+TEST(KeepToStairs, LeavesTiesThatNoCandidatesReplace) {
+  Storeys no_link = rooms_and_stair();
+  no_link.shared.at({2, 3}) = 29;
+  Storeys long_way = rooms_and_stair();  // over four further stations, of which none captures anything
+  long_way.z.insert(long_way.z.end(), {0, 0, 3, 3}), long_way.captures.resize(8, 0);
+  long_way.shared.erase({0, 2}), long_way.shared.erase({1, 3});
+  for (const auto& [a, b] : {std::pair{0, 4}, {4, 5}, {5, 2}, {1, 6}, {6, 7}, {7, 3}})
+    long_way.shared.emplace(std::minmax<std::size_t>(a, b), 40);
+  ASSERT_EQ(long_way.fewest_on_foot(0.8), 8u);
+  for (const Storeys& storeys : {no_link, long_way}) {
+    FewestChoice choice = storeys.choice(0.8);
+    const std::vector<std::size_t> chosen = choice.network.chosen;
+    ASSERT_EQ(chosen.size(), 2u);
+    EXPECT_FALSE(keep_to_stairs(choice, {}));
+    EXPECT_EQ(choice.network.chosen, chosen);
+    EXPECT_EQ(choice.network.violation, 0);
+    EXPECT_EQ(choice.table.graph().overlap(0, 1), 0.45F) << "the link counts again";
+    EXPECT_FALSE(choice.past_stairs) << "it is not tried again";
+  }
+}
+
+// A third storey that no stair leads to, and one that candidates on the stair tie.
+TEST(KeepToStairs, ReplacesTheTiesThatItCan) {
+  Storeys storeys = rooms_and_stair();
+  storeys.z.push_back(6), storeys.captures.push_back(40);
+  storeys.shared.emplace(Storeys::Pair{1, 4}, 20), storeys.shared.emplace(Storeys::Pair{0, 4}, 20);
+  storeys.shared.at({0, 1}) = 32, storeys.shared.at({1, 4}) = 31;
+  storeys.past.push_back({1, 4}), storeys.past.push_back({0, 4});
+  FewestChoice choice = storeys.choice(0.9);
+  ASSERT_EQ(choice.network.chosen.size(), 3u);
+  EXPECT_TRUE(keep_to_stairs(choice, {}));
+  std::ranges::sort(choice.network.chosen);
+  EXPECT_EQ(choice.network.chosen, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(choice.along_stairs->unavoidable, 1u);
+  EXPECT_EQ(choice.network.violation, 0);
+}
+
+TEST(KeepToStairs, AsManyStationsAsAreAskedFor) {
+  Storeys storeys = rooms_and_stair();
+  storeys.z.push_back(0), storeys.captures.push_back(8);
+  storeys.shared.emplace(Storeys::Pair{0, 4}, 15), storeys.shared.at({0, 4}) = 32, storeys.shared.at({0, 1}) = 31;
+  FewestChoice choice =
+      storeys.choice({.fewest = 4, .most = 4, .captured = true, .coverage = 1, .most_coverage = true, .link = 0.3});
+  ASSERT_EQ(choice.placed(), 4u);
+  ASSERT_FALSE(storeys.connected_on_foot(choice.network.chosen)) << "4 captures more than the foot of the stair";
+  EXPECT_TRUE(keep_to_stairs(choice, {}));
+  EXPECT_EQ(choice.placed(), 4u);
+  EXPECT_TRUE(storeys.connected_on_foot(choice.network.chosen));
+}
+
+// Links past the stair between candidates that others connect share nothing; all others share what they did. Overlaps
+// that are taken in, and candidates that come later, change which these are.
+TEST(CandidateTable, LeavesOutTiesWhereOtherLinksConnect) {
+  std::mt19937 rng(11);
+  for (int round = 0; round < 20; ++round) {
+    Storeys storeys;
+    constexpr std::size_t kCandidates = 12;
+    for (std::size_t k = 0; k < kCandidates; ++k) storeys.z.push_back(3 * (k % 2)), storeys.captures.push_back(1);
+    for (int k = 0; k < 14; ++k) {
+      const std::size_t a = rng() % kCandidates, b = rng() % kCandidates;
+      if (a == b) continue;
+      storeys.shared[std::minmax(a, b)] = rng() % 3 == 0 ? 5 : 10;
+      if (a % 2 != b % 2 && rng() % 3 != 0) storeys.past.push_back(std::minmax(a, b));
+    }
+    constexpr double kLink = 0.1;
+    const std::vector<PlacedStation> all = storeys.stations();
+    CandidateTable plain(storeys.columns(), storeys.surroundings(), {}), table = plain;
+    plain.add(all, {});
+    table.add(std::span(all).first(kCandidates / 2), {});
+    table.keep_to_stairs(storeys.past_stairs(), kLink);
+    table.add(std::span(all).subspan(kCandidates / 2), {});
+    const auto expect_left_out = [&](const char* when) {
+      const auto counts = [&](std::size_t a, std::size_t b) { return plain.graph().linked(a, b, kLink); };
+      const Components parts =
+          components(kCandidates, [&](std::size_t a, std::size_t b) { return counts(a, b) && !storeys.is_past(a, b); });
+      for (std::size_t a = 0; a < kCandidates; ++a)
+        for (std::size_t b = 0; b < kCandidates; ++b) {
+          const bool left_out = counts(a, b) && storeys.is_past(a, b) && parts.of[a] == parts.of[b];
+          EXPECT_EQ(table.graph().overlap(a, b), left_out ? 0 : plain.graph().overlap(a, b))
+              << when << ", round " << round << ": " << a << ", " << b;
+        }
+    };
+    expect_left_out("as the sample shows");
+    std::vector<std::size_t> some{0, 1, 2, 3, 4, 5};
+    ScanOverlapMatrix exact(some.size());
+    for (std::size_t i = 0; i < some.size(); ++i)
+      for (std::size_t j = i + 1; j < some.size(); ++j) exact.set(i, j, rng() % 2 == 0 ? 0.05 : 0.15);
+    for (CandidateTable* each : {&plain, &table}) each->take_in(some, exact);
+    expect_left_out("as every ray shows");
+    table.count_all_links();
+    for (std::size_t a = 0; a < kCandidates; ++a)
+      for (std::size_t b = 0; b < kCandidates; ++b) EXPECT_EQ(table.graph().overlap(a, b), plain.graph().overlap(a, b));
+  }
 }
 
 }  // namespace

@@ -241,5 +241,71 @@ TEST_F(FewestVerify, FrontIsOfFewestStationsThatDo) {
   EXPECT_EQ(front[0].stations.size(), placed.size());
 }
 
+TEST_F(FewestVerify, ATiePastTheStairIsAMissingLink) {
+  const auto placed = choice.placed_of(choice.network);
+  auto more = placed;
+  more.push_back(choice.table.stations().front());
+  VerifiedNetworks verified(problem, measures, oracle, evaluator, 100, watch, {},
+                            [&](const Evaluation& one) { return one.stations.size() == placed.size() ? 2u : 0u; });
+  verify(choice, verified);
+  EXPECT_NEAR(verified.best()->violation, 2 * 0.2, 1e-12);
+  EXPECT_EQ(verified.ties_past_stairs(*verified.best()), 2u);
+  verified.add(more);
+  EXPECT_EQ(verified.best()->violation, 0);
+  const auto front = verified.front();
+  ASSERT_EQ(front.size(), 1u);
+  EXPECT_EQ(front[0].stations.size(), more.size()) << "a station more that ties nothing past the stair";
+}
+
+// The toy floor is flat, and one half of it is a storey higher here. Every ray shows all links between the halves to be
+// past the stair but those within a strip.
+TEST_F(FewestVerify, KeepsToStairsWhereOnlyEveryRayShowsTies) {
+  std::vector<PlacedStation> raised = test::floor_candidates(10);
+  for (PlacedStation& one : raised)
+    if (one.position.y > 5) one.ground.z += 3, one.position.z += 3;
+  oracle.locate = [flat = oracle.locate](Uv uv) {
+    std::optional<Vec3> ground = flat(uv);
+    if (ground && ground->y > 5) ground->z += 3;
+    return ground;
+  };
+  choice = test::floor_choice(problem);
+  look(choice.table, {}, raised, test::floor_columns()(raised, {}), {}, {});
+  choose(choice, {}, {});
+  const auto in_strip = [](const PlacedStation& one) { return one.position.x > 8; };
+  const PastStairs past = [&](std::span<const PlacedStation> some,
+                              std::span<const std::pair<std::size_t, std::size_t>> pairs) {
+    std::vector<std::uint8_t> found;
+    for (const auto& [a, b] : pairs)
+      found.push_back((some[a].position.y > 5) != (some[b].position.y > 5) &&
+                      !(in_strip(some[a]) && in_strip(some[b])));
+    return found;
+  };
+  // Components by the links of every ray that a person walks along.
+  const auto parts_on_foot = [&](const Evaluation& entry) {
+    return components(entry.stations.size(),
+                      [&](std::size_t a, std::size_t b) {
+                        const PlacedStation &one = entry.stations[a], &other = entry.stations[b];
+                        const bool same = (one.position.y > 5) == (other.position.y > 5);
+                        return entry.scan_overlap_matrix(a, b) >= 0.1 && (same || (in_strip(one) && in_strip(other)));
+                      })
+        .count;
+  };
+  std::optional<VerifiedNetworks> verified;
+  verified.emplace(
+      problem, measures, oracle, evaluator, 100, watch, VerifiedNetworks::VisitOrder(),
+      [&](const Evaluation& one) -> std::size_t { return choice.past_stairs ? parts_on_foot(one) - 1 : 0; });
+  verify(choice, *verified);
+  ASSERT_EQ(verified->best()->violation, 0);
+  ASSERT_GT(parts_on_foot(*verified->best()), 1u) << "the plain choice ties the halves elsewhere";
+  EXPECT_FALSE(keep_to_stairs(choice, *verified, {})) << "nothing is known of stairs";
+  choice.past_stairs = past;
+  ASSERT_TRUE(keep_to_stairs(choice, *verified, {}));
+  EXPECT_GT(verified->best()->violation, 0) << "it is judged by its ties now";
+  EXPECT_FALSE(keep_to_stairs(choice, *verified, {})) << "it was done";
+  verify(choice, *verified);
+  EXPECT_EQ(verified->best()->violation, 0);
+  EXPECT_EQ(parts_on_foot(*verified->best()), 1u);
+}
+
 }  // namespace
 }  // namespace vantage
