@@ -99,9 +99,8 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
     if (requires_what_pays(result, requirement) && !ended_early) {
       help.push_back("not met: what pays is " + percent(requirement.limit) +
-                     " of what is attainable, and stations with "
-                     "such links capture " +
-                     percent(value) + "; allow weaker links, or tie the rest by targets");
+                     " of what is attainable, and stations with such links capture " + percent(value) +
+                     "; allow weaker links, or tie the rest by targets");
       continue;
     }
     help.push_back(advice(requirement, value, ended_early));
