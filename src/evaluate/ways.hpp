@@ -26,7 +26,7 @@ class Ways {
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
   // The same for all pairs of points, in parallel: of points i < j the element [i][j].
   std::vector<std::vector<std::optional<double>>> between_all(std::span<const Vec3> points) const;
-  // Whether the way between two of `points` is longer than this, for each in parallel; 0 if none connects them.
+  // True if the way between two of `points` is longer than this, for each in parallel; 0 if none connects them.
   std::vector<std::uint8_t> longer(std::span<const Vec3> points, std::span<const OnSite::Way> than) const;
   // The ground that such a way leads over, from `from` to `to`, without points on straight stretches; the straight line
   // where there is none.

@@ -16,7 +16,7 @@ std::size_t answer(std::span<const PlanEntry> front, const SurveyProblem& proble
 // allowed, and more could be.
 std::vector<Requirement> advised_requirements(const PlanResult& result);
 
-// Whether a requirement is what the stations that pay capture, and nobody's wish.
+// True if a requirement is what the stations that pay capture, and nobody's wish.
 bool requires_what_pays(const PlanResult& result, const Requirement& requirement);
 
 }  // namespace vantage

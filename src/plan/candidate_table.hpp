@@ -36,7 +36,7 @@ inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
-// Whether a link of each of these pairs of stations ties storeys past the stair.
+// True if a link of each of these pairs of stations ties storeys past the stair.
 using PastStairs = std::function<std::vector<std::uint8_t>(std::span<const PlacedStation>,
                                                            std::span<const std::pair<std::size_t, std::size_t>>)>;
 

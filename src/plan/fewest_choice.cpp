@@ -55,7 +55,7 @@ bool takes_hardly_more(const FewestChoice& choice, const CoverSolution& before, 
          choice.network.chosen.size() <= before.chosen.size() + kForStair * ties;
 }
 
-// Whether as many stations are connected and capture no less than without an average one of them.
+// True if as many stations are connected and capture no less than without an average one of them.
 bool holds_as_much(const FewestChoice& choice, const CoverSolution& before) {
   const auto placed = static_cast<double>(choice.placed());
   return choice.network.link >= choice.asked.link && choice.network.coverage >= (1 - 1 / placed) * before.coverage;

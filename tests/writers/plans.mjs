@@ -21,7 +21,7 @@ const SIDES = [[[4.4, 0], [4.4, 4]], [[4.5, 4], [4.5, 0]]];
 const PILLAR = [[1, 1], [1.5, 1], [1.5, 1.5], [1, 1.5]];
 const LAYERS = ['A-WALL', 'A-DOOR', 'A-TEXT'];
 
-// What is drawn, how many millimetres a unit is, where, and areas of the rooms.
+// Each has drawn lines, millimetres of a unit, a place, and areas of its rooms.
 const CONTENTS = {
   plain: { pillar: false, mm: 1000, at: [0, 0], areas: [6, 17.6] },
   'filled pillar, in millimetres': { pillar: true, mm: 1, at: [0, 0], areas: [6, 17.35] },

@@ -93,7 +93,7 @@ Scale scale_of(const Drawing& drawing, const std::string& unit) {
 }
 
 void doubt_unit(const Scale& scale, const std::vector<WallFace>& faces) {
-  // Whether most lines are those of walls, and there is a room between them, if all were so many times as large.
+  // True if most lines are those of walls, and there is a room between them, if all were so many times as large.
   const auto suits = [&](double factor) {
     constexpr double kRoom_m2 = 6;
     double walls_m = 0, others_m = 0;

@@ -34,7 +34,7 @@ struct PlacedBlock {
   std::string layer;
 };
 
-// Of a block, or of the model.
+// Entities of a block, or of the model.
 struct DxfContent {
   glm::dvec3 base{0};
   std::string name;
@@ -145,7 +145,7 @@ class DxfModel {
     return out;
   }
 
-  // Whether this type is read.
+  // True if this type is read.
   bool draw(const Entity& entity, const std::vector<Entity>& parts, const std::string& layer, DxfContent& into) {
     if (entity.type == "INSERT") return add_insert(entity, layer, into);
     Part& part = into.faces[layer];

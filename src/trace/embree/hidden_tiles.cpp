@@ -62,7 +62,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     }
     return true;
   };
-  // Whether all rays of the cone pass beside the planes' triangles, or meet them outside the cube.
+  // True if all rays of the cone pass beside the planes' triangles, or meet them outside the cube.
   const auto misses = [&](const SeenCone& cone) {
     if (planes.empty()) return false;
     const Vec3 centre{x_[look.voxel], y_[look.voxel], z_[look.voxel]};

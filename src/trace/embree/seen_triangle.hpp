@@ -79,7 +79,7 @@ class SeenTriangle {
     const double slope = cone.least(normal_);
     return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
   }
-  // Whether for every ray of a cone that meets a plane, normal · p = height > 0, the hit lies before `part` of the way
+  // True if for every ray of a cone that meets a plane, normal · p = height > 0, the hit lies before `part` of the way
   // there, less `pad`. Exact for parallel planes, however grazing the rays.
   bool is_before(const SeenCone& cone, const Vec3& normal, double height, double part, double pad) const {
     const double slope = cone.least(normal_), other = cone.most(normal);

@@ -299,7 +299,7 @@ double SampledVoxelCounter::reach_of(std::uint32_t i, double far) const {
       rays_->noise().reach_within(static_cast<float>(far), static_cast<float>(std::max(least, 0.0))));
 }
 
-// Whether hits on the plane may count.
+// True if hits on the plane may count.
 bool SampledVoxelCounter::crosses(const SampledVoxels::Plane& plane, const Cube& cube) const {
   const float across = std::abs(plane.normal.x) + std::abs(plane.normal.y) + std::abs(plane.normal.z);
   return !(std::abs(plane.offset) > (cube.half + static_cast<float>(4 * pad_)) * across);

@@ -273,7 +273,7 @@ struct Storeys {
   FewestChoice choice(double coverage) const {
     return choice({.most = z.size(), .captured = true, .coverage = coverage, .link = 0.3});
   }
-  // Whether links of 0.3 connect these candidates, without those past the stair.
+  // True if links of 0.3 connect these candidates, without those past the stair.
   bool connected_on_foot(std::span<const std::size_t> some) const {
     return components(some.size(), [&](std::size_t i, std::size_t j) {
              const Pair pair = std::minmax(some[i], some[j]);

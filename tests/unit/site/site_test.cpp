@@ -84,7 +84,7 @@ TEST(Site, TellsWhatItChoseAndWhy) {
   EXPECT_EQ(why_of(usual, "user-size"), "the usual size");
 }
 
-// What a surveyor is likely to have, in place of a scanner that exists nowhere; and a spacing of what is to be made.
+// A scanner that a surveyor is likely to have stands in for one that exists nowhere.
 TEST(Site, AssumesAUsualScannerWhereNoneIsDescribed) {
   std::vector<std::string> lines;
   SiteOptions options = on_embree();

@@ -99,7 +99,7 @@ TEST(SeenTriangle, IsCertainOfSpecks) {
   EXPECT_GT(found.certain, found.hits / 3);
 }
 
-// What holds of a cone holds of each of its rays, and a plane just behind the triangle is known to be.
+// Each ray of a cone has what the cone has, and a plane just behind the triangle is known to be.
 TEST(SeenTriangle, KnowsOfAConeWhatItKnowsOfItsRays) {
   RandomStream random(81);
   const auto unit = [](const Vec3& p) { return p * (1 / std::sqrt(dot(p, p))); };
