@@ -82,8 +82,8 @@ class OnSite {
     std::size_t a = 0, b = 0;
     double metres = 0;
   };
-  /// Whether the way between two points is longer than a length, for each of many: much faster than way_m() of each. 0
-  /// if the search area does not connect them. Throws as way_m().
+  /// Tells whether the way between two points is longer than a length, for each of many: much faster than way_m() of
+  /// each. 0 if the search area does not connect them. Throws as way_m().
   std::vector<std::uint8_t> longer(std::span<const Vec3> points, std::span<const Way> than) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
   /// to three stations elsewhere (Or-opt), until neither helps. With `link`, consecutive stations are linked as far as

@@ -47,7 +47,7 @@ struct SiteOptions {
 
   std::optional<double> user_size_m = {};  ///< Upper bound of the voxel size.
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
-  /// What the scans are for, in the form of `spacing_for()`; the spacing follows from it unless that is given.
+  /// The spacing follows from this purpose of the scans, in the form of `spacing_for()`, unless it is given.
   std::optional<std::string> deliverable = {};
   bool spacing_by_detail = false;  ///< As `SimulatorConfig::spacing_by_detail`.
   std::optional<Angle> max_incidence = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small dense graphs: connected components and the strongest spanning tree.
+// Small graphs: connected components and the strongest spanning tree.
 #pragma once
 
 #include <algorithm>
@@ -31,6 +31,26 @@ Components components(std::size_t n, Linked linked) {
         found.of[j] = found.count;
         open.push_back(j);
         return true;
+      });
+    }
+    ++found.count;
+  }
+  return found;
+}
+
+// The same of a sparse graph; `for_each_neighbour(i, visit)` calls visit(j) for each neighbour.
+template <class ForEachNeighbour>
+Components components_along(std::size_t n, ForEachNeighbour for_each_neighbour) {
+  Components found{.of = std::vector<std::size_t>(n, n)};
+  std::vector<std::size_t> open;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (found.of[k] != n) continue;
+    found.of[k] = found.count;
+    for (open.assign(1, k); !open.empty();) {
+      const std::size_t at = open.back();
+      open.pop_back();
+      for_each_neighbour(at, [&](std::size_t j) {
+        if (found.of[j] == n) found.of[j] = found.count, open.push_back(j);
       });
     }
     ++found.count;

@@ -19,6 +19,7 @@
 #include "evaluate/check_day.hpp"
 #include "evaluate/cut_round.hpp"
 #include "evaluate/ways.hpp"
+#include "scan/scan_seconds.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -333,9 +334,7 @@ struct OnSite::Impl {
   Ways ways;
 };
 
-static double minutes_of_scan(const Scanner& scanner) {
-  return static_cast<double>(scanner.rays()) / scanner.points_per_second / 60;
-}
+static double minutes_of_scan(const Scanner& scanner) { return scan_seconds(scanner) / 60; }
 
 void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) {
   if (options.crews > 1 && !options.day_min)

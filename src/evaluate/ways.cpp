@@ -9,6 +9,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/graph.hpp"
 #include "core/parallel.hpp"
 
 namespace vantage {
@@ -181,18 +182,9 @@ Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&
     if (!linked(a, b)) link(a, b);
   for (const auto& [a, b] : gaps(cell_of)) link(a, b);
 
-  part_.resize(places_.size(), 0);  // 0: not known yet
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t k = 0; k < places_.size(); ++k) {
-    if (part_[k] != 0) continue;
-    part_[k] = k + 1;
-    for (open.assign(1, k); !open.empty();) {
-      const std::uint32_t at = open.back();
-      open.pop_back();
-      for (const Link& l : links_[at])
-        if (part_[l.to] == 0) part_[l.to] = k + 1, open.push_back(l.to);
-    }
-  }
+  part_ = components_along(places_.size(), [&](std::size_t k, const auto& visit) {
+            for (const Link& l : links_[k]) visit(l.to);
+          }).of;
 }
 
 // Pairs of places across a short gap in the ground: a doorway too narrow to stand in is walked through.

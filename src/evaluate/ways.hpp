@@ -56,7 +56,7 @@ class Ways {
   std::vector<Vec3> places_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
   std::vector<std::vector<Link>> links_;
-  std::vector<std::uint32_t> part_;  // by place: connected ones have the same
+  std::vector<std::size_t> part_;  // by place: connected ones have the same
   // Cache of places asked for before, limited in size: networks of a search share stations.
   mutable std::mutex mutex_;
   mutable std::unordered_map<std::uint32_t, std::shared_ptr<const std::vector<float>>> known_;

@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "plan/answer.hpp"
+#include "scan/scan_seconds.hpp"
 #include "scene/room_floors.hpp"
 
 namespace vantage {
@@ -483,7 +484,7 @@ std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Est
 
 // "Leica RTC360 @6mm, 23 s a scan"
 std::string scanner_text(const Scanner& scanner) {
-  const double seconds = static_cast<double>(scanner.rays()) / scanner.points_per_second;
+  const double seconds = scan_seconds(scanner);
   return scanner.name + ", " + (seconds < 100 ? fixed(seconds, 0) + " s" : fixed(seconds / 60, 0) + " min") + " a scan";
 }
 

@@ -6,30 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/graph.hpp"
 #include "plan/sample_seen.hpp"
 
 namespace vantage {
-namespace {
-
-// The part of each candidate, of those that links of at least `link` connect.
-std::vector<std::size_t> parts_of(const StationGraph& graph, double link) {
-  const std::size_t none = graph.size();
-  std::vector<std::size_t> part(none, none), open;
-  for (std::size_t k = 0; k < none; ++k) {
-    if (part[k] != none) continue;
-    part[k] = k;
-    for (open.assign(1, k); !open.empty();) {
-      const std::size_t at = open.back();
-      open.pop_back();
-      for (const StationGraph::Overlap& other : graph.overlaps(at))
-        if (part[other.candidate] == none && static_cast<double>(other.share) >= link)
-          part[other.candidate] = k, open.push_back(other.candidate);
-    }
-  }
-  return part;
-}
-
-}  // namespace
 
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals) {
   return [&simulator, sample_voxels, goals = std::move(goals)](std::span<const PlacedStation> stations,
@@ -170,7 +150,10 @@ void CandidateTable::leave_out_ties(std::vector<Pair> further) {
     share = graph_.overlap(pair.first, pair.second);
     if (static_cast<double>(share) >= link_) graph_.set_overlap(pair.first, pair.second, 0);
   }
-  const std::vector<std::size_t> part = parts_of(graph_, link_);
+  const std::vector<std::size_t> part = components_along(graph_.size(), [&](std::size_t k, const auto& visit) {
+                                          for (const StationGraph::Overlap& other : graph_.overlaps(k))
+                                            if (static_cast<double>(other.share) >= link_) visit(other.candidate);
+                                        }).of;
   for (const auto& [pair, share] : ties_)
     if (part[pair.first] != part[pair.second]) graph_.set_overlap(pair.first, pair.second, share);
 }

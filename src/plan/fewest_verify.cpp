@@ -194,8 +194,7 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   if (ordered.front.empty()) return;
   for (PlanEntry& entry :
        confirm_front(ordered, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
-    entry.violation =
-        strict_violation(entry, problem_.requirements) + kMissingLink * static_cast<double>(ties_past_stairs(entry));
+    entry.violation = violation_of(entry);
     entries_.push_back(std::move(entry));
   }
   // Every voxel's points take some 12 bytes a voxel; only what may be the answer keeps them.

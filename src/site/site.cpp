@@ -14,6 +14,7 @@
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
 #include "placement/place_head.hpp"
+#include "scan/scan_seconds.hpp"
 #include "scene/scene_data.hpp"
 #include "scene/told_by_name.hpp"
 #include "site/site_scanner.hpp"
@@ -209,8 +210,8 @@ struct Site::Impl {
     scanners = {site_scanner(options, scale)};
     if (!open) return;
     choose("scanner", usual_scanner, "no scanner was named");
-    const double seconds = static_cast<double>(scanners[0].rays()) / scanners[0].points_per_second;
-    log("scanner: none was named, so a " + scanners[0].name + " is assumed, " + rounded(seconds, 2) + " s a scan");
+    log("scanner: none was named, so a " + scanners[0].name + " is assumed, " + rounded(scan_seconds(scanners[0]), 2) +
+        " s a scan");
   }
 
   // A figure that a maker does not state makes its scans look better than they are. The built-in scanner claims

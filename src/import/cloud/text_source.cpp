@@ -186,8 +186,8 @@ class TextSource final : public PointSource {
     return p != Eigen::Vector3d::Zero();
   }
 
-  // By how much points leave the planes of their columns, as seen from the origin and from the head. Angles would not
-  // do: from far away all are small. Without columns, the scanner stands amid its points.
+  // Points leave the planes of their columns by less if seen from where they were scanned: the origin or the head.
+  // Angles would not do: from far away all are small. Without columns, the scanner stands amid its points.
   bool moved_already(std::uint64_t columns, std::uint64_t rows, const Eigen::Vector3d& head) {
     constexpr std::uint64_t kMost = 200'000;
     constexpr std::size_t kLeast = 30;

@@ -148,6 +148,22 @@ std::map<std::string_view, Group> variables_of(const Entity& header) {
 
 }  // namespace
 
+Axes object_axes(const Entity& entity) {
+  const double x = entity.number(210), y = entity.number(220), z = entity.number(230, 1);
+  const double size = std::sqrt(x * x + y * y + z * z);
+  if (!(size > 0) || (x == 0 && y == 0 && z > 0)) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const std::array n{x / size, y / size, z / size};
+  constexpr double kNearlyUpright = 1.0 / 64;
+  // Across n and the world's y if n is nearly upright, else its z.
+  std::array along{-n[1], n[0], 0.0};
+  if (std::abs(n[0]) < kNearlyUpright && std::abs(n[1]) < kNearlyUpright) along = {n[2], 0.0, -n[0]};
+  const double wide = std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+  for (double& part : along) part /= wide;
+  return {along,
+          {n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2], n[0] * along[1] - n[1] * along[0]},
+          n};
+}
+
 void read_dxf(const std::filesystem::path& file, const DxfTaker& taker) {
   DxfText text(file);
   std::string_view section;

@@ -2,6 +2,7 @@
 // The text of a DXF as entities of group codes and values, without what they mean.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -34,6 +35,10 @@ struct Entity {
   int integer(int code, int otherwise = 0) const;
   std::string_view text(int code, std::string_view otherwise = {}) const;
 };
+
+// The axes of an entity's object coordinates in the world: the arbitrary axes of its extrusion, which is the third.
+using Axes = std::array<std::array<double, 3>, 3>;
+Axes object_axes(const Entity& entity);
 
 // Reads a file whole, then entity by entity.
 class DxfText {

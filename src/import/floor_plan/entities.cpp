@@ -69,22 +69,11 @@ class Adder {
 
   Point point(int code) const { return {entity_.number(code), entity_.number(code + 10)}; }
 
-  // The world, seen from above, from an entity's object coordinates at some height: the arbitrary axes of an
-  // extrusion.
+  // The world, seen from above, from an entity's object coordinates at some height.
   Placement object_system(double height) const {
-    const double x = entity_.number(210), y = entity_.number(220), z = entity_.number(230, 1);
-    const double size = std::sqrt(x * x + y * y + z * z);
-    if (!(size > 0) || (x == 0 && y == 0 && z > 0)) return {};
-    const std::array n{x / size, y / size, z / size};
-    constexpr double kNearlyUpright = 1.0 / 64;
-    // Across n and the world's y if n is nearly upright, else its z.
-    std::array along{-n[1], n[0], 0.0};
-    if (std::abs(n[0]) < kNearlyUpright && std::abs(n[1]) < kNearlyUpright) along = {n[2], 0.0, -n[0]};
-    const double wide = std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
-    for (double& part : along) part /= wide;
-    return {{along[0], along[1]},
-            {n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2]},
-            {n[0] * height, n[1] * height}};
+    const auto [x, y, n] = object_axes(entity_);
+    if (n[0] == 0 && n[1] == 0) height = 0;  // it moves nothing, even if it is no number
+    return {{x[0], x[1]}, {y[0], y[1]}, {n[0] * height, n[1] * height}};
   }
 
   bool add_line(Point a, Point b, double width = 0) {

@@ -50,20 +50,12 @@ glm::dvec3 point_of(const Entity& entity, int code) {
   return {entity.number(code), entity.number(code + 10), entity.number(code + 20)};
 }
 
-// The world from an entity's object coordinates: the arbitrary axes of its extrusion.
-glm::dmat4 object_axes(const Entity& entity) {
-  const glm::dvec3 given{entity.number(210), entity.number(220), entity.number(230, 1)};
-  if (!(glm::length(given) > 0)) return glm::dmat4(1);
-  const glm::dvec3 n = glm::normalize(given);
-  constexpr double kNearlyUpright = 1.0 / 64;
-  const bool upright = std::abs(n.x) < kNearlyUpright && std::abs(n.y) < kNearlyUpright;
-  const glm::dvec3 x = glm::normalize(glm::cross(upright ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1), n));
-  return {glm::dvec4(x, 0), glm::dvec4(glm::cross(n, x), 0), glm::dvec4(n, 0), glm::dvec4(0, 0, 0, 1)};
-}
-
-glm::dmat4 moved(const glm::dvec3& by) {
+// The world from an entity's object coordinates.
+glm::dmat4 world_from_object(const Entity& entity) {
   glm::dmat4 out(1);
-  out[3] = glm::dvec4(by, 1);
+  const floor_plan::Axes axes = floor_plan::object_axes(entity);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) out[c][r] = axes[static_cast<std::size_t>(c)][static_cast<std::size_t>(r)];
   return out;
 }
 
@@ -180,7 +172,7 @@ class DxfModel {
   // A prism if it has a thickness.
   static bool add_solid(const Entity& entity, Part& part) {
     const double thickness = entity.number(39);
-    const glm::dmat4 system = object_axes(entity);
+    const glm::dmat4 system = world_from_object(entity);
     if (thickness == 0) return add_corners(entity, {10, 11, 13, 12}, system, part);
     std::array<glm::dvec3, 8> p;  // the lower four, and those above them
     constexpr std::array kCodes{10, 11, 13, 12};
@@ -265,11 +257,11 @@ class DxfModel {
 
   bool add_insert(const Entity& entity, const std::string& layer, DxfContent& into) {
     const double angle = entity.number(50) * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-    const glm::dmat4 axes = object_axes(entity), turn{{c, s, 0, 0}, {-s, c, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    const glm::dmat4 axes = world_from_object(entity), turn{{c, s, 0, 0}, {-s, c, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     glm::dmat4 size(1);
     for (int k = 0; k < 3; ++k) size[k][k] = entity.number(41 + k, 1);
     const glm::dmat4 turned = axes * turn;
-    into.inserts.push_back({key(entity.text(2)), axes * moved(point_of(entity, 10)) * turn * size,
+    into.inserts.push_back({key(entity.text(2)), axes * moved_by(point_of(entity, 10)) * turn * size,
                             std::max(entity.integer(70, 1), 1), std::max(entity.integer(71, 1), 1),
                             glm::dvec3(turned[0]) * entity.number(44), glm::dvec3(turned[1]) * entity.number(45),
                             layer});
@@ -322,8 +314,8 @@ class DxfModel {
         if (++placed_ > kMost)
           throw Refused("it places more than " + std::to_string(kMost) + " blocks; export parts of the model");
         const glm::dmat4 matrix =
-            moved(insert.column_step * static_cast<double>(column) + insert.row_step * static_cast<double>(row)) *
-            insert.outer_from_block * moved(-block.base);
+            moved_by(insert.column_step * static_cast<double>(column) + insert.row_step * static_cast<double>(row)) *
+            insert.outer_from_block * moved_by(-block.base);
         place(block, model_.add_node(outer, block.name, matrix), layer, depth + 1);
       }
   }

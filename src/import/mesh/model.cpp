@@ -266,6 +266,12 @@ std::size_t Model::add_node(std::size_t parent, std::string name, const glm::dma
 std::string glb_of(const Model& model) { return Writer(model).run(); }
 
 glm::dmat4 from_z_up() { return {{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}; }
+
+glm::dmat4 moved_by(const glm::dvec3& way) {
+  glm::dmat4 m(1);
+  m[3] = glm::dvec4(way, 1);
+  return m;
+}
 glm::dmat4 from_x_up() { return {{0, 1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}; }
 
 }  // namespace vantage::importer

@@ -61,6 +61,7 @@ std::string glb_of(const Model& model);
 
 // A change of axes, to Y up as glTF has it.
 glm::dmat4 from_z_up();
+glm::dmat4 moved_by(const glm::dvec3& way);
 glm::dmat4 from_x_up();
 
 }  // namespace vantage::importer

@@ -14,12 +14,6 @@ using Names = std::initializer_list<std::string_view>;
 
 bool is_one_of(std::string_view name, Names names) { return std::ranges::find(names, name) != names.end(); }
 
-glm::dmat4 moved_by(const glm::dvec3& way) {
-  glm::dmat4 m(1);
-  m[3] = glm::dvec4(way, 1);
-  return m;
-}
-
 class X3dReader {
  public:
   explicit X3dReader(const XmlElement& document) : document_(document) {}
