@@ -115,6 +115,8 @@ void add_on_site(py::module_& m) {
            "Rounds begin and end at the site's entrance if the options name none. Raises Error invalid_argument.")
       .def("way_m", &OnSite::way_m, py::arg("start"), py::arg("end"),
            "Metres from one ground point (x, y, z) to another; None if the search area does not connect them.")
+      .def("way", &OnSite::way, py::arg("start"), py::arg("end"),
+           "Ground points (x, y, z) of such a way; none if the search area does not connect them.")
       .def(
           "visit",
           [](const OnSite& site, const py::object& given) {

@@ -77,6 +77,9 @@ class OnSite {
   /// Metres from one ground point to another along the search area; empty if it does not connect them. Throws Error
   /// invalid_argument for a point that is not within 1000 km of the scene.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
+  /// The ground points of such a way, from one end to the other; none if the search area does not connect them. Throws
+  /// as way_m().
+  std::vector<Vec3> way(const Vec3& from, const Vec3& to) const;
   /// Two of some points, and a length of the way between them.
   struct Way {
     std::size_t a = 0, b = 0;

@@ -364,6 +364,9 @@ std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
   for (const Vec3& end : {from, to}) require_in_reach(end, impl_->origin, "the end of a way is");
   return impl_->ways.between(from, to);
 }
+std::vector<Vec3> OnSite::way(const Vec3& from, const Vec3& to) const {
+  return way_m(from, to) ? impl_->ways.path(from, to) : std::vector<Vec3>{};
+}
 std::vector<std::uint8_t> OnSite::longer(std::span<const Vec3> points, std::span<const Way> than) const {
   for (const Vec3& point : points) require_in_reach(point, impl_->origin, "the end of a way is");
   return impl_->ways.longer(points, than);

@@ -3,13 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/graph.hpp"
 #include "plan/sample_seen.hpp"
 
 namespace vantage {
+namespace {
+
+constexpr double kStep_m = 0.1;  // along a way
+// Further positions by each side of a place where nobody may stand, within so much.
+constexpr std::size_t kBySide = 8;
+constexpr double kBySide_m = 0.75;
+
+}  // namespace
 
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals) {
   return [&simulator, sample_voxels, goals = std::move(goals)](std::span<const PlacedStation> stations,
@@ -219,6 +229,38 @@ std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::sp
         found.push_back(placed);
     }
   }
+  return found;
+}
+
+std::vector<PlacedStation> positions_along(const PlacementOracle& site, std::span<const Vec3> way, double apart_m) {
+  std::vector<PlacedStation> found, sides;
+  std::optional<PlacedStation> before;  // the position before, if it was allowed
+  bool barred = false;                  // since it
+  double since_m = apart_m;             // from the last one taken
+  const auto visit = [&](const Vec3& ground) {
+    const auto uv = site.project(ground);
+    const PlacedStation here = uv ? place_station(site, *uv, site.height_m) : PlacedStation{};
+    if (!uv || here.status != StationStatus::ok || std::abs(here.ground.z - ground.z) > kStep_m) {
+      if (before) sides.push_back(*std::exchange(before, std::nullopt));
+      barred = true;
+      return;
+    }
+    if (barred || since_m >= apart_m) {
+      (barred ? sides : found).push_back(here);
+      since_m = 0;
+    }
+    before = here, barred = false;
+  };
+  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+    const Vec3 leg = way[k + 1] - way[k];
+    const auto steps = static_cast<std::size_t>(std::ceil(std::sqrt(dot(leg, leg)) / kStep_m));
+    for (std::size_t step = 0; step < steps; ++step, since_m += kStep_m)
+      visit(way[k] + leg * (static_cast<double>(step) / static_cast<double>(steps)));
+  }
+  // The shortest way passes along a jamb; scans from the middle see more of both sides.
+  const std::vector<PlacedStation> around = positions_around(site, sides, kBySide, kBySide_m);
+  found.insert(found.end(), sides.begin(), sides.end());
+  found.insert(found.end(), around.begin(), around.end());
   return found;
 }
 

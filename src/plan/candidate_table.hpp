@@ -103,4 +103,11 @@ class CandidateTable {
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
                                             std::size_t each, double radius_m);
 
+// Ground points of the way on foot from one ground point to another; none if nothing connects them.
+using WayBetween = std::function<std::vector<Vec3>(const Vec3&, const Vec3&)>;
+inline constexpr double kAlong_m = 1;  // between candidates along a way
+// Allowed positions along such a way: every `apart_m`, and by both sides of each place where nobody may stand, as in a
+// doorway.
+std::vector<PlacedStation> positions_along(const PlacementOracle& site, std::span<const Vec3> way, double apart_m);
+
 }  // namespace vantage

@@ -2,7 +2,10 @@
 #include "plan/fewest_choice.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -10,6 +13,7 @@
 #include "core/graph.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
+#include "cover/partial_cover.hpp"
 #include "evaluate/storey_ties.hpp"
 #include "plan/limits.hpp"
 #include "plan/what_pays.hpp"
@@ -23,6 +27,12 @@ constexpr std::size_t kLateCandidates = 96;
 constexpr double kLate_s = 2;
 // Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
+
+// Rounds of looking along ways, parts that each looks for, and chosen stations to which it looks for the shortest way.
+constexpr std::size_t kLooks = 4, kPartsAtOnce = 8, kNearest = 12;
+// Further candidates at each end where no way is known, within such a share of the distance.
+constexpr std::size_t kAtEnds = 24;
+constexpr double kEndsRadius = 0.25;
 
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
@@ -53,6 +63,67 @@ std::size_t ties_past_stairs(const FewestChoice& choice) {
 bool takes_hardly_more(const FewestChoice& choice, const CoverSolution& before, std::size_t ties) {
   return choice.network.violation <= before.violation &&
          choice.network.chosen.size() <= before.chosen.size() + kForStair * ties;
+}
+
+double length_m(std::span<const Vec3> way) {
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+    const Vec3 leg = way[k + 1] - way[k];
+    sum += std::sqrt(dot(leg, leg));
+  }
+  return sum;
+}
+
+// The chosen stations that links of any candidates connect, of several such groups the largest, and the candidates that
+// would help them most, each on its own after those before, if links reached them.
+struct Unlinked {
+  std::vector<std::size_t> network, help;
+};
+Unlinked unlinked_help(const FewestChoice& choice) {
+  const StationGraph& graph = choice.table.graph();
+  const Components parts = components_along(graph.size(), [&](std::size_t k, const auto& visit) {
+    for (const StationGraph::Overlap& one : graph.overlaps(k))
+      if (static_cast<double>(one.share) >= choice.asked.link) visit(one.candidate);
+  });
+  std::vector<std::size_t> stations(parts.count, 0);
+  for (const std::size_t k : choice.network.chosen) ++stations[parts.of[k]];
+  const auto main = static_cast<std::size_t>(std::ranges::max_element(stations) - stations.begin());
+  Unlinked found;
+  std::ranges::copy_if(choice.network.chosen, std::back_inserter(found.network),
+                       [&](std::size_t k) { return parts.of[k] == main; });
+  PartialCover cover(choice.table.matrix(), found.network);
+  while (found.help.size() < kPartsAtOnce) {
+    std::optional<std::size_t> best;
+    double most = kLeastHelp;
+    for (std::size_t k = 0; k < graph.size(); ++k)
+      if (parts.of[k] != main)
+        if (const double gain = cover.gain(k); gain >= most) best = k, most = gain;
+    if (!best) break;
+    cover.add(*best), found.help.push_back(*best);
+  }
+  return found;
+}
+
+// Allowed positions along the shortest way from a candidate to those of `ends` that are nearest to it; where none leads
+// there, around it and the one that sees most of what it sees.
+std::vector<PlacedStation> on_the_way(const FewestChoice& choice, std::size_t from, std::vector<std::size_t> ends,
+                                      const PlacementOracle& oracle) {
+  const std::vector<PlacedStation>& stations = choice.table.stations();
+  const auto away_m = [&](std::size_t k) {
+    const Vec3 apart = stations[k].ground - stations[from].ground;
+    return std::sqrt(dot(apart, apart));
+  };
+  std::ranges::sort(ends, {}, away_m);
+  std::vector<Vec3> shortest;
+  for (const std::size_t end : std::span(ends).first(std::min(ends.size(), kNearest)))
+    if (std::vector<Vec3> way = choice.way(stations[from].ground, stations[end].ground);
+        !way.empty() && (shortest.empty() || length_m(way) < length_m(shortest)))
+      shortest = std::move(way);
+  if (!shortest.empty()) return positions_along(oracle, shortest, kAlong_m);
+  const std::size_t nearest =
+      *std::ranges::max_element(ends, {}, [&](std::size_t k) { return choice.table.graph().overlap(from, k); });
+  const std::array both{stations[from], stations[nearest]};
+  return positions_around(oracle, both, kAtEnds, kEndsRadius * away_m(nearest));
 }
 
 // True if as many stations are connected and capture no less than without an average one of them.
@@ -163,6 +234,26 @@ void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop) 
   choose_from(choice, {}, stop);
   fit_time(choice, visit, stop);
   strengthen(choice, stop);
+}
+
+bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop) {
+  if (!choice.way || choice.asked.link <= 0) return false;
+  const double before = choice.network.violation;
+  for (std::size_t k = 0; k < kLooks && out_of_reach(choice) && !stop.stop_requested(); ++k) {
+    std::vector<PlacedStation> along;
+    const Unlinked unlinked = unlinked_help(choice);
+    if (unlinked.network.empty()) break;
+    for (const std::size_t part : unlinked.help) {
+      const std::vector<PlacedStation> found = on_the_way(choice, part, unlinked.network, oracle);
+      along.insert(along.end(), found.begin(), found.end());
+    }
+    if (along.empty() || !choice.table.add(along, {.report = {}, .stop = stop})) break;
+    const double known = choice.network.violation;
+    choose_from(choice, choice.network, stop);
+    strengthen(choice, stop);
+    if (choice.network.violation >= known) break;
+  }
+  return choice.network.violation < before;
 }
 
 bool visit_units(FewestChoice& choice, const std::stop_token& stop) {

@@ -61,6 +61,7 @@ struct FewestChoice {
   const UnitsToVisit* to_visit = nullptr;       // borrowed
   std::vector<std::size_t> visiting = {};       // stations of units that had none; they stay, as existing ones do
   PastStairs past_stairs = {};                  // empty: all links are alike
+  WayBetween way = {};                          // empty: unknown
   // The choice without links past the stair, if they do not count.
   struct AlongStairs {
     CoverSolution before = {};    // the network that has such ties
@@ -99,6 +100,10 @@ void strengthen(FewestChoice& choice, const std::stop_token& stop);
 void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop);
 // Starts from a network of the table, or from none.
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop);
+
+// If what is asked is out of reach, looks along the ways to what no link reaches from the network, such as rooms behind
+// doorways, and chooses again. True if that serves.
+bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop);
 
 // Adds a station to each unit of floor that has none and takes one, and chooses again with these. True if there was
 // one. Not where the time on site ends the choice.

@@ -88,15 +88,18 @@ std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, co
 }
 
 // Looks at further candidates around both ends of the best link of each part of a network, as far as these are apart,
-// and chooses again. That serves where no known candidate links a part to the rest.
+// and along the way between them, and chooses again. That serves where no known candidate links a part to the rest.
 void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span<const PlacedStation> stations,
                   const StationLinks& links, const std::stop_token& stop) {
   std::vector<PlacedStation> between;
   for (const StationLinks::Gap& gap : links.gaps) {
     const std::array ends{stations[gap.inside], stations[gap.outside]};
     const Vec3 way = ends[1].ground - ends[0].ground;
-    const auto found = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
-    between.insert(between.end(), found.begin(), found.end());
+    const auto around = positions_around(oracle, ends, kBetween, std::sqrt(dot(way, way)));
+    between.insert(between.end(), around.begin(), around.end());
+    if (!choice.way) continue;
+    const auto along = positions_along(oracle, choice.way(ends[0].ground, ends[1].ground), kAlong_m);
+    between.insert(between.end(), along.begin(), along.end());
   }
   choice.table.add(between, {.report = {}, .stop = stop});
   raise_margins(choice, {}, stop);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "vantage/planner.hpp"
@@ -18,6 +19,12 @@ inline std::optional<double> limit_of(const SurveyProblem& problem, Objective::K
     limit = bound == Requirement::Bound::at_least ? std::max(here, own) : std::min(here, own);
   }
   return limit;
+}
+
+// A share rounded down, with digits that a surveyor reads.
+inline double rounded_down(double share) {
+  constexpr double kDigits = 1000;
+  return std::floor(share * kDigits) / kDigits;
 }
 
 // Tells whether a requirement says how much of what is attainable has to be captured.

@@ -154,20 +154,14 @@ std::vector<std::size_t> first_numbers(std::size_t count) {
   return numbers;
 }
 
-// Down, and with digits that a surveyor reads.
-double rounded_down(double share) {
-  constexpr double kDigits = 1000;
-  return std::floor(share * kDigits) / kDigits;
-}
-
 // Requires what the stations that pay can capture, or what the problem does if that is more.
-std::optional<StationsThatPay> require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
-                                                 const Candidates& candidates, const Progress& progress) {
-  if (!problem.pays_m2 || candidates.coverage().size() == 0) return std::nullopt;
+void require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site, const Candidates& candidates,
+                       const Progress& progress) {
+  if (!problem.pays_m2 || candidates.coverage().size() == 0) return;
   std::vector<PlacedStation> stations = existing_stations(context.oracle(), problem.existing, problem.existing_setups);
   const std::size_t kept = stations.size();
   const CoverageMatrix matrix = columns_with(stations, context, site.simulator(), candidates, progress);
-  if (matrix.candidates() < kept + candidates.coverage().size()) return std::nullopt;
+  if (matrix.candidates() < kept + candidates.coverage().size()) return;
   stations.insert(stations.end(), candidates.stations().begin(), candidates.stations().end());
   const double metre = site.length_scale(), least_m2 = *problem.pays_m2;
   context.to_visit.emplace(
@@ -180,8 +174,11 @@ std::optional<StationsThatPay> require_what_pays(SurveyProblem& problem, PlanCon
       stations_that_pay(asked, context.to_visit->element_m2, least_m2, context.to_visit->units.stations_in(stations));
   pays.capture = rounded_down(pays.capture);
   for (Requirement& requirement : problem.requirements)
-    if (requires_capture(requirement)) requirement.limit = std::max(requirement.limit, pays.capture);
-  return pays;
+    if (requires_capture(requirement)) {
+      context.asked_capture = std::max(context.asked_capture, requirement.limit);
+      requirement.limit = std::max(requirement.limit, pays.capture);
+    }
+  context.pays = pays;
 }
 
 // Finds what a further station would add to the answer; empty if stopped.
@@ -263,8 +260,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;
   if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);
-  std::optional<StationsThatPay> pays;
-  if (candidates) pays = require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.abort});
+  if (candidates) require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.abort});
   problem = settled(std::move(problem));
   if (surroundings.valid()) surroundings.get();
   context.ask(problem);
@@ -289,7 +285,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   }
   if (result.stop_reason == StopReason::cancelled && time.search_ended()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
-  result.pays = pays;
+  result.pays = context.pays;
   complete_front(result, context, site, {.report = {}, .stop = watch.abort});
   require_no_more_than_answer(result, asked);
   result.further = further_station(result, context, site, {.report = {}, .stop = watch.abort});

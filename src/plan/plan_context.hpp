@@ -23,6 +23,8 @@ class PlanContext {
   AttainableCounts chosen, searched, confirmed;
   // Empty unless the number of stations is that of those that pay.
   std::optional<UnitsToVisit> to_visit;
+  std::optional<StationsThatPay> pays;
+  double asked_capture = 0;  // by the problem, whatever pays
 
   // Networks are judged by this problem's measures from now on.
   void ask(const SurveyProblem& problem);

@@ -15,6 +15,7 @@
 #include "evaluate/storey_ties.hpp"
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
+#include "plan/limits.hpp"
 #include "plan/spread_positions.hpp"
 #include "plan/trade_off.hpp"
 
@@ -135,6 +136,19 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   }
 }
 
+// Requires no more than the chosen network captures by other voxels, within their error, or than the problem asks for.
+void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
+  const Network network = to_network(choice.stations_of(choice.network));
+  const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
+  if (shares.empty()) return;
+  const double captured = std::min(shares.front().value - shares.front().standard_error, choice.asked.coverage);
+  choice.asked.coverage = context.pays->capture = std::max(context.asked_capture, rounded_down(captured));
+  SurveyProblem problem = context.problem();
+  for (Requirement& requirement : problem.requirements)
+    if (requires_capture(requirement)) requirement.limit = std::min(requirement.limit, context.pays->capture);
+  context.ask(problem);
+}
+
 // Other voxels tell which links do not hold, too. Mends these, on sites that have hundreds.
 void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!has_hundreds_of_links(choice, context)) return;
@@ -191,6 +205,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
                                     std::span<const std::pair<std::size_t, std::size_t>> pairs) {
       return past_stairs(stations, pairs, context.on_site());
     };
+  choice.way = [&context](const Vec3& from, const Vec3& to) { return context.on_site().way(from, to); };
   // Where nothing else tells by how much the sample flatters, a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
@@ -221,6 +236,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
     }
   };
   refine();
+  if (look_along_ways(choice, context.oracle(), watch.stop)) refine();
   // A share that is asked for is reached whatever it takes; if it is out of reach then too, each station has to help.
   if (out_of_reach(choice) && !problem.pays_m2 && !report.stopped()) {
     choose_anew(choice, 0, watch.stop);
@@ -228,6 +244,8 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
     if (out_of_reach(choice)) choose_anew(choice, kLeastHelp, watch.stop);
   }
   keep_to_stairs(choice, watch.stop);
+  if (context.pays && keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
+    require_no_more(choice, context, simulator, watch);
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
@@ -355,9 +373,9 @@ std::vector<PlanEntry> any_position(PlanContext& context, const Candidates& cand
 
 PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
                        const PlanConfig& config, const PlanWatch& watch) {
-  const SurveyProblem problem = context.problem();
   FewestReport report(watch);
   FewestChoice choice = choose_number(context, simulator, *candidates, watch, report);
+  const SurveyProblem problem = context.problem();  // which the choice may have narrowed
   VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
                             watch, visit_order(context, watch), count_ties(choice));
   SearchOutcome found;

@@ -11,6 +11,7 @@
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
 #include "cover/swaps.hpp"
+#include "plan/what_pays.hpp"
 
 namespace vantage {
 namespace {
@@ -19,6 +20,8 @@ namespace {
 // many stations, a quarter if there are hundreds: each takes seconds of swaps and of registration.
 constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4, kManyStations = 100, kHundreds = 300;
 constexpr double kBeyondShare = 0.5;
+// Networks that are looked at for whether they pay.
+constexpr std::size_t kPointsThatPay = 32;
 
 // Without the station that is missed least, of those without which the rest is connected as before.
 bool drop_one(const CoverProblem& problem, std::vector<std::size_t>& network) {
@@ -94,6 +97,35 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
   parallel::beside(grow, drop);
   networks.insert(networks.begin(), std::make_move_iterator(fewer.rbegin()), std::make_move_iterator(fewer.rend()));
   return networks;
+}
+
+bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double asked_capture,
+                    const std::stop_token& stop) {
+  if (!choice.to_visit || choice.asked.minutes || choice.placed() <= pays.stations) return false;
+  CoverProblem problem = cover_problem(choice);
+  problem.coverage = 1;  // as much as there is
+  const ColumnIndex columns(problem.matrix);
+  const std::size_t beyond = choice.placed() - pays.stations, each = 1 + (beyond - 1) / kPointsThatPay;
+  std::vector<std::vector<std::size_t>> networks{choice.network.chosen};  // by falling number
+  for (std::size_t left = beyond; left > 0 && !stop.stop_requested();) {
+    std::vector<std::size_t> now = networks.back();
+    bool dropped = true;
+    for (std::size_t k = 0; k < each && left > 0 && dropped; ++k, --left) dropped = drop_one(problem, now);
+    if (!dropped) break;
+    networks.push_back(improve_by_swaps(problem, columns, std::move(now), stop));
+  }
+  if (stop.stop_requested()) return false;
+  const auto worth_m2 = [&](const std::vector<std::size_t>& network) {
+    return surface_m2(problem.matrix, network, choice.to_visit->element_m2) -
+           pays.least_m2 * static_cast<double>(network.size());
+  };
+  const auto best = std::ranges::max_element(networks, {}, worth_m2);
+  if (best == networks.begin()) return false;
+  choice.asked.coverage = std::max(asked_capture, std::min(choice.asked.coverage, problem.matrix.coverage(*best)));
+  choice.one_fewer.reset();
+  choice.network = evaluate_cover(cover_problem(choice), std::move(*best));
+  strengthen(choice, stop);
+  return true;
 }
 
 void mark_knee(std::vector<TradeOffPoint>& points) {

@@ -15,6 +15,12 @@ namespace vantage {
 std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& unimproved,
                                               const std::stop_token& stop);
 
+// Leaves stations out that links need and that do not pay. `pays`: the stations that do by themselves; of those beyond
+// that number as many stay as capture most surface, each less `pays.least_m2`. Asks for no more than the rest captures
+// then, and at least for `asked_capture`. True if that leaves some out.
+bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double asked_capture,
+                    const std::stop_token& stop);
+
 // Numbers of stations to tell a trade-off by, around the chosen one: all of few, else so many evenly spread.
 std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most);
 

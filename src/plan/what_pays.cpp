@@ -56,6 +56,14 @@ double new_surface_m2(const CoverageMatrix& matrix, const PartialCover& network,
   return sum * element_m2;
 }
 
+double surface_m2(const CoverageMatrix& matrix, std::span<const std::size_t> network, double element_m2) {
+  const PartialCover cover(matrix, network);
+  double sum = 0;
+  for (std::size_t e = 0; e < matrix.elements(); ++e)
+    if (matrix.weight(e) > 0) sum += cover.covered(e, cover.amount(e)) * matrix.weight(e) / matrix.weights()[e];
+  return sum * element_m2;
+}
+
 std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const StationGraph* graph,
                                          std::span<const std::size_t> chosen,
                                          std::span<const std::vector<std::size_t>> units, double element_m2,

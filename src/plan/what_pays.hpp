@@ -23,6 +23,9 @@ inline constexpr double kLeastOfUnit = 0.2;
 double new_surface_m2(const CoverageMatrix& matrix, const PartialCover& network, std::size_t candidate,
                       double element_m2);
 
+// Surface that a network captures, likewise.
+double surface_m2(const CoverageMatrix& matrix, std::span<const std::size_t> network, double element_m2);
+
 // For each unit of floor without one of the chosen candidates, the allowed one in it that captures most new surface, if
 // that is as much as `least_m2`; each counts for the next ones. `units`: candidates in each.
 std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const StationGraph* graph,

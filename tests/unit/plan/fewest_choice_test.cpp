@@ -436,5 +436,108 @@ TEST(CandidateTable, LeavesOutTiesWhereOtherLinksConnect) {
   }
 }
 
+// Two rooms of 5 × 10 m at a wall with a doorway of a metre, in which nobody may stand, nor nearer than 0.4 m to the
+// wall.
+struct TwoRooms {
+  static constexpr double kWall = 5, kDoor = 5, kHalfWidth = 0.5, kClear = 0.4;
+
+  static bool sees(const Vec3& a, const Vec3& b) {
+    if ((a.x < kWall) == (b.x < kWall)) return true;
+    const double t = (kWall - a.x) / (b.x - a.x);
+    return std::abs(a.y + t * (b.y - a.y) - kDoor) < kHalfWidth;
+  }
+  static PlacementOracle oracle() {
+    PlacementOracle site = test::toy_site();
+    site.locate = [](Uv uv) -> std::optional<Vec3> { return Vec3{10 * uv.u, 10 * uv.v, 3}; };
+    site.clashes = [](const Vec3& ground, double) { return std::abs(ground.x - kWall) < kClear; };
+    site.sees = sees;
+    return site;
+  }
+  static TraceColumns columns() {
+    return [](std::span<const PlacedStation> stations, const Progress&) {
+      constexpr std::size_t side = 40;
+      CoverageMatrix matrix(std::vector<std::uint32_t>(side * side, 1), 1);
+      for (const PlacedStation& station : stations) {
+        std::vector<std::uint32_t> amounts(side * side);
+        for (std::size_t e = 0; e < amounts.size(); ++e)
+          amounts[e] = sees(station.position, {static_cast<double>(e % side) / 4 + 0.125,
+                                               static_cast<double>(e / side) / 4 + 0.125, station.position.z});
+        matrix.add(std::span<const std::uint32_t>(amounts));
+      }
+      return matrix;
+    };
+  }
+  // Through the doorway along its lower jamb.
+  static std::vector<Vec3> way(const Vec3& from, const Vec3& to) {
+    if ((from.x < kWall) == (to.x < kWall)) return {from, to};
+    const Vec3 jamb{kWall, kDoor - kHalfWidth + 0.05, 3};
+    return {from, jamb, to};
+  }
+  static PlacedStation at(double x, double y) { return place_station(oracle(), {x / 10, y / 10}, 1.5); }
+};
+
+TEST(PositionsAlong, AreAllowedAndOnBothSidesOfADoorway) {
+  const Vec3 from{1, 1, 3}, to{9, 1, 3};
+  const std::vector<Vec3> way = TwoRooms::way(from, to);
+  const auto found = positions_along(TwoRooms::oracle(), way, 1);
+  double west = 10, east = 10;  // from the wall
+  std::size_t along = 0;
+  for (const PlacedStation& one : found) {
+    EXPECT_EQ(one.status, StationStatus::ok);
+    EXPECT_GE(std::abs(one.ground.x - TwoRooms::kWall), TwoRooms::kClear);
+    double& side = one.ground.x < TwoRooms::kWall ? west : east;
+    side = std::min(side, std::abs(one.ground.x - TwoRooms::kWall));
+    along += std::abs(one.ground.y - TwoRooms::kDoor) > 1.5;
+  }
+  EXPECT_LT(west, TwoRooms::kClear + 0.2);
+  EXPECT_LT(east, TwoRooms::kClear + 0.2);
+  EXPECT_GE(along, 4u) << "every metre of two times 3 m";
+  EXPECT_LE(along, 10u);
+  EXPECT_TRUE(positions_along(TwoRooms::oracle(), {}, 1).empty());
+}
+
+FewestChoice in_two_rooms(double coverage) {
+  FewestChoice choice{.asked = fewest_asked(floor_problem(coverage)),
+                      .table = CandidateTable(TwoRooms::columns(), TwoRooms::columns(), {.nearest_m = 0.1})};
+  choice.asked.link = 0.3;
+  const std::vector<PlacedStation> corners{TwoRooms::at(1, 1), TwoRooms::at(3, 1), TwoRooms::at(9, 1),
+                                           TwoRooms::at(7, 1)};
+  choice.table.add(corners, {});
+  choose(choice, {}, {});
+  return choice;
+}
+
+TEST(LookAlongWays, LinksARoomBehindADoorway) {
+  FewestChoice choice = in_two_rooms(0.9);
+  ASSERT_GT(choice.network.violation, 0);
+  EXPECT_FALSE(look_along_ways(choice, TwoRooms::oracle(), {})) << "no way is known";
+  choice.way = TwoRooms::way;
+  EXPECT_TRUE(look_along_ways(choice, TwoRooms::oracle(), {}));
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_GE(choice.network.coverage, 0.9);
+  EXPECT_GE(choice.network.link, 0.3);
+  EXPECT_LE(choice.placed(), 3u);
+}
+
+TEST(LookAlongWays, LooksAroundBothEndsWhereNoWayLeads) {
+  FewestChoice choice = in_two_rooms(0.9);
+  const std::size_t before = choice.table.stations().size();
+  choice.way = [](const Vec3&, const Vec3&) { return std::vector<Vec3>{}; };
+  look_along_ways(choice, TwoRooms::oracle(), {});
+  EXPECT_GT(choice.table.stations().size(), before);
+}
+
+TEST(LookAlongWays, LeavesAChoiceThatHasWhatIsAskedAlone) {
+  FewestChoice choice = in_two_rooms(0.4);
+  ASSERT_EQ(choice.network.violation, 0);
+  choice.way = [](const Vec3&, const Vec3&) -> std::vector<Vec3> {
+    ADD_FAILURE() << "no way is looked for";
+    return {};
+  };
+  const std::vector<std::size_t> chosen = choice.network.chosen;
+  EXPECT_FALSE(look_along_ways(choice, TwoRooms::oracle(), {}));
+  EXPECT_EQ(choice.network.chosen, chosen);
+}
+
 }  // namespace
 }  // namespace vantage

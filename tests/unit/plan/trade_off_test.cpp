@@ -49,6 +49,65 @@ TEST(TradeOff, NetworksAreLinkedAndCaptureMoreTheMoreStationsTheyHave) {
   EXPECT_NEAR(networks.front().coverage, best, 1e-12);
 }
 
+// A corridor: cells of a metre, of which those from 0 to 10 and the last two are surveyed; a station captures those
+// within 2 m, and is linked to others within 3 m.
+struct Corridor {
+  static constexpr std::size_t kLength = 40;
+  static CoverageMatrix columns(std::span<const PlacedStation> stations, double reach_m, bool surveyed) {
+    std::vector<std::uint32_t> weights(kLength, 1);
+    if (surveyed) std::fill(weights.begin() + 10, weights.end() - 2, 0);
+    CoverageMatrix matrix(std::move(weights), 1);
+    for (const PlacedStation& station : stations) {
+      std::vector<std::uint32_t> amounts(kLength);
+      for (std::size_t e = 0; e < kLength; ++e)
+        amounts[e] = std::abs(static_cast<double>(e) + 0.5 - station.position.x) < reach_m;
+      matrix.add(std::span<const std::uint32_t>(amounts));
+    }
+    return matrix;
+  }
+  static FewestChoice choice(double coverage) {
+    FewestChoice made{
+        .asked = fewest_asked(test::floor_problem(coverage)),
+        .table = CandidateTable([](std::span<const PlacedStation> s, const Progress&) { return columns(s, 2, true); },
+                                [](std::span<const PlacedStation> s, const Progress&) { return columns(s, 3, false); },
+                                {.nearest_m = 0.1})};
+    made.asked.link = 0.3, made.asked.most = 20;
+    std::vector<PlacedStation> all;
+    for (std::size_t k = 0; k < kLength; ++k)
+      all.push_back({.position = {static_cast<double>(k) + 0.5, 0, 0}, .status = StationStatus::ok});
+    made.table.add(all, {});
+    choose(made, {}, {});
+    return made;
+  }
+};
+
+TEST(KeepWhatPays, LeavesAFarCorner) {
+  // By themselves four stations capture all: three at this end and one at the other.
+  const UnitsToVisit square_metres{.units = {}, .least_m2 = 0, .element_m2 = 1};
+  FewestChoice choice = Corridor::choice(1);
+  choice.to_visit = &square_metres;
+  ASSERT_EQ(choice.network.violation, 0);
+  ASSERT_GT(choice.placed(), 8u) << "a chain of links to the other end";
+  const std::size_t all = choice.placed();
+  EXPECT_TRUE(keep_what_pays(choice, {.least_m2 = 1, .stations = 3}, 0, {}));
+  EXPECT_LE(choice.placed(), 5u);
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_GE(choice.network.link, 0.3);
+  EXPECT_NEAR(choice.asked.coverage, choice.table.matrix().coverage(choice.network.chosen), 1e-12);
+  EXPECT_NEAR(choice.asked.coverage, 10.0 / 12, 1e-12) << "nothing but the far corner is left out";
+
+  FewestChoice worth_it = Corridor::choice(1);
+  worth_it.to_visit = &square_metres;
+  EXPECT_FALSE(keep_what_pays(worth_it, {.least_m2 = 0.1, .stations = 3}, 0, {}));
+  EXPECT_EQ(worth_it.placed(), all);
+  EXPECT_EQ(worth_it.asked.coverage, 1);
+
+  FewestChoice within = Corridor::choice(1);
+  within.to_visit = &square_metres;
+  EXPECT_FALSE(keep_what_pays(within, {.least_m2 = 1, .stations = all}, 0, {})) << "no more than pay by themselves";
+  EXPECT_EQ(within.placed(), all);
+}
+
 TEST(TradeOff, KneeIsFarthestAboveTheLineBetweenTheEnds) {
   std::vector<TradeOffPoint> points;
   const auto add = [&](std::size_t stations, double captured) {
