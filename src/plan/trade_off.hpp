@@ -16,7 +16,7 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
                                               const std::stop_token& stop);
 
 // Leaves stations out that links need and that do not pay. `pays`: the stations that do by themselves; of those beyond
-// that number as many stay as capture most surface, each less `pays.least_m2`. Asks for no more than the rest captures
+// that number those go that clearly capture less than `pays.least_m2` each. Asks for no more than the rest captures
 // then, and at least for `asked_capture`. True if that leaves some out.
 bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double asked_capture,
                     const std::stop_token& stop);

@@ -89,11 +89,10 @@ class FolderWriter {
     const VoxelField& field = entry_.field.count.empty() ? counted : entry_.field;
     remove_earlier_plan(folder_);
     const VoxelField* const known = field.count.empty() ? nullptr : &field;
-    write_tables();
     // Progress is told on the calling thread, by those that take longest.
     const Deadline drawn_by(seconds(), watch_.stop);
     progress(kDraw, 0, 1, drawn_by)(0);
-    parallel::beside([&] { draw(known, drawn_by.stop()); },
+    parallel::beside([&] { parallel::beside([&] { draw(known, drawn_by.stop()); }, [&] { write_tables(); }); },
                      [&] {
                        if (!known) return;
                        judge(*known);

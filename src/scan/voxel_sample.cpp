@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/golden_step.hpp"
+#include "core/parallel.hpp"
 #include "core/philox.hpp"
 
 namespace vantage {
@@ -31,7 +32,7 @@ std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t 
     r = static_cast<std::uint32_t>(voxel_index);
     voxel_index = (voxel_index + step) % population;
   }
-  std::sort(voxel_indices.begin(), voxel_indices.end());
+  parallel::sort(voxel_indices.begin(), voxel_indices.end());
   return voxel_indices;
 }
 

@@ -55,11 +55,13 @@ std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& tri
     };
   });
   if (!whole) return std::nullopt;
+  std::vector<std::vector<std::uint64_t>*> each;
+  for (Keys& own : collected) each.push_back(&own.keys);
+  parallel::for_all(std::size_t{0}, each.size(), [&](std::size_t k) { sort_unique(*each[k]); });
   std::vector<std::uint64_t> all;
-  for (Keys& own : collected) {
-    sort_unique(own.keys);
-    all.insert(all.end(), own.keys.begin(), own.keys.end());
-    own.keys = {};
+  for (std::vector<std::uint64_t>* const own : each) {
+    all.insert(all.end(), own->begin(), own->end());
+    *own = {};
   }
   parallel::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
