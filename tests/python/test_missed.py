@@ -44,6 +44,9 @@ class AfterASearch(unittest.TestCase):
         self.assertAlmostEqual(visit.minutes, visit.scan_min + visit.set_up_min + visit.walk_min)
         straight = np.linalg.norm(np.subtract(BEFORE_EACH_WALL[0], BEFORE_EACH_WALL[2]))
         self.assertGreaterEqual(on_site.way_m((8, 0, 0), (0, 8, 0)), straight - 0.5)
+        way = np.array(on_site.way((8, 0, 0), (0, 8, 0)))
+        self.assertEqual((way[0].tolist(), way[-1].tolist()), ([8, 0, 0], [0, 8, 0]))
+        self.assertAlmostEqual(np.linalg.norm(np.diff(way, axis=0), axis=1).sum(), on_site.way_m((8, 0, 0), (0, 8, 0)), delta=0.5)
         self.assertEqual((visit.day_min, visit.sessions), (0, []))
         day = visit.minutes * 0.7
         split = vantage.OnSite(self.site, vantage.OnSiteOptions(set_up_min=5, walking_m_per_s=1, entrance=(0, 0, 0), day_min=day, crews=2)).visit(BEFORE_EACH_WALL)

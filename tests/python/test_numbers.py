@@ -82,6 +82,8 @@ class Numbers(unittest.TestCase):
             "distance": lambda p: clash.distance([p], 1.0),
             "way_m start": lambda p: walk.way_m(p, HEAD),
             "way_m end": lambda p: walk.way_m(HEAD, p),
+            "way start": lambda p: walk.way(p, HEAD),
+            "way end": lambda p: walk.way(HEAD, p),
             "visit": lambda p: walk.visit([p, HEAD]),
             "entrance": lambda p: vantage.OnSite(site, vantage.OnSiteOptions(entrance=p)),
             "enter": lambda p: vantage.Site.open(FOUR_WALLS, **QUICK, enter=[p]),

@@ -203,6 +203,7 @@ TEST(OnSite, LeavesOutWhatCannotBeUsedAndTellsOfWhatIsNotConnected) {
   const Visit visit = on_site.visit(stations);
   EXPECT_EQ(visit.order.size(), 2u);
   EXPECT_EQ(visit.unconnected, 2u);
+  EXPECT_TRUE(on_site.way(stations[0].ground, stations[1].ground).empty());
   EXPECT_NEAR(visit.walk_m, 2 * 2 * 90, 1e-9);
   EXPECT_EQ(on_site.visit({}).minutes, 0);
   EXPECT_THROW(Yard().on_site({.walking_m_per_s = 0}), Error);
@@ -242,6 +243,14 @@ TEST(OnSite, GoesThroughEachOpenDoorOfAnOffice) {
       const double through =
           metres(a.ground, from->door()) + metres(from->door(), to->door()) + metres(to->door(), b.ground);
       ++pairs;
+      const std::vector<Vec3> path = on_site.way(a.ground, b.ground);
+      ASSERT_GE(path.size(), 3u) << "through two doors";
+      EXPECT_EQ(path.front(), a.ground);
+      EXPECT_EQ(path.back(), b.ground);
+      double along = 0;
+      for (std::size_t k = 0; k + 1 < path.size(); ++k) along += metres(path[k], path[k + 1]);
+      EXPECT_LE(along, *way + 0.5);
+      EXPECT_GT(along, through - 1.0) << "through a wall";
       EXPECT_GT(*way, through - 1.0) << "through a wall";
       EXPECT_LT(*way, 1.1 * through + 3.0) << "not through the doors, or round more than the furniture";
     }

@@ -106,6 +106,8 @@ TEST_F(Positions, OfChecksAndWaysAreFiniteAndInReach) {
   expect_checked("distance", [&](const Vec3& p) { clash.distance(p, 1); });
   expect_checked("way_m from", [&](const Vec3& p) { walk.way_m(p, good); });
   expect_checked("way_m to", [&](const Vec3& p) { walk.way_m(good, p); });
+  expect_checked("way from", [&](const Vec3& p) { walk.way(p, good); });
+  expect_checked("way to", [&](const Vec3& p) { walk.way(good, p); });
   expect_checked("entrance", [&](const Vec3& p) {
     OnSiteOptions options;
     options.entrance = p;
