@@ -461,7 +461,7 @@ void add_crowded(std::vector<SummaryLine>& lines, const SearchArea& area, std::s
 std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Estimate& captured) {
   const SurveyProblem& problem = result.problem;
   if (result.pays) {
-    const bool fewer = captured.value < result.pays->capture;
+    const bool fewer = captured.value + captured.standard_error < result.pays->capture;
     if (!met(result)) return {};
     if (entry.stations.size() - problem.existing.size() >= problem.stations_max &&
         (fewer || (result.further && result.further->m2 >= result.pays->least_m2)))

@@ -275,6 +275,12 @@ TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
   result.problem.stations_max = 16, result.pays->capture = 0.95;
   EXPECT_TRUE(planned_text(result).starts_with(
       "16 stations capture 86.2 % of what is attainable, with as many stations as are allowed;"));
+  result.problem.stations_max = 20;
+  EXPECT_TRUE(
+      planned_text(result).starts_with("16 stations capture 86.2 % of what is attainable, as far as links reach;"));
+  result.pays->capture = 0.863, result.front.front().values["capture"].standard_error = 0.002;
+  EXPECT_TRUE(planned_text(result).starts_with("16 stations capture 86.2 % of what is attainable; a further"))
+      << "it has it";
 }
 
 // Nobody asked for that share, so nothing speaks of one that was asked for.
