@@ -142,12 +142,12 @@ bool holds_numbers(std::string_view text) {
 
 // A PLY's header may say that it has no faces.
 bool ply_without_faces(std::string_view text) {
-  const std::size_t end = text.find("end_header");
-  if (end == std::string_view::npos) return false;
-  for (const std::string_view line : first_lines(text.substr(0, end), 1000))
+  for (const std::string_view line : first_lines(text, 1000)) {
+    if (line.starts_with("end_header")) return true;
     if ((line.starts_with("element face") || line.starts_with("element tristrips")) && !line.ends_with(" 0"))
       return false;
-  return true;
+  }
+  return false;
 }
 
 // The name of an XML document's root element, in lower case.

@@ -85,11 +85,13 @@ function three(binary) {
   };
 }
 
-// The area in m², the box, and the number of points that the file was read with.
+const loss = /told only to 0\.5 m or worse/;
+
+// The area in m², the least and greatest place of faces across each axis, and the number of points that were read.
 function read(file) {
   const out = at('read.glb');
   fs.rmSync(out, { force: true });
-  const { stderr } = run(program, ['import', file, '-o', out]);
+  const { stderr } = run(program, ['import', file, '--unit', 'm', '--up', 'z', '-o', out]);
   const glb = fs.readFileSync(out), length = glb.readUInt32LE(12), json = JSON.parse(glb.subarray(20, 20 + length));
   const binary = glb.subarray(28 + length), box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   let area = 0;
@@ -107,11 +109,12 @@ function read(file) {
       const corner = (k) => new THREE.Vector3(...[0, 1, 2].map((a) => p[3 * corners[k] + a]));
       for (let t = 0; t < corners.length; t += 3) {
         const [a, b, c] = [0, 1, 2].map((k) => corner(t + k));
-        area += b.clone().sub(a).cross(c.clone().sub(a)).length() / 2;
-        for (const q of [a, b, c])  // Y up
-          [q.x + here[0], -(q.z + here[2]), q.y + here[1]].forEach((v, k) => {
-            box[0][k] = Math.min(box[0][k], v), box[1][k] = Math.max(box[1][k], v);
-          });
+        const across = b.clone().sub(a).cross(c.clone().sub(a));
+        area += across.length() / 2;
+        across.normalize();
+        [[across.x, a.x + here[0]], [across.z, -(a.z + here[2])], [across.y, a.y + here[1]]].forEach(([along, v], k) => {  // Y up
+          if (Math.abs(along) > 0.999) box[0][k] = Math.min(box[0][k], v), box[1][k] = Math.max(box[1][k], v);
+        });
       }
     }
     for (const child of children) visit(child, here);
@@ -121,13 +124,13 @@ function read(file) {
   return { area, box, count: Number(told[1].replaceAll(' ', '')), said: stderr };
 }
 
-// Faces end at the edges of cells, at most of 15 cm here.
+// Faces lie in the planes of their points, and end at the edges of cells.
 function expectRoom(is, count, origin) {
   const area = 2 * (SIZE[0] * SIZE[1] + SIZE[1] * SIZE[2] + SIZE[2] * SIZE[0]);
   assert.equal(is.count, count, 'points');
-  assert.ok(Math.abs(is.area - area) <= 0.02 * area, `${is.area} m² instead of ${area}`);
+  assert.ok(Math.abs(is.area - area) <= 0.03 * area, `${is.area} m² instead of ${area}`);
   SIZE.forEach((size, k) => [origin[k], origin[k] + size].forEach((wanted, side) =>
-    assert.ok(Math.abs(is.box[side][k] - wanted) <= 0.005, `${is.box[side][k]} instead of ${wanted}`)));
+    assert.ok(Math.abs(is.box[side][k] - wanted) <= 0.001, `${is.box[side][k]} instead of ${wanted}`)));
 }
 
 // web-e57 writes text from E57, which is a scan of our own: number and place of its points are compared.
@@ -139,54 +142,62 @@ function webE57() {
   const [web, own] = [read('web.xyz'), read('scan.ply')];
   assert.equal(web.count, own.count);
   assert.ok(Math.abs(web.area - own.area) <= 0.02 * own.area, `${web.area} m² instead of ${own.area}`);
-  web.box.flat().forEach((v, k) => assert.ok(Math.abs(v - own.box.flat()[k]) <= 0.02, `${v} instead of ${own.box.flat()[k]}`));
+  // There is no floor, so that one axis has no places.
+  web.box.flat().forEach((v, k) => assert.ok(v === own.box.flat()[k] || Math.abs(v - own.box.flat()[k]) <= 0.002, `${v} instead of ${own.box.flat()[k]}`));
   return 'read';
 }
 
-// Name of the writer, extension, and what writes; `floats`: it rounds national coordinates to half a metre, which is told.
+// Name of the writer, extension, what writes, and what is made of national coordinates, if it writes fewer digits.
+const TURNED = 'turned', TOLD = 'told: 0.5 m or worse', REFUSED = 'refused: 0.5 m or worse';
 const writers = [
   ['CloudCompare 2.11.3, ASC', 'asc', cloudCompare('asc', 'ASC', '-PREC', '4')],
   ['CloudCompare 2.11.3, PLY, binary', 'ply', cloudCompare('ply', 'PLY', '-PLY_EXPORT_FMT', 'BINARY_LE')],
-  ['CloudCompare 2.11.3, PLY, text', 'ply', cloudCompare('ply', 'PLY', '-PLY_EXPORT_FMT', 'ASCII')],
-  ['Point Cloud Library 1.13, PCD, text', 'pcd', pcl('0', 'pcd'), { floats: true }],
-  ['Point Cloud Library 1.13, PCD, binary', 'pcd', pcl('1', 'pcd'), { floats: true }],
-  ['Point Cloud Library 1.13, PCD, compressed', 'pcd', pcl('2', 'pcd'), { floats: true }],
-  ['Point Cloud Library 1.13, PCD with a viewpoint', 'pcd', pcl('1', 'pcd', '10,20,1.5,0.70710678,0,0,0.70710678'), { floats: true, turned: true }],
-  ['Point Cloud Library 1.13, PLY', 'ply', pcl('1', 'ply'), { floats: true }],
+  ['CloudCompare 2.11.3, PLY, text', 'ply', cloudCompare('ply', 'PLY', '-PLY_EXPORT_FMT', 'ASCII'), REFUSED],
+  ['Point Cloud Library 1.13, PCD, text', 'pcd', pcl('0', 'pcd'), TOLD],
+  ['Point Cloud Library 1.13, PCD, binary', 'pcd', pcl('1', 'pcd'), TOLD],
+  ['Point Cloud Library 1.13, PCD, compressed', 'pcd', pcl('2', 'pcd'), TOLD],
+  ['Point Cloud Library 1.13, PCD with a viewpoint', 'pcd', pcl('1', 'pcd', '10,20,1.5,0.70710678,0,0,0.70710678'), TURNED],
+  ['Point Cloud Library 1.13, PLY', 'ply', pcl('1', 'ply'), TOLD],
   ['Open3D 0.16.1, XYZ', 'xyz', open3d('xyz')],
   ['Open3D 0.16.1, XYZN', 'xyz', open3d('xyzn')],
   ['Open3D 0.16.1, XYZRGB', 'xyz', open3d('xyzrgb')],
   ['Open3D 0.16.1, PTS', 'pts', open3d('pts')],
-  ['Open3D 0.16.1, PLY, text', 'ply', open3d('ply', ', write_ascii=True')],
+  ['Open3D 0.16.1, PLY, text', 'ply', open3d('ply', ', write_ascii=True'), REFUSED],
   ['Open3D 0.16.1, PLY, binary', 'ply', open3d('ply')],
-  ['Open3D 0.16.1, PCD, text', 'pcd', open3d('pcd', ', write_ascii=True'), { floats: true }],
-  ['Open3D 0.16.1, PCD, compressed', 'pcd', open3d('pcd', ', compressed=True'), { floats: true }],
-  ['three.js 0.180 PLYExporter, text', 'ply', three(false), { floats: true }],
-  ['three.js 0.180 PLYExporter, binary', 'ply', three(true), { floats: true }],
+  ['Open3D 0.16.1, PCD, text', 'pcd', open3d('pcd', ', write_ascii=True')],
+  ['Open3D 0.16.1, PCD, compressed', 'pcd', open3d('pcd', ', compressed=True'), TOLD],
+  ['three.js 0.180 PLYExporter, text', 'ply', three(false), TOLD],
+  ['three.js 0.180 PLYExporter, binary', 'ply', three(true), TOLD],
 ];
 const contents = { plain: {}, far: { origin: [500_000, 5_400_000, 300] } };
 
 console.log(`| writer | ${Object.keys(contents).join(' | ')} |\n| --- | --- | --- |`);
-for (const [name, extension, write, { floats = false, turned = false } = {}] of writers) {
-  const cells = Object.entries(contents).map(([kind, { origin = [0, 0, 0] }]) => {
+for (const [name, extension, write, far = 'read'] of writers) {
+  const cell = (kind, { origin = [0, 0, 0] }) => {
+    const points = content({ origin }), file = at(`cloud.${extension}`);
+    if (far === TURNED && kind === 'far') return '–';
+    fs.writeFileSync(file, write(points));
+    if (kind === 'far' && far !== 'read') {
+      const done = spawnSync(program, ['import', file, '--unit', 'm', '--up', 'z', '-o', at('read.glb')], { cwd: folder, encoding: 'utf8' });
+      assert.match(done.stderr, loss);
+      assert.equal(done.status === 0, far === TOLD);
+      return far;
+    }
+    const is = read(file);
+    assert.doesNotMatch(is.said, loss);
+    if (far !== TURNED) {
+      expectRoom(is, points.length, origin);
+      return 'read';
+    }
+    // The scan is turned by a right angle about its z axis, and moved.
+    assert.match(is.said, /viewpoint moves its points, and is where the scanner stood/);
+    assert.equal(is.count, points.length);
+    [4, 20, 1.5, 10, 28, 4.3].forEach((wanted, k) => assert.ok(Math.abs(is.box.flat()[k] - wanted) <= 0.001, `${is.box} for ${wanted}`));
+    return 'read, where the scanner stood';
+  };
+  const cells = Object.entries(contents).map(([kind, options]) => {
     try {
-      const points = content({ origin }), file = at(`cloud.${extension}`);
-      fs.writeFileSync(file, write(points));
-      if (floats && kind === 'far') {
-        const done = spawnSync(program, ['import', file, '-o', at('read.glb')], { cwd: folder, encoding: 'utf8' });
-        assert.match(done.stderr, /0\.5 m|0\.50 m|only to/, done.stderr);
-        return 'told: floats hold it to 0.5 m';
-      }
-      const is = read(file);
-      if (!turned) {
-        expectRoom(is, points.length, origin);
-        return 'read';
-      }
-      // The scan is turned by a right angle about its z axis, and moved.
-      assert.match(is.said, /viewpoint/);
-      assert.equal(is.count, points.length);
-      [4, 20, 1.5, 10, 28, 4.3].forEach((wanted, k) => assert.ok(Math.abs(is.box.flat()[k] - wanted) <= 0.005, `${is.box} for ${wanted}`));
-      return 'read, where the scanner stood';
+      return cell(kind, options);
     } catch (error) {
       process.exitCode = 1;
       return `WRONG: ${String(error.message).trim().split('\n').slice(0, 3).join(' ')}`;

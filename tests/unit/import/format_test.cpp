@@ -49,6 +49,7 @@ TEST_F(FormatTest, IsToldByContent) {
       {"text.stl", "solid a\n facet normal 0 0 1\n", "STL"},
       {"capitals.stl", "SOLID a\n FACET NORMAL 0 0 1\n  VERTEX 1 2 3\n  VERTEX 1 2 4\n", "STL"},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nend_header\n", "PLY"},
+      {"words.ply", "ply\nformat ascii 1.0\nobj_info no end_header yet\nelement face 1\nend_header\n", "PLY"},
       {"a.fbx", "Kaydara FBX Binary  \0\x1A\0"s, "FBX"},
       {"text.fbx", "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n", "FBX"},
       {"a.dae", "<?xml version=\"1.0\"?>\n<!-- made by hand -->\n<COLLADA xmlns=\"a\">", "COLLADA"},
