@@ -239,6 +239,12 @@ TEST_F(FloorPlanFormsTest, TextsAreWhereTheyShow) {
   expect_rooms("seen from below", d, {{"Office", 160'000}, {"Store", 156'000}});
 }
 
+TEST_F(FloorPlanFormsTest, WhatIsDrawnTwiceCountsOnce) {
+  DrawingText d = room();
+  d.line(kWall, 2.8, 0, 0, 0), d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 5.01, 1.99, "East");
+  expect_rooms("lines, names and a shadow", d, kOne, 0);
+}
+
 TEST_F(FloorPlanFormsTest, WallsThatMissEachOtherByCentimetresAreJoined) {
   for (const double miss : {0.001, 0.01, 0.04, 0.049}) {
     const std::string what = std::to_string(miss);
