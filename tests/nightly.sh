@@ -12,7 +12,8 @@
 #   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
-#   readers    point clouds in PLY as the Point Cloud Library, CloudCompare and Open3D read them (needs pcl-tools, cloudcompare and python3-open3d)
+#   readers    point clouds in PLY as the Point Cloud Library, CloudCompare and Open3D read them (needs pcl-tools, cloudcompare and python3-open3d);
+#              PLY, GLB and the system of LAS as three.js and proj4 do
 #   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; floor plans as GDAL (needs gdal-bin), dxf-writer and
 #              @tarikjabiri/dxf do; point clouds as CloudCompare, the Point Cloud Library, Open3D (needs the same packages), three.js and web-e57 do;
 #              200 random files of meshes
@@ -82,6 +83,8 @@ readers() {
   cloud_programs || return 1
   run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
   run node tests/clients/cloudcompare.mjs "$PWD/build/release/vantage"
+  npm ci --prefix tests/writers >/dev/null
+  run node --no-warnings tests/writers/readers.mjs "$PWD/build/release/vantage"
 }
 writers() {
   cloud_programs || return 1
