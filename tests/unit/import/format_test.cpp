@@ -90,6 +90,7 @@ TEST_F(FormatTest, IsToldByContent) {
 TEST_F(FormatTest, ExtensionDecidesWhatContentDoesNot) {
   EXPECT_STREQ(importers::recognise(write("cut.stl", binary_stl(2).substr(0, 120))).format->name, "STL");
   EXPECT_STREQ(importers::recognise(write("cut.fbx", "Kaydara")).format->name, "FBX");
+  EXPECT_STREQ(importers::recognise(write("wide.x3d", "\xFF\xFE<\0X\0"s)).format->name, "X3D");
   EXPECT_STREQ(importers::recognise(write("cut.glb", "glT")).format->name, "glTF");
   EXPECT_STREQ(importers::recognise(folder_ / "not_there.obj").format->name, "glTF");  // whose loader says so
 }
@@ -115,6 +116,8 @@ TEST_F(FormatTest, WhatIsNoModelIsRefusedByItsName) {
       {"a.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "a STEP file"},
       {"a.ifcxml", "<?xml version=\"1.0\"?><ifc:ifcXML xmlns=\"a\">", "ifcXML"},
       {"a.gml", "<?xml version=\"1.0\"?><core:CityModel>", "CityGML"},
+      {"a.csv", "\xFF\xFEx\0,\0y\0"s, "a text in UTF-16"},
+      {"a.dxf", "\xFE\xFF\0000\0\n"s, "a text in UTF-16"},
       {"a.txt", "What stands here is prose.\nNothing else.\n", "no model that vantage knows"},
   };
   for (const auto& other : others) {
