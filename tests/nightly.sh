@@ -12,9 +12,11 @@
 #   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
 #              (needs root, a mirror, lintian and mmdebstrap)
 #   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
-#   readers    point clouds in PLY as the Point Cloud Library reads them (needs pcl-tools)
+#   readers    point clouds in PLY as the Point Cloud Library, CloudCompare and Open3D read them (needs pcl-tools, cloudcompare and python3-open3d);
+#              PLY, GLB and the system of LAS as three.js and proj4 do
 #   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; floor plans as GDAL (needs gdal-bin), dxf-writer and
-#              @tarikjabiri/dxf do; 200 random files of meshes
+#              @tarikjabiri/dxf do; point clouds as CloudCompare, the Point Cloud Library, Open3D (needs the same packages), three.js and web-e57 do;
+#              200 random files of meshes
 #   fuzz       ten minutes of libFuzzer a reader; needs clang
 #   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
 set -euo pipefail
@@ -70,14 +72,26 @@ docs() {
   run mkdocs build
   run tests/docs/check_commands.py build/release . --night
 }
+cloud_programs() {
+  local program
+  for program in pcl_ply2pcd:pcl-tools CloudCompare:cloudcompare; do
+    command -v ${program%:*} >/dev/null || { echo "nightly: ${program%:*} is not installed (Debian: ${program#*:})"; return 1; }
+  done
+  /usr/bin/python3 -c 'import open3d' || { echo "nightly: Open3D is not installed (Debian: python3-open3d)"; return 1; }
+}
 readers() {
-  command -v pcl_ply2pcd >/dev/null || { echo "nightly: pcl_ply2pcd is not installed (Debian: pcl-tools)"; return 1; }
+  cloud_programs || return 1
   run node tests/clients/pcl.mjs "$PWD/build/release/vantage"
+  run node tests/clients/cloudcompare.mjs "$PWD/build/release/vantage"
+  npm ci --prefix tests/writers >/dev/null
+  run node --no-warnings tests/writers/readers.mjs "$PWD/build/release/vantage"
 }
 writers() {
+  cloud_programs || return 1
   npm ci --prefix tests/writers >/dev/null
   run node --no-warnings tests/writers/meshes.mjs "$PWD/build/release/vantage"
   run node tests/writers/plans.mjs "$PWD/build/release/vantage"
+  run node --experimental-wasm-modules --no-warnings tests/writers/clouds.mjs "$PWD/build/release/vantage"
   VANTAGE_SEEDS=1..200 run "$tests/unit/import/import_test" --gtest_brief=1 --gtest_filter='RandomMeshTest.*'
 }
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }

@@ -142,12 +142,12 @@ bool holds_numbers(std::string_view text) {
 
 // A PLY's header may say that it has no faces.
 bool ply_without_faces(std::string_view text) {
-  const std::size_t end = text.find("end_header");
-  if (end == std::string_view::npos) return false;
-  for (const std::string_view line : first_lines(text.substr(0, end), 1000))
+  for (const std::string_view line : first_lines(text, 1000)) {
+    if (line.starts_with("end_header")) return true;
     if ((line.starts_with("element face") || line.starts_with("element tristrips")) && !line.ends_with(" 0"))
       return false;
-  return true;
+  }
+  return false;
 }
 
 // The name of an XML document's root element, in lower case.
@@ -183,12 +183,21 @@ std::optional<Head> read_head(const std::filesystem::path& file) {
   return head;
 }
 
+// A text of two bytes a letter that is no XML, whose readers know it.
+bool is_wide_text(std::string_view bytes) {
+  const auto begins = [&](std::string_view mark, std::size_t letter) {
+    return bytes.size() >= 4 && bytes.starts_with(mark) && bytes[letter] != '<' && bytes[5 - letter] == '\0';
+  };
+  return begins("\xFF\xFE", 2) || begins("\xFE\xFF", 3);
+}
+
 // Describes content that is no model of surfaces; empty if the content does not show it.
 std::string mistaken_for_a_model(const Head& head) {
   if (head.bytes.empty()) return "empty; copy or export it again";
   const std::string_view text = without_blanks(head.bytes);
   for (const Mistaken& other : kMistaken)
     if (std::string_view(head.bytes).starts_with(other.begins) || text.starts_with(other.begins)) return other.is;
+  if (is_wide_text(head.bytes)) return "a text in UTF-16; save or export it as UTF-8";
   if (text.starts_with("{") && text.find("ifcx") != std::string::npos && text.find("\"asset\"") == std::string::npos)
     return "IFC 5 (ifcx), a draft that no importer reads; export IFC 4.3 or IFC 4 as STEP text (.ifc)";
   if (text.starts_with("<")) {

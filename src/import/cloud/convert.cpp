@@ -154,7 +154,10 @@ class Converter {
   Density density_of(double scale) {
     Density density(scale);
     read(0, 0.3, [&](const PointBlock& block) {
-      for (const Eigen::Vector3d& p : block.positions) density.add(p);
+      for (const Eigen::Vector3d& p : block.positions) {
+        density.add(p);
+        floats_ = floats_ && p.array() == p.array().cast<float>().cast<double>();
+      }
     });
     points_ = density.points();
     return density;
@@ -269,7 +272,24 @@ class Converter {
       unknown_.add(region, unknown, grid_->cell_m(), true);
       unknown_m2_ += square_m2 * static_cast<double>(unknown.size()) / std::max(region.normal.z(), kGround);
     }
-    if (triangles() == 0) throw Refused("no surface shows in its points; export more of them");
+    if (triangles() > 0) return;
+    const std::string coarse = coarse_note();
+    throw Refused("no surface shows in its points; " + (coarse.empty() ? "export more of them" : coarse));
+  }
+
+  // Empty unless the coordinates are told in steps of more than a twentieth of a cell, which bend what should be flat.
+  std::string coarse_note() const {
+    constexpr double kCoarse = 0.05;
+    double step = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto middle = static_cast<float>(std::abs(grid_->middle()[axis]));
+      if (source_->floats() || floats_[axis])
+        step = std::max(step, static_cast<double>(std::nextafter(middle, HUGE_VALF) - middle));
+    }
+    if (step <= kCoarse * grid_->cell_m()) return {};
+    return "its coordinates have no more digits than float32, which so far from 0 are told only to " +
+           with_unit(step, metric_ ? "m" : "of the file's unit") +
+           " or worse; export doubles, or coordinates about a nearer origin";
   }
 
   std::size_t triangles() const {
@@ -296,14 +316,7 @@ class Converter {
                            ? "the file does not say where its scans were taken: what lies between points counts as free"
                            : counted(scans - posed_, "scans have no pose: what lies between points counts as free"));
     if (!unit_note_.empty()) notes_.push_back(unit_note_);
-    // Steps of more than a twentieth of a cell bend what should be flat.
-    constexpr double kCoarse = 0.05;
-    const auto farthest = static_cast<float>(grid_->middle().cwiseAbs().maxCoeff());
-    const double step = static_cast<double>(std::nextafter(farthest, HUGE_VALF) - farthest);
-    if (source_->floats() && step > kCoarse * grid_->cell_m())
-      notes_.push_back("its coordinates are float32, which so far from 0 are told only to " +
-                       with_unit(step, metric_ ? "m" : "of the file's unit") +
-                       "; export doubles, or coordinates about a nearer origin");
+    if (const std::string coarse = coarse_note(); !coarse.empty()) notes_.push_back(coarse);
     if (metric_ && unknown_m2_ >= 0.1)
       notes_.push_back(
           with_unit(unknown_m2_, "m² of ground lie below space that no scan saw; no station stands there"));
@@ -340,6 +353,8 @@ class Converter {
   std::string unit_note_;
   std::optional<CellGrid> grid_;
   std::uint64_t points_ = 0, far_ = 0;
+  // Whether all coordinates along an axis are numbers of float32.
+  Eigen::Array<bool, 3, 1> floats_ = Eigen::Array<bool, 3, 1>::Constant(true);
   std::size_t posed_ = 0;  // scans with a pose
   double unknown_m2_ = 0;
   Surface floors_{"floors"}, ceilings_{"ceilings"}, walls_{"walls"}, slopes_{"slopes"},

@@ -151,6 +151,13 @@ std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, cons
   else if (plan.rooms.closed_m > 0)
     notes.push_back("the outer walls do not close; gaps of up to " + fixed(plan.rooms.closed_m, 1) +
                     " m are closed to find the rooms");
+  if (!drawing.thicknesses.empty()) {
+    std::size_t all = 0;
+    for (const auto& [height, times] : drawing.thicknesses) all += times;
+    const auto most = std::ranges::max_element(drawing.thicknesses, {}, [](const auto& pair) { return pair.second; });
+    notes.push_back(counted(all, "line") + " with a thickness, mostly of " + fixed(most->first * scale.metres, 2) +
+                    " m, raised like the others (setting wall-height)");
+  }
   add_left_out(notes, drawing, walls, swings);
   return notes;
 }

@@ -106,6 +106,7 @@ struct Drawing {
   int unit_code = 0;                          // $INSUNITS
   bool in_inches = false;                     // lengths are shown in feet and inches ($LUNITS)
   std::map<EntityKey, std::size_t> entities;  // all that the file holds, as often as it is placed
+  std::map<double, std::size_t> thicknesses;  // heights that entities state, and of how many
 };
 
 // Reads the model space of a DXF; coordinates are the file's. Layers that match `wall_layers` (shell patterns, case

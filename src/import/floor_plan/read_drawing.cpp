@@ -143,8 +143,13 @@ class Reader {
     read_dxf(file, {.header = [&](const auto& variables) { read_header(variables); },
                     .layer = [&](const Entity& layer) { add_layer(layer); },
                     .begin_block = [&](const Entity& block) { begin_block(block); },
-                    .entity = [&](const Entity& entity, const std::vector<Entity>& parts,
-                                  bool in_block) { add_entity(entity, parts, layers, in_block ? *block_ : model); }});
+                    .entity =
+                        [&](const Entity& entity, const std::vector<Entity>& parts, bool in_block) {
+                          constexpr int kThickness = 39;
+                          if (const double height = std::abs(entity.number(kThickness)); height > 0)
+                            ++drawing_.thicknesses[height];
+                          add_entity(entity, parts, layers, in_block ? *block_ : model);
+                        }});
   }
 
  private:

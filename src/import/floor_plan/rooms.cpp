@@ -35,14 +35,20 @@ struct Names {
   std::string text;
   std::size_t labels = 0;
   const Text* last = nullptr;
+  std::vector<const Text*> taken;
 
   void add(const Text& next) {
     constexpr std::size_t kMostLabels = 3, kLongest = 60;
     constexpr double kLine = 2.5;  // heights of a text
-    const bool goes_on =
-        last && distance(last->insertion, next.insertion) <= kLine * std::max(last->height, next.height);
+    const auto near = [&](const Text* other) {
+      return distance(other->insertion, next.insertion) <= kLine * std::max(other->height, next.height);
+    };
+    // A text that is drawn twice, or has a shadow, counts once.
+    if (std::ranges::any_of(taken, [&](const Text* other) { return other->text == next.text && near(other); })) return;
+    const bool goes_on = last && near(last);
     last = &next;
     if (text.size() + next.text.size() > kLongest || (!goes_on && labels >= kMostLabels)) return;
+    taken.push_back(&next);
     labels += !goes_on;
     text += (text.empty() ? "" : goes_on ? " " : " / ") + next.text;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models in DXF: faces, meshes of polygons and of faces, filled quadrilaterals, and the blocks that place them. Each
-// layer is a mesh, each placed block a node.
+// Models in DXF: faces, meshes of polygons and of faces, filled quadrilaterals, lines with a thickness, and the blocks
+// that place them. Each layer is a mesh, each placed block a node.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "import/floor_plan/dxf.hpp"
 #include "import/floor_plan/labels.hpp"
 #include "import/floor_plan/layers.hpp"
+#include "import/mesh/dxf_thickness.hpp"
 #include "import/mesh/polygon.hpp"
 #include "import/mesh/sources.hpp"
 #include "import/program.hpp"
@@ -50,15 +51,6 @@ glm::dvec3 point_of(const Entity& entity, int code) {
   return {entity.number(code), entity.number(code + 10), entity.number(code + 20)};
 }
 
-// The world from an entity's object coordinates.
-glm::dmat4 world_from_object(const Entity& entity) {
-  glm::dmat4 out(1);
-  const floor_plan::Axes axes = floor_plan::object_axes(entity);
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) out[c][r] = axes[static_cast<std::size_t>(c)][static_cast<std::size_t>(r)];
-  return out;
-}
-
 class DxfModel {
  public:
   DxfModel() {
@@ -96,8 +88,8 @@ class DxfModel {
     const auto code = variables.find("$INSUNITS");
     const auto* unit = code == variables.end() ? nullptr : floor_plan::unit_of_code(integer(code->second));
     if (!unit) return;
-    model_.unit = true;
-    for (int c = 0; c < 3; ++c) model_.nodes[0].outer_from_node[c] *= unit->metres;
+    model_.unit = true, metres_ = unit->metres;
+    for (int c = 0; c < 3; ++c) model_.nodes[0].outer_from_node[c] *= metres_;
   }
   void add_layer(const Entity& layer) {
     constexpr int kFrozen = 1;
@@ -147,7 +139,10 @@ class DxfModel {
     constexpr int kPolygons = 16, kFaces = 64;
     const int flags = entity.type == "POLYLINE" ? entity.integer(70) : 0;
     if ((flags & kFaces) != 0) return add_faces(parts, part);
-    return (flags & kPolygons) != 0 && add_polygons(entity, parts, part);
+    if ((flags & kPolygons) != 0) return add_polygons(entity, parts, part);
+    const auto faces = faces_of_thick_line(entity, parts, metres_);
+    for (const auto& face : faces) add_fan(part, face);
+    return !faces.empty();
   }
 
   static void add_triangle(Part& part, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -327,6 +322,7 @@ class DxfModel {
   std::map<std::string, LayerState> layers_;
   std::map<std::string, std::string> names_;
   std::string code_page_;
+  double metres_ = 0;  // of the unit, if it is known
   Counts hidden_;
   std::size_t placed_ = 0, smoothed_ = 0;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models in DXF: each form of a face, and blocks that place a box of 2 x 1 x 3 m, stand where they are drawn.
+#include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "drawing.hpp"
 #include "import_fixture.hpp"
@@ -130,6 +132,68 @@ TEST_F(DxfModelTest, EveryFormOfAFaceIsRead) {
   const Measures& pipe = found.at("polygons");
   EXPECT_NEAR(pipe.area_m2, 18, 1e-4);
   EXPECT_NEAR(pipe.bounds.min.y, 30, 1e-5);
+}
+
+TEST_F(DxfModelTest, LinesWithAThicknessStandUp) {
+  DrawingText d = boxed();
+  d.insert("0", "Box", 500, 0);
+  // Forms stand in a row along y, since of faces that coincide one is read.
+  const auto vertex = [](double x, double y, const std::string& more = "") {
+    return "10\n" + std::to_string(1000 * x) + "\n20\n" + std::to_string(1000 * y) + "\n" + more;
+  };
+  const auto line = [](double y) { return point_groups(10, {0, y, 1}) + point_groups(11, {3, y + 4, 1}); };
+  const auto rectangle = [&](double y) {
+    return "90\n4\n70\n1\n" + vertex(0, y) + vertex(4, y) + vertex(4, y + 2) + vertex(0, y + 2);
+  };
+  const std::string up = "39\n3000\n", below = "210\n0\n220\n0\n230\n-1\n", bow = "42\n1\n";
+  d.raw("LINE", "line", up + line(0));
+  d.raw("LINE", "down", "39\n-3000\n" + line(10));
+  d.raw("LINE", "line from below", up + below + line(20));
+  d.raw("LINE", "lying", up + "210\n1\n220\n0\n230\n0\n" + line(30));
+  d.raw("LWPOLYLINE", "ring", "38\n500\n" + up + rectangle(40));
+  d.raw("LWPOLYLINE", "ring from below", "38\n500\n" + up + rectangle(50) + below);
+  d.raw("LWPOLYLINE", "wide", "43\n200\n" + up + rectangle(60));
+  d.raw("LWPOLYLINE", "bent", "90\n3\n70\n0\n43\n200\n" + up + vertex(0, 70) + vertex(4, 70) + vertex(4, 72));
+  d.raw("LWPOLYLINE", "round", "90\n2\n70\n1\n" + up + vertex(0, 80, bow) + vertex(2, 80, bow));
+  d.raw("CIRCLE", "circle", up + point_groups(10, {2, 90, 1}) + "40\n1000\n");
+  d.raw("ARC", "arc", up + point_groups(10, {2, 100, 1}) + "40\n1000\n50\n270\n51\n90\n");
+  std::string old;
+  for (const auto& [x, y] : {std::pair{0, 110}, std::pair{4, 110}, std::pair{4, 112}})
+    old += "0\nVERTEX\n8\nold\n" + point_groups(10, {double(x), double(y), 0});
+  d.raw("POLYLINE", "old", "66\n1\n70\n1\n" + up + point_groups(10, {0, 0, 0.5}) + old + "0\nSEQEND\n");
+  d.raw("POLYLINE", "in space", "66\n1\n70\n8\n" + up + old + "0\nSEQEND\n");
+  d.line("flat", 0, 0, 5, 0);
+  const Scene scene = load(d);
+  const auto found = measures_of(scene, false);
+  const double round = 2 * std::numbers::pi;
+  const auto near = [&](const char* layer, double area, double volume, const Vec3& low, const Vec3& high) {
+    SCOPED_TRACE(layer);
+    ASSERT_TRUE(found.contains(layer));
+    const Measures& is = found.at(layer);
+    EXPECT_NEAR(is.area_m2, area, 0.004 * area);
+    if (volume > 0) {
+      EXPECT_NEAR(is.volume_m3, volume, 0.008 * volume);
+    }
+    for (const auto& [a, b] : {std::pair{is.bounds.min, low}, std::pair{is.bounds.max, high}}) {
+      EXPECT_NEAR(a.x, b.x, 0.005);
+      EXPECT_NEAR(a.y, b.y, 0.005);
+      EXPECT_NEAR(a.z, b.z, 1e-4);
+    }
+  };
+  near("line", 15, 0, {0, 0, 1}, {3, 4, 4});
+  near("down", 15, 0, {0, 10, -2}, {3, 14, 1});
+  near("line from below", 15, 0, {0, 20, -2}, {3, 24, 1});
+  near("lying", 12, 0, {0, 30, 1}, {6, 34, 1});
+  near("ring", 36, 0, {0, 40, 0.5}, {4, 42, 3.5});
+  near("ring from below", 36, 0, {-4, 50, -3.5}, {0, 52, -0.5});
+  near("wide", 3 * (12.8 + 11.2) + 2 * 2.4, 3 * 2.4, {-0.1, 59.9, 0}, {4.1, 62.1, 3});
+  near("bent", 3 * (12 + 2 * 0.2) + 2 * 1.2, 3 * 1.2, {0, 69.9, 0}, {4.1, 72, 3});
+  near("round", 3 * round, 0, {0, 79, 0}, {2, 81, 3});
+  near("circle", 4 * round, 1.5 * round, {1, 89, 1}, {3, 91, 4});
+  near("arc", 1.5 * round, 0, {2, 99, 1}, {3, 101, 4});
+  near("old", 3 * (6 + std::sqrt(20)), 0, {0, 110, 0.5}, {4, 112, 3.5});
+  EXPECT_FALSE(found.contains("flat"));
+  expect_note(scene, "1 LINE on flat, 1 POLYLINE on in space");
 }
 
 TEST_F(DxfModelTest, WhatIsLeftOutIsTold) {

@@ -179,10 +179,12 @@ TEST_F(FloorPlanFormsTest, WhatIsNotReadIsTold) {
   DrawingText d = room();
   d.raw("REGION", kWall), d.raw("REGION", kWall), d.raw("DIMENSION", "A-DIM"), d.insert(kWall, "elsewhere", 0, 0);
   d.circle("GRID", 2, 2, 0.5);
+  d.raw("LINE", kWall, "39\n3.2\n10\n-0.2\n20\n-0.2\n11\n1\n21\n-0.2\n");
   const Scene scene = load(d);
   for (const char* note : {"not read (A-DIM: 1 DIMENSION; A-WALL: 2 REGION)",
                            "blocks and external references that the file does not hold (A-WALL: 1 INSERT of elsewhere)",
-                           "no part of walls, doors, windows, furniture or stairs (GRID: 1 CIRCLE)"})
+                           "no part of walls, doors, windows, furniture or stairs (GRID: 1 CIRCLE)",
+                           "1 line with a thickness, mostly of 3.20 m, raised like the others"})
     EXPECT_NE(notes_of(scene).find(note), std::string::npos) << note << " is not in\n" << notes_of(scene);
 }
 
@@ -235,6 +237,12 @@ TEST_F(FloorPlanFormsTest, TextsAreWhereTheyShow) {
   d.end_block();
   d.insert("A-TEXT", "TAG", 5, 2);
   expect_rooms("seen from below", d, {{"Office", 160'000}, {"Store", 156'000}});
+}
+
+TEST_F(FloorPlanFormsTest, WhatIsDrawnTwiceCountsOnce) {
+  DrawingText d = room();
+  d.line(kWall, 2.8, 0, 0, 0), d.text("A-TEXT", 1.5, 2, "West"), d.text("A-TEXT", 5.01, 1.99, "East");
+  expect_rooms("lines, names and a shadow", d, kOne, 0);
 }
 
 TEST_F(FloorPlanFormsTest, WallsThatMissEachOtherByCentimetresAreJoined) {

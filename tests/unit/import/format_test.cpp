@@ -49,6 +49,7 @@ TEST_F(FormatTest, IsToldByContent) {
       {"text.stl", "solid a\n facet normal 0 0 1\n", "STL"},
       {"capitals.stl", "SOLID a\n FACET NORMAL 0 0 1\n  VERTEX 1 2 3\n  VERTEX 1 2 4\n", "STL"},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nend_header\n", "PLY"},
+      {"words.ply", "ply\nformat ascii 1.0\nobj_info no end_header yet\nelement face 1\nend_header\n", "PLY"},
       {"a.fbx", "Kaydara FBX Binary  \0\x1A\0"s, "FBX"},
       {"text.fbx", "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n", "FBX"},
       {"a.dae", "<?xml version=\"1.0\"?>\n<!-- made by hand -->\n<COLLADA xmlns=\"a\">", "COLLADA"},
@@ -89,6 +90,7 @@ TEST_F(FormatTest, IsToldByContent) {
 TEST_F(FormatTest, ExtensionDecidesWhatContentDoesNot) {
   EXPECT_STREQ(importers::recognise(write("cut.stl", binary_stl(2).substr(0, 120))).format->name, "STL");
   EXPECT_STREQ(importers::recognise(write("cut.fbx", "Kaydara")).format->name, "FBX");
+  EXPECT_STREQ(importers::recognise(write("wide.x3d", "\xFF\xFE<\0X\0"s)).format->name, "X3D");
   EXPECT_STREQ(importers::recognise(write("cut.glb", "glT")).format->name, "glTF");
   EXPECT_STREQ(importers::recognise(folder_ / "not_there.obj").format->name, "glTF");  // whose loader says so
 }
@@ -114,6 +116,8 @@ TEST_F(FormatTest, WhatIsNoModelIsRefusedByItsName) {
       {"a.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "a STEP file"},
       {"a.ifcxml", "<?xml version=\"1.0\"?><ifc:ifcXML xmlns=\"a\">", "ifcXML"},
       {"a.gml", "<?xml version=\"1.0\"?><core:CityModel>", "CityGML"},
+      {"a.csv", "\xFF\xFEx\0,\0y\0"s, "a text in UTF-16"},
+      {"a.dxf", "\xFE\xFF\0000\0\n"s, "a text in UTF-16"},
       {"a.txt", "What stands here is prose.\nNothing else.\n", "no model that vantage knows"},
   };
   for (const auto& other : others) {

@@ -267,6 +267,30 @@ TEST_F(ConvertTest, FloatsAtNationalCoordinatesAreTold) {
   EXPECT_FALSE(told({100, 60, 3}, "float"));
 }
 
+// Some programs write as few digits as they show, and some floats as doubles.
+TEST_F(ConvertTest, CoordinatesOfFewDigitsAreTold) {
+  const auto said = [this](const char* format, double east) {
+    std::string lines;
+    for (const Eigen::Vector3d& p : Room().scan({3, 2, 1.5}, 0.5, 0.001)) {
+      char line[96];
+      std::snprintf(line, sizeof line, format, p.x() + east, p.y() + 5'400'000, p.z() + 300);
+      lines += line;
+    }
+    try {
+      const Scene scene = scene_of(write("a.xyz", lines), "xyz");
+      std::string all;
+      for (const std::string& note : scene.notes()) all += note + "\n";
+      return all;
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+  };
+  const std::string told = "told only to 0.5 ";
+  EXPECT_NE(said("%.6g %.6g %.6g\n", 500'000).find(told), std::string::npos) << said("%.6g %.6g %.6g\n", 500'000);
+  EXPECT_NE(said("%.7g %.7g %.7g\n", 500'000).find(told), std::string::npos);
+  EXPECT_EQ(said("%.3f %.3f %.3f\n", 500'000).find(told), std::string::npos);
+}
+
 TEST_F(ConvertTest, AnotherAxisMayPointUp) {
   const auto file = write("a.xyz", room_text(1, {7, 2.8, 5}));
   const auto glb = folder_.path() / "up.glb";

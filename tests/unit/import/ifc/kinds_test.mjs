@@ -406,6 +406,17 @@ test("an opening is cut out of its own wall alone, though walls share a shape", 
   near(products.get("closed").volume, 2.4, 1e-3);
 });
 
+test("openings leave the surface of their wall and add their reveals", () => {
+  const t = new StepText(), wall = t.product("IFCWALL", "wall", t.shape([t.representation([t.box([10, 0.2, 3])])]));
+  // Each reaches out of the wall, which has its middle between y = 0 and 0.2.
+  const open = (size, corner) => t.open(wall, t.product("IFCOPENINGELEMENT", "opening", t.shape([t.representation([t.box(size, corner)])]), { stands: false }));
+  for (let k = 0; k < 6; ++k) open([0.8, 0.4, 1.2], [0.5 + 1.2 * k, -0.1, 0.9]);
+  open([1, 0.4, 2.1], [8.5, -0.1, 0]);
+  const is = readBack(t.text()).products.get("wall");
+  near(is.volume, 0.2 * (30 - 6 * 0.96 - 2.1), 1e-3);
+  near(is.area, 2 * (30 + 2 + 0.6) - 6 * (2 * 0.96 - 4 * 0.2) - (2 * 2.1 - 5.2 * 0.2) - 0.2, 1e-3);
+});
+
 const mapped = (t, numbers, { name = "EPSG:25832", unit = "$", type = "IFCMAPCONVERSION" } = {}) =>
   t.add(type, t.context, t.add("IFCPROJECTEDCRS", `'${name}'`, "$", "$", "$", "$", "$", unit), ...numbers.map((v) => (v === null ? "$" : real(v))));
 

@@ -12,7 +12,7 @@ const api = new ifc.IfcAPI();
 await api.Init();
 api.SetLogLevel(ifc.LogLevel.LOG_LEVEL_OFF);
 
-// {notes, crs, products}: by name {volume, min, max, glass}, lengths in metres, z up; glass is its area in m².
+// {notes, crs, products}: by name {volume, area, min, max, glass}, lengths in metres, z up; glass is its area in m².
 export function readBack(texts, unit) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "ifc-"));
   try {
@@ -42,7 +42,7 @@ function measure(glb) {
     const m = node.matrix ?? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
     // Volumes are taken about the node's origin, which may be far away; what mirrors turns faces.
     const flip = Math.sign(m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]));
-    const all = { volume: 0, min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity], glass: 0, id: about.id, class: about.class };
+    const all = { volume: 0, area: 0, min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity], glass: 0, id: about.id, class: about.class };
     for (const primitive of json.meshes[node.mesh].primitives) {
       const positions = array(primitive.attributes.POSITION), indices = array(primitive.indices), glass = json.materials?.[primitive.material]?.name === "glass";
       const corner = (i) => {
@@ -53,6 +53,7 @@ function measure(glb) {
         const [a, b, c] = [0, 1, 2].map((k) => corner(indices[t + k]));
         const n = [0, 1, 2].map((i) => (b[(i + 1) % 3] - a[(i + 1) % 3]) * (c[(i + 2) % 3] - a[(i + 2) % 3]) - (b[(i + 2) % 3] - a[(i + 2) % 3]) * (c[(i + 1) % 3] - a[(i + 1) % 3]));
         all.volume += flip * (a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) / 6;
+        all.area += Math.hypot(...n) / 2;
         if (glass) all.glass += Math.hypot(...n) / 2;
         for (const p of [a, b, c]) for (let i = 0; i < 3; ++i) {
           const v = p[i] + [m[12], -m[14], m[13]][i];
