@@ -9,12 +9,12 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "core/add_saturating.hpp"
+#include "core/first_numbers.hpp"
 #include "core/lru_cache.hpp"
 #include "core/parallel.hpp"
 #include "core/parse.hpp"
@@ -317,8 +317,7 @@ struct Simulator::Impl {
   }
   // The same of every voxel.
   std::vector<MeshVoxels> count_meshes(std::span<const std::uint32_t> points) {
-    std::vector<std::uint32_t> voxel_indices(grid->size());
-    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+    std::vector<std::uint32_t> voxel_indices = first_numbers<std::uint32_t>(grid->size());
     return std::move(count_meshes(points, voxel_indices, 0, 1).front());
   }
   // Fills the counts by mesh of a sample, and of its groups.
@@ -379,8 +378,7 @@ struct Simulator::Impl {
                       const RegistrationModel& model, const std::stop_token& stop) {
     const bool kept = grid->size() <= kKeptPlanes;
     const auto planes = [&](std::size_t first, std::size_t many) -> std::shared_ptr<const Patches> {
-      std::vector<std::uint32_t> voxel_indices(many);
-      std::iota(voxel_indices.begin(), voxel_indices.end(), static_cast<std::uint32_t>(first));
+      std::vector<std::uint32_t> voxel_indices = first_numbers<std::uint32_t>(many, static_cast<std::uint32_t>(first));
       if (kept) {
         const std::optional<RegistrationJob> job = registration_of(voxel_indices, 0, model, false, stop);
         return job ? job->patches : nullptr;
