@@ -169,8 +169,8 @@ struct ScanPoints {
 /// As the size of a sample: all surveyed voxels.
 inline constexpr std::uint64_t every_voxel = std::numeric_limits<std::uint64_t>::max();
 
-/// How `Simulator::evaluate` works.
-struct EvaluateOptions {
+/// How `Simulator::evaluate` and `evaluate_each` trace every ray.
+struct EveryRayOptions {
   bool overlap = true;  ///< Keeps station masks and counts pairs.
   bool skip = true;     ///< Leaves out rays and parts of rays that cannot reach a surveyed voxel. Counts do not change.
   VoxelField* field = nullptr;  ///< Receives the voxel field, if given.
@@ -185,7 +185,6 @@ struct EvaluateOptions {
   std::optional<BeamOptions> beam = std::nullopt;
 };
 
-/// Sample and outputs of a sampled evaluation.
 /// Points of a voxel that are counted. Fewer rays do for fewer.
 enum class CountTo {
   all,
@@ -193,6 +192,7 @@ enum class CountTo {
   one,   ///< Whether there is any: pairs and registration are right, and no coverage.
 };
 
+/// Sample and outputs of `Simulator::evaluate_sampled`.
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels, capped at all of them.
   /// Number of voxels passed over first, in the order of the draw. Samples of n voxels from 0, n, 2n, … are disjoint
@@ -281,11 +281,11 @@ class Simulator {
   ScanPoints scan_points(const Station& station, const ScanOptions& options = {}, const Progress& progress = {});
 
   /// Counts every ray of every station. Sets `cancelled` if stopped. REQUIRES: 1 to `max_stations` stations.
-  NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});
+  NetworkCounts evaluate(const Network& network, const EveryRayOptions& options = {}, const Progress& progress = {});
 
   /// Evaluates each network as evaluate() does, spread over the devices. If stopped, networks that were not reached
   /// have `cancelled` set. REQUIRES: no field.
-  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options = {},
+  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EveryRayOptions& options = {},
                                            const Progress& progress = {});
 
   /// Evaluates networks on a sample of the voxels; one submission for all.

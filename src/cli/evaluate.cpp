@@ -14,6 +14,7 @@
 #include "cli/stations.hpp"
 #include "core/options_json.hpp"
 #include "export/run_json.hpp"
+#include "export/shown_links.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -225,7 +226,7 @@ EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simu
 // Pictures and drawings show the links of the summary, unless those of the method are asked for.
 StationLinks drawn_links(const EvaluateCommandOptions& options, const Evaluation& found) {
   if (options.link_overlap) return station_links(found.overlap_matrix, *options.link_overlap, found.stations);
-  return found.links().value_or(StationLinks{.least = found.link_overlap});
+  return links_to_draw(found);
 }
 
 // `judged`: where it was looked at.

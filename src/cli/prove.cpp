@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numeric>
+
+#include "core/first_numbers.hpp"
 
 namespace vantage::cli {
 
@@ -31,9 +32,7 @@ void prove(const std::filesystem::path& file, Site& site, std::span<const Placed
     return;
   }
   // The plan is evaluated on the voxels of the bound, so that the sample favours neither.
-  std::vector<std::size_t> plan(stations.size()), existing(kept);
-  std::iota(plan.begin(), plan.end(), first);
-  std::iota(existing.begin(), existing.end(), first);
+  const std::vector<std::size_t> plan = first_numbers(stations.size(), first);
   AttainableCounts attainable = candidates.attainable_counts();
   CoverageMatrix matrix = sampled.matrix();
   for (const std::size_t k : plan)
@@ -44,7 +43,7 @@ void prove(const std::filesystem::path& file, Site& site, std::span<const Placed
   };
   const Estimate reached = reached_by(plan);
   const CoverSolution bound =
-      max_cover({.matrix = matrix, .existing = std::move(existing), .most = placed}, {}, progress);
+      max_cover({.matrix = matrix, .existing = first_numbers(kept, first), .most = placed}, {}, progress);
   const double gap = CoverSolution::relative_gap(bound.bound, reached.value);
   spdlog::info(
       "within {:.1f} % of the best that any {} stations can do: {} {:.4f} ± {:.4f} on a sample, where no network "

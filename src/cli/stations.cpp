@@ -127,7 +127,7 @@ Uv uv_of_pair(Site& site, const std::array<double, 2>& pair) {
 }
 
 // Completes a station to a head or (u, v).
-StationText settled(Site& site, StationText station) {
+StationText completed(Site& site, StationText station) {
   if (station.pair) station.uv = uv_of_pair(site, *station.pair);
   if (!station.position && !station.ground && station.xy) station.ground = ground_at(site, *station.xy);
   if (!station.position && station.ground) station.position = *station.ground + Vec3{0, 0, site.scanner().height_m};
@@ -139,7 +139,7 @@ StationText settled(Site& site, StationText station) {
 std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations) {
   std::vector<SiteStation> placed;
   for (const auto& typed : stations) {
-    const StationText station = settled(site, typed);
+    const StationText station = completed(site, typed);
     if (station.position) {
       const PlacedHead head = site.place_head(*station.position, station.uv);
       placed.push_back({head.station, head.has_uv, station.name});

@@ -11,6 +11,7 @@
 
 #include "core/graph.hpp"
 #include "core/text.hpp"
+#include "evaluate/evaluator.hpp"
 #include "placement/nearest_place.hpp"
 #include "report/packed.hpp"
 #include "report/report_json.hpp"
@@ -335,29 +336,23 @@ void EditSession::measure(bool quick) {
   surveyed_.follow(all, ids);
   around_.follow(all, ids);
   std::vector<Objective> measures{make_objective("coverage"), make_objective("overlap")};
+  const std::optional<Estimate> share = captured();
+  if (share) measures.push_back(make_objective("capture"));
   const auto stations = placed();
-  MeasuredNetwork measured{.counts = surveyed_.counts(),
-                           .stations = stations,
-                           .goal_density = simulator_.goal_density(),
-                           .voxels = simulator_.voxel_count(),
-                           .overlap = overlap_matrix(surveyed_.counts())};
-  if (const auto share = captured()) {
-    measured.captured = *share;
-    measures.push_back(make_objective("capture"));
-  }
-  evaluation_ = evaluation_of(measured, measures, std::nullopt);
-  evaluation_.scan_overlap_matrix = scan_overlap_matrix(around_.counts());
-  evaluation_.link = options_.link;
-  evaluation_.names = names();
+  evaluation_ = Evaluator({.simulator = simulator_, .surroundings = &surroundings_},
+                          {.link = options_.link, .names = names()}, std::move(measures))
+                    .evaluate({.stations = stations,
+                               .surveyed = surveyed_.counts(),
+                               .surroundings = &around_.counts(),
+                               .captured = share.value_or(Estimate{})});
   evaluation_.exact = false;  // links come from a sample, even if coverage does not
   if (!quick) {
-    evaluation_.moves = station_moves(site_.area(), site_.clash(), simulator_.scanner().height_m, stations);
     if (stations.size() <= kQuickStations && !stations.empty()) {
       evaluation_.visit = visit_of(evaluation_, *on_site_);
-      add_sessions(evaluation_, *on_site_);
-      evaluation_.storey_ties = storey_ties_of(evaluation_, *on_site_);
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
+    look_closer(evaluation_,
+                {.simulator = simulator_, .on_site = &*on_site_, .clash = &site_.clash(), .area = &site_.area()});
   }
   colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
 }

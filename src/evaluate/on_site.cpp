@@ -13,6 +13,7 @@
 
 #include "core/parallel.hpp"
 #include "core/parse.hpp"
+#include "core/person.hpp"
 #include "core/setting_list.hpp"
 #include "core/site_reach.hpp"
 #include "core/text.hpp"
@@ -24,9 +25,6 @@
 
 namespace vantage {
 namespace {
-
-// Heights over the ground at which nothing may be in a person's way.
-constexpr double kHip_m = 1.0, kKnee_m = 0.4;
 
 void check(const OnSiteOptions& options, const Vec3& origin) {
   check_settings(on_site_settings(), options);
@@ -284,7 +282,7 @@ struct OnSite::Impl {
         scan_min(std::move(scans)),
         entered(area.entries().begin(), area.entries().end()),
         ways(walked_ground(area), [clash](const Vec3& a, const Vec3& b) {
-          const Vec3 hip{0, 0, kHip_m}, knee{0, 0, kKnee_m};
+          const Vec3 hip{0, 0, person::kHip_m}, knee{0, 0, person::kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}
   double stay_min(const PlacedStation& station) const {

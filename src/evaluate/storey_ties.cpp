@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "core/graph.hpp"
+#include "core/person.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr double kStorey_m = 1.8;  // as between the levels of a plan
 // A slope is hardly longer than the line between two heads. A stair is, and short: the way between stations at its two
 // ends, or in front of these.
 constexpr double kAlongSlope = 1.5, kStair_m = 15;
@@ -25,7 +25,7 @@ double longest_way_m(double apart_m) { return std::max(kStair_m, kAlongSlope * a
 }  // namespace
 
 bool crosses_storeys(const PlacedStation& a, const PlacedStation& b) {
-  return std::abs(a.ground.z - b.ground.z) >= kStorey_m;
+  return std::abs(a.ground.z - b.ground.z) >= person::kHeight_m;
 }
 
 std::vector<std::uint8_t> past_stairs(std::span<const PlacedStation> stations,

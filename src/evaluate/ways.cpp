@@ -11,6 +11,7 @@
 
 #include "core/graph.hpp"
 #include "core/parallel.hpp"
+#include "core/person.hpp"
 
 namespace vantage {
 namespace {
@@ -18,8 +19,6 @@ namespace {
 constexpr double kMostPlaces = 20'000, kFinest_m = 0.25;
 // Places in one column that are further apart are on different levels.
 constexpr double kSameLevel_m = 0.4;
-// A step, and the slope of a stair of 45 degrees.
-constexpr double kStep_m = 0.35, kSteepest = 1.0;
 // Places of two cells coincide where ground touches the cells' common side. Distances must grow from place to place,
 // so that a path can go back along them.
 constexpr double kLeastLink_m = 1e-3;
@@ -34,7 +33,9 @@ std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
 double plan_distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 // Whether a person gets from one place to a neighbouring one as their heights go.
-bool climbs(const Vec3& a, const Vec3& b) { return std::abs(a.z - b.z) <= kStep_m + kSteepest * plan_distance(a, b); }
+bool climbs(const Vec3& a, const Vec3& b) {
+  return std::abs(a.z - b.z) <= person::kWayStep_m + person::kWaySlope * plan_distance(a, b);
+}
 
 double plan_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
@@ -233,7 +234,7 @@ std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
       if (found == cells_.end()) continue;
       for (const std::uint32_t place : found->second) {
         const Vec3 away = places_[place] - ground;
-        if (std::abs(away.z) > kStep_m + kSteepest * spacing_ * 2 * reach) continue;
+        if (std::abs(away.z) > person::kWayStep_m + person::kWaySlope * spacing_ * 2 * reach) continue;
         // Another level counts as further than it looks.
         near.emplace_back(std::hypot(away.x, away.y) + 4 * std::abs(away.z), place);
       }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "export/voxel_ply.hpp"
+#include "scan/captured_share.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -23,7 +24,7 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
   if (words == 1) more.push_back({"uint", "stations_low"}), more.push_back({"uint", "stations_high"});
   if (words > 1) more.push_back({"uint", "stations"});
   write_voxel_ply(file, coordinates, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
-    const double ratio = std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
+    const double ratio = captured_share(simulator, static_cast<std::uint32_t>(rank), field.count[rank]);
     append(bytes, static_cast<float>(ratio));
     append(bytes, field.count[rank]);
     if (words == 1) {

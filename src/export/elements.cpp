@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -11,6 +10,8 @@
 #include "core/text.hpp"
 #include "export/csv_cell.hpp"
 #include "export/voxel_errors.hpp"
+#include "scan/captured_share.hpp"
+#include "scene/meshes_by_name.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
@@ -78,17 +79,11 @@ std::vector<ElementShare> element_shares(const Simulator& simulator, const Evalu
   if (field.count.size() != voxels || (!field.stations.empty() && field.stations.voxels() != voxels))
     throw Error(Errc::invalid_argument, "elements: the evaluation has not the points of every voxel of this simulator");
   const SceneData& scene = simulator.scene().data();
+  const MeshesByName meshes = meshes_by_name(scene.meshes, true);
   std::vector<ElementShare> elements;
-  std::map<std::string, std::size_t> place;
-  std::vector<std::size_t> of_mesh(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const MeshInfo& mesh = scene.meshes[m];
-    if (mesh.role != Role::surveyed) continue;
-    const auto [at, added] = place.try_emplace(mesh.name, elements.size());
-    if (added) split_ifc_name(elements.emplace_back(ElementShare{.name = mesh.name}));
-    of_mesh[m] = at->second;
-    elements[at->second].area_m2 += area_of(scene, scene.ranges[m]);
-  }
+  for (const std::string& name : meshes.names) split_ifc_name(elements.emplace_back(ElementShare{.name = name}));
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (scene.meshes[m].role == Role::surveyed) elements[meshes.of_mesh[m]].area_m2 += area_of(scene, scene.ranges[m]);
   if (voxels == 0) return elements;
 
   const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostVoxels, voxels));
@@ -103,11 +98,12 @@ std::vector<ElementShare> element_shares(const Simulator& simulator, const Evalu
   std::vector<Seen> seen(elements.size());
   for (std::size_t k = 0; k < ranks.size(); ++k) {
     const std::uint32_t rank = ranks[k];
-    Seen& sum = seen[of_mesh[patches[k].mesh]];
+    const std::size_t element = meshes.of_mesh[patches[k].mesh];
+    Seen& sum = seen[element];
     const double weight = simulator.voxel_weight(rank);
-    ++elements[of_mesh[patches[k].mesh]].voxels;
+    ++elements[element].voxels;
     sum.weights += weight;
-    sum.captured += weight * std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
+    sum.captured += weight * captured_share(simulator, rank, field.count[rank]);
     if (field.count[rank] > 0 && patches[k].area_m2 > 0)
       sum.distances_m.push_back(static_cast<float>(std::sqrt(patches[k].area_m2 / field.count[rank])));
     if (cosines[k] > 0) sum.cosines.push_back(cosines[k]);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "export/buildings.hpp"
 #include "export/covered_floor.hpp"
 #include "export/relief.hpp"
@@ -171,8 +171,7 @@ std::vector<PlanLevel> cut_levels(const Scene& scene, const SearchMesh& mesh, st
 std::vector<bool> under_roof(const Scene& scene, std::span<const PlacedStation> stations) {
   const SceneData& data = scene.data();
   std::vector<bool> under(stations.size(), false);
-  std::vector<std::size_t> by_x(stations.size());
-  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+  std::vector<std::size_t> by_x = first_numbers(stations.size());
   std::ranges::sort(by_x, {}, [&](std::size_t k) { return stations[k].position.x; });
   for (std::uint32_t t = 0; t < data.triangle_count(); ++t) {
     const auto c = data.corners(t);

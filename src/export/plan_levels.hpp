@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/person.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scene.hpp"
 
@@ -23,20 +24,22 @@ struct PlanLevel {
   bool holds(double ground_z) const { return ground_z >= low && ground_z < high; }
 };
 
-// Where one may stand above and below at one place, on a twentieth of the ground or more, or where stations stand so:
-// the heights at which most of such ground lies, and those of stations, `apart_m` or more from each other, lowest
-// first. Stairs belong to the floor that they start from, and so do landings half way up. One level, at the median
-// height, of any other site: a slope or a terrace needs one picture. Never empty, never cut.
+// Returns the floors of a site, lowest first and `apart_m` or more from each other. A site has several floors if a
+// twentieth of its ground or more lies over other ground, or if stations stand over each other. The floors then lie at
+// the heights where most of that ground lies, and at those of the stations. Stairs, and landings half way up, belong to
+// the floor that they start from. Any other site, such as a slope or a terrace, has one level at its median height. The
+// result is never empty, and no level is cut.
 std::vector<PlanLevel> plan_levels(const SearchMesh& mesh, std::span<const PlacedStation> stations = {},
-                                   double apart_m = 1.8);
+                                   double apart_m = person::kHeight_m);
 
-// The same, with the heights at which they are cut: 1.2 m above the floor, between window sills and lintels, under a
-// scanner at 1.85 m; heads at other heights, as in models of unusual size, move it in proportion. Several levels are
-// all cut. A single one is cut above the ground of the stations under a roof, if a tenth of its stations or more stand
-// under one, or one stands in a building; where there is no station, if most of its ground lies under something.
+// Returns the same levels with the heights at which their plans are cut: 1.2 m above the floor, between window sills
+// and lintels, for a scanner at 1.85 m. Heads at other heights, as in models of unusual size, change it in proportion.
+// Several levels are all cut. A single level is cut above the ground of the stations under a roof, if a tenth of its
+// stations or more stand under one, or one stands in a building. A site without stations is cut if most of its ground
+// lies under something.
 std::vector<PlanLevel> cut_levels(const Scene& scene, const SearchMesh& mesh, std::span<const PlacedStation> stations);
 
-// Of each station, whether something of the scene hangs over its head.
+// Tells of each station whether something of the scene hangs over its head.
 std::vector<bool> under_roof(const Scene& scene, std::span<const PlacedStation> stations);
 
 }  // namespace vantage

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/person.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/distance_apart.hpp"
@@ -56,7 +57,7 @@ void paint_section(std::vector<std::uint32_t>& pixels, const Section& section, c
     }
 }
 
-// `above` the ground that lies nearest to each pixel, local frame: where ground rises, what is cut off rises with it.
+// Returns for each pixel the height `above` the ground nearest to it, local frame. The cut rises with the ground.
 std::vector<float> cuts_above(const SearchMesh& mesh, const MapWindow& window, double above, double origin_z) {
   constexpr float kNone = std::numeric_limits<float>::lowest(), kFar = std::numeric_limits<float>::max();
   std::vector<float> cuts(window.columns * window.rows, kNone), away(cuts.size(), kFar);
@@ -87,8 +88,8 @@ double to_centimetres(double metres) { return std::round(100 * metres) / 100 + 0
 
 constexpr double kEven_m = 0.02;
 
-// The height that is not told of a station whose ground has it: a storey's floor, else the ground of most stations, if
-// they have one.
+// Returns the height that labels leave out, because most stations have it: a storey's floor, or else the ground of most
+// stations, if these share one.
 std::optional<double> common_ground(const PlanView& view, const PlanLevel& level) {
   if (!level.only()) return level.floor;
   std::vector<double> grounds;
@@ -102,8 +103,8 @@ std::optional<double> common_ground(const PlanView& view, const PlanLevel& level
   return 2 * static_cast<std::size_t>(same) > grounds.size() ? std::optional(to_centimetres(common)) : std::nullopt;
 }
 
-// Radius of stations' marks that leaves the site to be seen under them: smaller on a narrow map, and where most
-// stations stand close together.
+// Returns the radius of stations' marks, small enough to show the site under them. It is smaller on a narrow map, and
+// if most stations stand close together.
 double mark_radius(const Rect& map, const std::vector<Point>& spots) {
   constexpr double kLeast = 5.5, kOfMap = 1.0 / 12, kOfDistance = 0.4;
   const double radius =
@@ -162,7 +163,7 @@ class Stations {
   const PlacedStation& station(std::size_t k) const { return view_.stations[shown_[k]]; }
   const std::string& name(std::size_t k) const { return view_.names[shown_[k]]; }
   bool on_level(std::size_t k) const { return level_.holds(station(k).ground.z); }
-  // Shown, though it stands on another floor: of many stations only those that a link ties to this one.
+  // True if a station of another floor is shown. If there are many stations, only those with a link to this floor are.
   bool elsewhere(std::size_t k) const {
     return !on_level(k) && (shown_.size() <= kAllFloors || (!tied_.empty() && tied_[k]));
   }
@@ -225,8 +226,8 @@ class Stations {
     }
   }
 
-  // Beside each its name, where that does not fit into the disc, and the ground's height, where that differs; without
-  // what would lie on something else. A name that finds no place stays over its disc.
+  // Writes each station's name beside its disc if it does not fit into it, and the ground's height if it differs. A
+  // text that would lie on something else is left out, but a name that finds no place stays over its disc.
   void draw_labels(PlanMapContent& content) {
     const TextStyle style{.size = 10.5, .across = Align::middle, .halo = 2};
     const std::optional<double> common = common_ground(view_, level_);
@@ -262,7 +263,7 @@ class Stations {
     name_rooms(inside, taken);
   }
 
-  // In the middle of each room its name, or nearby where that is taken and within the room.
+  // Writes each room's name in its middle, or nearby within the room if that place is taken.
   void name_rooms(const Rect& inside, std::vector<Rect>& taken) {
     const TextStyle style{.size = 10, .colour = style::faint, .across = Align::middle, .halo = 2};
     for (const Room& room : view_.scene.rooms()) {
@@ -334,7 +335,7 @@ Box plan_window(const PlanView& view) {
   return box;
 }
 
-// Tints the meshes of a name: what was found on site and is not in the model, and unknown space.
+// Tints the meshes of one name: things that were found on site and are not in the model, or unknown space.
 static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& data, const char* name, const Colour& tint,
                         const MapWindow& window, const PlanLevel& level) {
   constexpr double kFoundOpacity = 0.8;
@@ -357,7 +358,8 @@ static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& dat
   }
 }
 
-// Places that nothing fills at the height of the cut: of stations, and of ground that is found by what is free over it.
+// Returns places that nothing fills at the height of the cut: those of stations, and ground that was found by the free
+// space over it.
 static std::vector<Vec3> free_places(const SearchArea& area, const SearchMesh& ground, double cut,
                                      std::span<const PlacedStation> stations) {
   std::vector<Vec3> places;
@@ -366,8 +368,7 @@ static std::vector<Vec3> free_places(const SearchArea& area, const SearchMesh& g
   const bool found = !area.entries().empty();  // on foot; ground that was marked may lie under walls
   for (const auto& t : found ? std::span(ground.triangles) : std::span<const std::array<std::uint32_t, 3>>())
     places.push_back((ground.positions[t[0]] + ground.positions[t[1]] + ground.positions[t[2]]) * (1.0 / 3));
-  constexpr double kHead_m = 1.7;
-  std::erase_if(places, [cut](const Vec3& place) { return place.z > cut || place.z < cut - kHead_m; });
+  std::erase_if(places, [cut](const Vec3& place) { return place.z > cut || place.z < cut - person::kUnderCut_m; });
   return places;
 }
 
@@ -409,7 +410,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
   PlanMapContent content;
   content.cut = level.cut.has_value();
   if (brief) {
-    // It is told where the level is shown alone.
+    // The picture of the level alone tells its height.
   } else if (level.cut) {
     subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(*level.cut, 2) + " m";
   } else if (subtitle.empty()) {

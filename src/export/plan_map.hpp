@@ -48,8 +48,8 @@ struct PlanMapContent {
   }
 };
 
-// Extent of surveyed meshes, search area and stations, with a margin; ground that reaches further is cut off. Throws
-// Error invalid_argument if there is nothing.
+// Returns the extent of surveyed meshes, search area and stations, with a margin. Ground that reaches further is cut
+// off. Throws Error invalid_argument if there is nothing.
 Box plan_window(const PlanView& view);
 
 // What a map shows of a site under its marks.
@@ -57,16 +57,16 @@ struct SiteMap {
   std::vector<std::uint32_t> pixels;  // of the window, as `shade()` makes them
   bool left_out = false;              // whether ground that is no part of the search area shows
 };
-// The site in shaded relief with its search area, cut where the level is, what is cut through filled and outlined by
-// `line` pixels. No surface around one of the stations, or around ground that a person reaches, is filled. `paper`: how
-// far all but that is faded into white, 0 to 1, for maps that are written on. `surfaces`: `surfaces_of()` the scene,
-// where they are known.
+// Draws the site in shaded relief with its search area, cut at the level's height. Solids that the cut passes through
+// are filled, and outlined by `line` pixels. A surface around a station, or around ground that a person reaches, is not
+// filled. `paper` fades everything else into white, from 0 to 1, for maps that are written on. `surfaces` is
+// `surfaces_of()` the scene, if it is known.
 SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
                  std::span<const PlacedStation> stations, double line, double paper = 0,
                  std::span<const std::uint32_t> surfaces = {});
 
-// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it. `brief`:
-// the subtitle says all that there is room for.
+// Draws the window into `map`, which has its proportions. A title and a subtitle stand above it. With `brief` the
+// subtitle is short enough for a small map.
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
                              const PlanLevel& level, const std::string& title, std::string subtitle,
                              bool brief = false);

@@ -100,15 +100,6 @@ ordered_json sessions_json(const std::vector<Session>& sessions, std::size_t kep
   return json;
 }
 
-// NaN has no JSON; what is not known is null.
-ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
-
-ordered_json to_json(const std::vector<SummaryLine>& lines) {
-  ordered_json json = ordered_json::array();
-  for (const auto& [heading, text] : lines) json.push_back({{"heading", heading}, {"text", text}});
-  return json;
-}
-
 ordered_json matrix_json(const PairMatrix& matrix) {
   ordered_json rows = ordered_json::array();
   for (std::size_t i = 0; i < matrix.size(); ++i) rows.push_back(matrix.row(i));
@@ -234,6 +225,12 @@ ordered_json to_json(const Work& work) {
   return json;
 }
 
+ordered_json lines_json(std::span<const SummaryLine> lines) {
+  ordered_json json = ordered_json::array();
+  for (const auto& [heading, text] : lines) json.push_back({{"heading", heading}, {"text", text}});
+  return json;
+}
+
 ordered_json mixed_json(const MixedPoints& mixed) {
   return {{"points", mixed.points}, {"counted", mixed.counted}, {"wrong_voxel", mixed.wrong_voxel}};
 }
@@ -284,7 +281,7 @@ ordered_json floor_json(const Scene& scene, const SearchArea& area, std::span<co
 }
 
 std::string evaluation_json(const Evaluation& evaluation) {
-  ordered_json json = {{"summary", to_json(summary_lines(evaluation))},
+  ordered_json json = {{"summary", lines_json(summary_lines(evaluation))},
                        {"coverage", evaluation.value("coverage")},
                        {"coverage_se", evaluation.values.at("coverage").standard_error},
                        {"overlap", nullptr},
@@ -346,7 +343,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["answer"] = chosen + 1;
     json["met"] = met(result);
     json["what_would_help"] = what_would_help(result);
-    json["summary"] = to_json(summary_lines(result));
+    json["summary"] = lines_json(summary_lines(result));
     if (result.scene && result.area)
       json["floor"] = floor_json(*result.scene, *result.area, result.front[chosen].stations);
   }

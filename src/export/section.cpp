@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
+
+#include "core/disjoint_sets.hpp"
+#include "core/first_numbers.hpp"
 
 namespace vantage {
 namespace {
@@ -19,8 +21,7 @@ std::vector<std::uint32_t> welded(const SceneData& scene) {
     if (instance.place != MeshInstance::kNoPlace && frame[scene.triangles[instance.first_stored][0]] == 0)
       for (std::uint32_t t = 0; t < instance.triangle_count; ++t)
         for (const std::uint32_t v : scene.triangles[instance.first_stored + t]) frame[v] = instance.first_stored + 1;
-  std::vector<std::uint32_t> order(scene.positions.size()), number(scene.positions.size());
-  std::iota(order.begin(), order.end(), 0u);
+  std::vector<std::uint32_t> order = first_numbers<std::uint32_t>(scene.positions.size()), number(order.size());
   const auto key = [&](std::uint32_t v) {
     const Float3& p = scene.positions[v];
     return std::tuple(p.x, p.y, p.z, frame.empty() ? 0 : frame[v]);
@@ -120,18 +121,13 @@ void fill_row(const std::vector<Crossing>& row, std::uint8_t kind, std::uint8_t*
 
 // Which surface each point belongs to: those that triangles connect.
 std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
-  std::vector<std::uint32_t> parent = welded(scene);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  std::vector<std::uint32_t> surfaces = welded(scene);
+  DisjointSets joined(surfaces.size());
+  for (std::uint32_t v = 0; v < surfaces.size(); ++v) joined.join(v, surfaces[v]);
   for (const Triangle& t : scene.triangles)
-    for (const std::size_t k : {1u, 2u}) {
-      const std::uint32_t a = root(t[0]), b = root(t[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
+    for (const std::size_t k : {1u, 2u}) joined.join(t[0], t[k]);
+  for (std::uint32_t v = 0; v < surfaces.size(); ++v) surfaces[v] = joined.find(v);
+  return surfaces;
 }
 
 Section section_at(const SceneData& scene, const MapWindow& window, double z, std::span<const Vec3> free) {

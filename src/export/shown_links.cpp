@@ -2,33 +2,20 @@
 #include "export/shown_links.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/disjoint_sets.hpp"
+#include "core/first_numbers.hpp"
 
 namespace vantage {
 namespace {
 
 constexpr std::size_t kTangle = 4, kStrongest = 2;  // links for each station
 
-// Parts of a graph that grows by its links.
-class Parts {
- public:
-  explicit Parts(std::size_t stations) : part_(stations) { std::iota(part_.begin(), part_.end(), std::size_t{0}); }
-  // Whether the two were apart.
-  bool join(std::size_t a, std::size_t b) {
-    a = find(a), b = find(b);
-    if (a != b) part_[a] = b;
-    return a != b;
-  }
-
- private:
-  std::size_t find(std::size_t k) {
-    while (part_[k] != k) k = part_[k] = part_[part_[k]];
-    return k;
-  }
-  std::vector<std::size_t> part_;
-};
-
 }  // namespace
+
+StationLinks links_to_draw(const Evaluation& evaluation) {
+  return evaluation.links().value_or(StationLinks{.least = evaluation.link_overlap});
+}
 
 std::vector<ShownLink> links_of(const StationLinks& network) {
   std::vector<ShownLink> links;
@@ -39,10 +26,9 @@ std::vector<ShownLink> links_of(const StationLinks& network) {
       if (const double value = network.values(a, b); value > 0 && value >= network.least)
         links.push_back({a, b, value, std::binary_search(bridges.begin(), bridges.end(), std::pair{a, b})});
   // From the strongest on, as Kruskal does.
-  std::vector<std::size_t> order(links.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(links.size());
   std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t k) { return links[k].overlap; });
-  Parts parts(stations);
+  DisjointSets parts(stations);
   for (const std::size_t k : order) links[k].tree = parts.join(links[k].a, links[k].b);
   return links;
 }
@@ -54,7 +40,7 @@ std::vector<ShownLink> shown_links(std::vector<ShownLink> links, std::size_t sta
   const auto linked = static_cast<std::size_t>(std::ranges::count(drawn, std::size_t{1}));
   if (links.size() <= kTangle * linked) return links;
   drawn.assign(stations, 0);
-  Parts parts(stations);
+  DisjointSets parts(stations);
   std::vector<ShownLink> shown;
   for (auto link = links.rbegin(); link != links.rend(); ++link) {
     const bool strong = drawn[link->a]++ < kStrongest, strong_too = drawn[link->b]++ < kStrongest;

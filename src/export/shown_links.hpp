@@ -16,6 +16,8 @@ struct ShownLink {
   bool tree = false;    // of the maximum spanning tree of its component
 };
 
+// The links of an evaluation that pictures and drawings show; none if they are not known.
+StationLinks links_to_draw(const Evaluation& evaluation);
 // All links of a network.
 std::vector<ShownLink> links_of(const StationLinks& network);
 

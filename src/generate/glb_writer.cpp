@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "core/atomic_file.hpp"
+#include "core/glb_head.hpp"
 #include "core/json_text.hpp"
 #include "vantage/error.hpp"
 
@@ -119,24 +121,16 @@ void write_glb(const Model& model, const std::filesystem::path& file) {
                       {"accessors", buffer.accessors_},
                       {"bufferViews", buffer.views_},
                       {"buffers", {{{"byteLength", buffer.bytes_.size()}}}}};
-  std::string text = json_text(document);
-  while (text.size() % 4 != 0) text += ' ';
-  const std::size_t total = 12 + 8 + text.size() + 8 + buffer.bytes_.size();
-  if (total > std::numeric_limits<std::uint32_t>::max())
-    throw Error(Errc::invalid_argument, "the scene would take " + std::to_string(total) +
-                                            " bytes; a GLB holds at most 4 GiB: ask for fewer triangles");
+  const std::string head = [&] {
+    try {
+      return glb_head(json_text(document), buffer.bytes_.size());
+    } catch (const std::length_error& bytes) {
+      throw Error(Errc::invalid_argument, std::string("the scene would take ") + bytes.what() +
+                                              " bytes; a GLB holds at most 4 GiB: ask for fewer triangles");
+    }
+  }();
   AtomicFile out(file);
-  const auto word = [&](std::size_t value) {
-    const auto v = static_cast<std::uint32_t>(value);
-    const std::uint8_t bytes[4] = {static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(v >> 8),
-                                   static_cast<std::uint8_t>(v >> 16), static_cast<std::uint8_t>(v >> 24)};
-    out.write(bytes, sizeof bytes);
-  };
-  for (const std::size_t value : {std::size_t{0x46546C67}, std::size_t{2}, total, text.size(), std::size_t{0x4E4F534A}})
-    word(value);
-  out.write(text);
-  word(buffer.bytes_.size());
-  word(0x004E4942);
+  out.write(head);
   out.write(buffer.bytes_.data(), buffer.bytes_.size());
   out.commit();
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <stdexcept>
+
+#include "core/glb_head.hpp"
+#include "core/json_text.hpp"
 
 namespace vantage::importer {
 namespace {
@@ -12,11 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126;
-constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
-
-void append_word(std::string& out, std::size_t value) {
-  for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((value >> shift) & 0xFF);
-}
 
 }  // namespace
 
@@ -67,17 +64,7 @@ std::string Buffer::finish(json document) const {
 
 std::string glb_bytes(json document, const std::string& binary) {
   document["buffers"] = json::array({{{"byteLength", binary.size()}}});
-  std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::size_t total = 12 + 8 + text.size() + 8 + binary.size();
-  if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("GLB");
-  std::string out;
-  out.reserve(total);
-  for (const std::size_t word : {std::size_t{kMagic}, std::size_t{2}, total, text.size(), std::size_t{kJson}})
-    append_word(out, word);
-  out += text;
-  append_word(out, binary.size());
-  append_word(out, kBinary);
+  std::string out = glb_head(json_text(document), binary.size());
   return out += binary;
 }
 

@@ -33,9 +33,9 @@ class Known {
 
 }  // namespace
 
-EvaluateOptions count_surveyed(const RequiredInputs& needs, const RegistrationOptions& registration,
+EveryRayOptions count_surveyed(const RequiredInputs& needs, const RegistrationOptions& registration,
                                const Simulator& simulator) {
-  EvaluateOptions options{.registration = needs.registration};
+  EveryRayOptions options{.registration = needs.registration};
   if (needs.surroundings_registration) {
     options.registration_voxels = kWeighingVoxels;
     return options;
@@ -48,10 +48,10 @@ EvaluateOptions count_surveyed(const RequiredInputs& needs, const RegistrationOp
   return options;
 }
 
-EvaluateOptions count_surroundings(const RequiredInputs& needs, const RegistrationOptions& registration,
+EveryRayOptions count_surroundings(const RequiredInputs& needs, const RegistrationOptions& registration,
                                    const std::vector<NetworkCounts>& surveyed, const Simulator& simulator,
                                    const Simulator& surroundings) {
-  EvaluateOptions options;
+  EveryRayOptions options;
   if (!needs.surroundings_registration) return options;
   options.registration = needs.registration;
   options.registration_voxels = kLeastVoxels;

@@ -13,10 +13,10 @@ namespace vantage {
 
 // Options that count the surveyed voxels with every ray. Their sums of registration grow until these tell the error; if
 // all surfaces register the scans, they only weigh it, and are of one sample.
-EvaluateOptions count_surveyed(const RequiredInputs& needs, const RegistrationOptions& registration,
+EveryRayOptions count_surveyed(const RequiredInputs& needs, const RegistrationOptions& registration,
                                const Simulator& simulator);
 // The same for the surroundings of networks whose surveyed voxels were counted. Borrows all but `registration`.
-EvaluateOptions count_surroundings(const RequiredInputs& needs, const RegistrationOptions& registration,
+EveryRayOptions count_surroundings(const RequiredInputs& needs, const RegistrationOptions& registration,
                                    const std::vector<NetworkCounts>& surveyed, const Simulator& simulator,
                                    const Simulator& surroundings);
 

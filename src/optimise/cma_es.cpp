@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
+#include "core/first_numbers.hpp"
 #include "optimise/as_span.hpp"
 #include "optimise/blocks.hpp"
 #include "optimise/common.hpp"
@@ -205,8 +205,7 @@ void CmaEs::Impl::begin_run() {
 
 void CmaEs::Impl::begin_beside_best() {
   for (std::size_t i = 0; i < n; ++i) mean[static_cast<Eigen::Index>(i)] = genotype(best.x[i], i);
-  std::vector<std::size_t> order(blocks_in_use(best.x));
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(blocks_in_use(best.x));
   for (std::size_t k = 0; k < (3 * order.size() + 3) / 4; ++k) {
     std::swap(order[k], order[k + random.index(order.size() - k)]);
     for (const std::size_t i : config.blocks[order[k]]) mean[static_cast<Eigen::Index>(i)] = random.uniform();
@@ -458,8 +457,7 @@ void CmaEs::tell(std::span<const double> values) {
   }
   for (double& v : f)
     if (!std::isfinite(v)) v = kInfinity;
-  std::vector<std::size_t> order(s.lambda);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(s.lambda);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return f[a] < f[b]; });
   std::sort(f.begin(), f.end());
   s.run_evaluations += s.lambda;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <queue>
 
+#include "core/first_numbers.hpp"
 #include "optimise/infinity.hpp"
 #include "optimise/sweep.hpp"
 
@@ -69,8 +70,7 @@ double volume_inside(const Points& points, std::span<const double> reference) {
   if (m == 3) return volume3(as_arrays<3>(points), {reference[0], reference[1], reference[2]});
 
   // Worst in the last objective first: each point then adds a slab of constant cross-section above the later ones.
-  std::vector<std::size_t> order(k);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(k);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return points[a][m - 1] != points[b][m - 1] ? points[a][m - 1] > points[b][m - 1] : a < b;
   });
@@ -191,8 +191,7 @@ class Removal {
 std::vector<std::size_t> remove_from_staircase(const Points& points, std::span<const double> reference,
                                                std::size_t count) {
   const std::size_t k = points.size();
-  std::vector<std::size_t> order(k);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(k);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points[a][0] < points[b][0]; });
   std::vector<std::size_t> previous(k), next(k);
   for (std::size_t i = 0; i < k; ++i) {

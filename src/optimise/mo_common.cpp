@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "optimise/blocks.hpp"
 #include "optimise/hypervolume.hpp"
 #include "optimise/infinity.hpp"
@@ -168,8 +168,7 @@ std::vector<std::size_t> surplus(std::span<const double> fitness, std::span<cons
 std::vector<char> select(std::span<const double> fitness, std::span<const double> reference, std::size_t count) {
   const std::size_t m = reference.size(), k = fitness.size() / m;
   const auto rank = ranks({fitness, m});
-  std::vector<std::size_t> order(k);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(k);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
   std::vector<char> selected(k, 0);
   for (std::size_t begin = 0; begin < count;) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "optimise/index_set.hpp"
 #include "optimise/infinity.hpp"
 
@@ -177,8 +178,7 @@ double volume3(std::span<const Point3> points, const Point3& reference) {
 std::vector<double> contributions2(std::span<const std::array<double, 2>> points,
                                    const std::array<double, 2>& reference) {
   const std::size_t k = points.size();
-  std::vector<std::uint32_t> order(k);
-  std::iota(order.begin(), order.end(), 0u);
+  std::vector<std::uint32_t> order = first_numbers<std::uint32_t>(k);
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return points[a] != points[b] ? points[a] < points[b] : a < b; });
   std::vector<double> result(k, 0.0);

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 #include "placement/plan_hull.hpp"
 #include "placement/plane_quadtree.hpp"
@@ -19,24 +19,6 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t nobody = 0xFFFFFFFFu;
-
-// Disjoint sets, each named by its smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // Joins points that share a cell of a grid, or of the grid shifted by half a cell, so that near points meet in one of
 // them.

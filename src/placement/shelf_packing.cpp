@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "core/first_numbers.hpp"
 
 namespace vantage {
 namespace {
@@ -30,8 +31,7 @@ Packing pack(const std::vector<Uv>& sizes, const std::vector<std::size_t>& order
 }  // namespace
 
 Packing pack_shelves(const std::vector<Uv>& sizes, double gap) {
-  std::vector<std::size_t> order(sizes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(sizes.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a].v > sizes[b].v; });
   double widest = 0, area = 0;
   for (const Uv s : sizes) {

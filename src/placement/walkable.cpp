@@ -20,6 +20,7 @@
 #include "placement/charts.hpp"
 #include "placement/ground_field.hpp"
 #include "placement/mesh_tree.hpp"
+#include "placement/no_ground.hpp"
 #include "placement/plan_hull.hpp"
 #include "placement/surface_pieces.hpp"
 #include "scene/positions.hpp"
@@ -355,8 +356,7 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
       scene.shares() ? reached_triangles(scene, field, options, true, points) : upward_triangles(scene, options, true);
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, true);
   if (surface.mesh.triangles.empty())
-    throw Error(
-        Errc::invalid_argument,
+    throw NoGround(
         "none of the surfaces that stations are to stand on has room for one: they are steep, covered, narrow or "
         "smaller than the smallest area");
   surface.derived = false;
@@ -430,8 +430,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   surface.left_out = gather_left_out(pieces, clear, {}, scene.origin);
   if (charts.empty()) {
     if (limits.any()) refuse_limits();
-    throw Error(Errc::invalid_argument,
-                "there is no ground around the model, and no room on a plane laid under it; mark a search area");
+    throw NoGround("there is no ground around the model, and no room on a plane laid under it; mark a search area");
   }
   surface.mesh = unfold(clear, charts, scene.origin);
   std::ostringstream text;
@@ -482,17 +481,17 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
     if (!marked.mesh.triangles.empty()) return marked;
   }
   if (scene.triangle_count() == 0 || scene.local_bounds.empty())
-    throw Error(Errc::invalid_argument,
-                "the scene has neither a mesh nor a usable search area to stand on; mark one with the role \"search\" "
-                "or add a ground");
+    throw NoGround(
+        "the scene has neither a mesh nor a usable search area to stand on; mark one with the role \"search\" "
+        "or add a ground");
   const MeshTree tree(scene);
   if (named) return use_station_area(scene, tree, options);
   WalkableSurface walkable = derive_walkable(scene, tree, options);
   if (!walkable.mesh.triangles.empty()) return walkable;
   if (is_scanned(scene))
-    throw Error(Errc::invalid_argument,
-                "no ground for a station shows in the points, and what lies beside them is unknown; give a cloud with "
-                "the ground around, an entrance (enter), or the nodes to stand on (station-area)");
+    throw NoGround(
+        "no ground for a station shows in the points, and what lies beside them is unknown; give a cloud with "
+        "the ground around, an entrance (enter), or the nodes to stand on (station-area)");
   return lay_plane(scene, tree, options);
 }
 

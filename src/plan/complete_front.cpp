@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "evaluate/evaluator.hpp"
 #include "evaluate/through_glass.hpp"
 #include "plan/answer_targets.hpp"
 #include "plan/fewest_choice.hpp"
@@ -42,18 +43,10 @@ void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& p
   const std::vector<Objective>& objectives = result.problem.objectives;
   const bool shortest = std::ranges::any_of(objectives, [](const Objective& one) { return one.needs.time; });
   const double most_min = shortest ? 0 : most_minutes(result.problem.requirements);
-  const auto visit = [&](PlanEntry& entry) {
-    entry.visit = visit_of(entry, context.on_site(), most_min);
-    // A limit was met by the shortest round.
-    if (const auto time = entry.values.find("time"); !shortest && time != entry.values.end())
-      time->second.value = std::isnan(time->second.value) ? time->second.value : entry.visit->minutes;
-  };
-  visit(result.front[chosen]);
-  add_sessions(result.front[chosen], context.on_site());
-  result.front[chosen].storey_ties = storey_ties_of(result.front[chosen], context.on_site());
+  add_round(result.front[chosen], context.on_site(), most_min);
   if (result.front.size() > kMostRounds) return;
   for (PlanEntry& entry : result.front)
-    if (!entry.visit && !progress.stopped()) visit(entry);
+    if (!entry.visit && !progress.stopped()) add_round(entry, context.on_site(), most_min);
 }
 
 // The answer takes its place in the trade-off, as it was confirmed: alone, if the time was over before others were
@@ -82,15 +75,13 @@ void complete_front(PlanResult& result, PlanContext& context, Site& site, const 
     take_in_confirmed(result, context, site.simulator(), progress);
     result.attainable = context.confirmed.coverage();
   }
-  for (PlanEntry& entry : result.front) {
-    if (result.attainable && result.candidates) entry.attainable_growth = result.candidates->growth();
-    if (!problem.existing_names.empty())
-      entry.names = problem.existing_names, entry.names.resize(entry.stations.size());
-    entry.accuracy_class = problem.target.wanted;
-  }
+  if (result.attainable && result.candidates)
+    for (PlanEntry& entry : result.front) entry.attainable_growth = result.candidates->growth();
   if (result.front.empty()) return;
   work_out_rounds(result, context, progress);
-  look_through_glass(result.front[answer(result)], site.simulator(), progress);
+  PlanEntry& chosen = result.front[answer(result)];
+  look_closer(chosen, {.simulator = site.simulator(), .on_site = &context.on_site()});
+  look_through_glass(chosen, site.simulator(), progress);
   put_answer_in_trade_off(result);
   add_targets(result, site, context.measures(), progress);
 }

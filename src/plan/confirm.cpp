@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/seconds_since.hpp"
+#include "evaluate/evaluator.hpp"
 #include "plan/answer.hpp"
 #include "plan/limits.hpp"
 #include "plan/scaled_objectives.hpp"
@@ -113,16 +114,25 @@ void erase_said(std::vector<T>& all, const std::vector<bool>& said) {
 
 }  // namespace
 
+EvaluationOptions evaluation_options(const SurveyProblem& problem) {
+  return {.target = problem.target,
+          .link_overlap = problem.link_overlap,
+          .link = limit_of(problem, Objective::Kind::link, Requirement::Bound::at_least).value_or(0),
+          .names = problem.existing_names};
+}
+
 ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& space, const SurveyProblem& problem,
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch) {
   ConfirmedFront front;
   std::vector<PlanEntry>& entries = front.entries;
   std::vector<PlacedNetwork> networks;
+  const EvaluationOptions options = evaluation_options(problem);
   for (const ParetoPoint& point : found.front) {
     PlanEntry& entry = entries.emplace_back();
     entry.x = point.x;
     entry.stations = space.decode(point.x);
+    take_options(entry, options);
     for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
     take_objectives(entry, point, problem);
     take_by_positions(entry, problem, measures);
@@ -197,14 +207,12 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
       watch.seconds_after(stations, seconds_since(start) / static_cast<double>(std::max<std::size_t>(stations, 1)));
     if (entries.size() > 1) std::ranges::move(confirm(1, entries.size() - 1), std::back_inserter(confirmed));
   }
-  const double link = limit_of(problem, Objective::Kind::link, Requirement::Bound::at_least).value_or(0);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     PlanEntry& entry = entries[k];
     if (confirmed[k]) {
       static_cast<Evaluation&>(entry) = std::move(*confirmed[k]);
       if (!sampled) entry.searched = entry.values;
     }
-    entry.link_overlap = problem.link_overlap, entry.link = link;
   }
   report(entries.size(), 0);
   std::sort(entries.begin(), entries.end(),

@@ -8,6 +8,9 @@
 
 namespace vantage {
 
+// How the networks of a plan are evaluated, but for their registration.
+EvaluationOptions evaluation_options(const SurveyProblem& problem);
+
 struct ConfirmedFront {
   std::vector<PlanEntry> entries;
   std::size_t spared = 0;  // networks without entries: others are better by more than the standard errors allow

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "plan/rooms.hpp"
 
 namespace vantage {
@@ -24,22 +24,17 @@ struct Chart {
 
 // Joined triangles, as they share corners in (u, v).
 std::vector<Chart> charts_of(const SearchMesh& mesh) {
-  std::vector<std::uint32_t> above(mesh.positions.size());
-  std::iota(above.begin(), above.end(), 0u);
-  const auto root = [&](std::uint32_t at) {
-    while (above[at] != at) at = above[at] = above[above[at]];
-    return at;
-  };
+  DisjointSets joined(mesh.positions.size());
   std::map<std::pair<double, double>, std::uint32_t> first_at;
-  for (std::uint32_t k = 0; k < above.size(); ++k)
-    above[k] = first_at.emplace(std::pair{mesh.uvs[k].u, mesh.uvs[k].v}, k).first->second;
+  for (std::uint32_t k = 0; k < joined.size(); ++k)
+    joined.join(k, first_at.emplace(std::pair{mesh.uvs[k].u, mesh.uvs[k].v}, k).first->second);
   for (const auto& t : mesh.triangles)
-    for (const std::uint32_t corner : {t[1], t[2]}) above[root(corner)] = root(t[0]);
+    for (const std::uint32_t corner : {t[1], t[2]}) joined.join(corner, t[0]);
   constexpr double kFar = std::numeric_limits<double>::infinity();
   std::vector<std::size_t> number(mesh.positions.size(), mesh.positions.size());
   std::vector<Chart> charts;
   for (const auto& t : mesh.triangles) {
-    std::size_t& k = number[root(t[0])];
+    std::size_t& k = number[joined.find(t[0])];
     if (k == mesh.positions.size()) k = charts.size(), charts.push_back({{kFar, kFar}, {-kFar, -kFar}});
     Chart& chart = charts[k];
     for (const std::uint32_t corner : t) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <memory>
 
 #include "core/parallel.hpp"
@@ -11,6 +10,8 @@
 #include "evaluate/field_of_view.hpp"
 #include "plan/rooms.hpp"
 #include "plan/why_missed.hpp"
+#include "scan/captured_share.hpp"
+#include "scene/meshes_by_name.hpp"
 #include "trace/embree/glass_panes.hpp"
 #include "vantage/error.hpp"
 
@@ -198,19 +199,13 @@ std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<co
   if (ranks.size() != status.size())
     throw Error(Errc::invalid_argument, "missed_by_node: " + std::to_string(ranks.size()) + " voxels, but reasons of " +
                                             std::to_string(status.size()));
-  const auto meshes = simulator.scene().meshes();
+  const MeshesByName meshes = meshes_by_name(simulator.scene().meshes());
   std::vector<MissedShare> shares(1);
-  std::map<std::string, std::size_t> place;
-  std::vector<std::size_t> of_mesh(meshes.size());
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const auto [at, added] = place.try_emplace(meshes[m].name, shares.size());
-    if (added) shares.push_back({.node = meshes[m].name});
-    of_mesh[m] = at->second;
-  }
+  for (const std::string& name : meshes.names) shares.push_back({.node = name});
   std::vector<ShareSum> sums(shares.begin(), shares.end());
   const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
   for (std::size_t i = 0; i < ranks.size(); ++i)
-    for (const std::size_t k : {std::size_t{0}, of_mesh[patches[i].mesh]})
+    for (const std::size_t k : {std::size_t{0}, 1 + meshes.of_mesh[patches[i].mesh]})
       sums[k].add(status[i], simulator.voxel_weight(ranks[i]));
   for (const ShareSum& sum : sums) sum.finish();
   std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
@@ -223,7 +218,7 @@ void take_whole_coverage(MissedShare& all, const Simulator& simulator, const Vox
   double captured = 0, weights = 0;
   for (std::uint32_t voxel = 0; voxel < field.count.size(); ++voxel) {
     const double weight = simulator.voxel_weight(voxel);
-    captured += weight * std::min(field.count[voxel] / simulator.goal_density(voxel), 1.0);
+    captured += weight * captured_share(simulator, voxel, field.count[voxel]);
     weights += weight;
   }
   captured /= weights;

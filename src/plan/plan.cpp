@@ -3,12 +3,12 @@
 #include <chrono>
 #include <cmath>
 #include <future>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/deadline.hpp"
+#include "core/first_numbers.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/tabu_search.hpp"
 #include "plan/check_problem.hpp"
@@ -28,7 +28,7 @@ namespace vantage {
 namespace {
 
 // What a problem says, with the scale of the number of stations as it is, and `capture` of what is attainable.
-SurveyProblem settled(SurveyProblem problem) {
+SurveyProblem with_scales(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
     if (!objective.by_alpha) return;
@@ -105,8 +105,9 @@ std::size_t most_candidates(Site& site) {
 constexpr double kLeastFloorOfUnit_m2 = 2;
 
 // Finds candidates, and if a measure needs it what is attainable: the problem learns it.
-std::shared_ptr<const Candidates> look(PlanContext& context, Site& site, SurveyProblem& problem,
-                                       const PlanConfig& config, double max_seconds, const PlanWatch& watch) {
+std::shared_ptr<const Candidates> look_for_candidates(PlanContext& context, Site& site, SurveyProblem& problem,
+                                                      const PlanConfig& config, double max_seconds,
+                                                      const PlanWatch& watch) {
   Simulator& simulator = site.simulator();
   const auto begun = std::chrono::steady_clock::now();
   const auto report = [&](double done) {
@@ -146,12 +147,6 @@ CoverageMatrix columns_with(std::span<const PlacedStation> stations, const PlanC
   CoverageMatrix matrix = columns.matrix();
   matrix.set_goals(context.chosen.counts());
   return matrix;
-}
-
-std::vector<std::size_t> first_numbers(std::size_t count) {
-  std::vector<std::size_t> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  return numbers;
 }
 
 // Requires what the stations that pay can capture, or what the problem does if that is more.
@@ -259,9 +254,10 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
     surroundings = std::async(std::launch::async, [&] { site.surroundings(); });
   const bool limit_wanted = needs_attainable(problem);
   std::shared_ptr<const Candidates> candidates;
-  if (problem.fewest || limit_wanted) candidates = look(context, site, problem, config, time.seconds(), watch);
+  if (problem.fewest || limit_wanted)
+    candidates = look_for_candidates(context, site, problem, config, time.seconds(), watch);
   if (candidates) require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.abort});
-  problem = settled(std::move(problem));
+  problem = with_scales(std::move(problem));
   if (surroundings.valid()) surroundings.get();
   context.ask(problem);
   PlanResult result;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "evaluate/visibility.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/identity.hpp"
 #include "plan/spread_positions.hpp"
@@ -35,20 +34,15 @@ void PlanContext::ask(const SurveyProblem& problem) {
   problem_ = problem;
   measures_ = measures_of(problem);
   const RequiredInputs needs = measures_.all_needs();
-  evaluator_.emplace(
-      simulator_, measures_,
-      SimulatorEvaluator::Options{
-          .existing = problem.existing.size(),
-          .visible_parts =
-              [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
-          .surroundings = needs.surroundings ? &surroundings() : nullptr,
-          .surroundings_voxels = surroundings_voxels(),
-          .registration = problem.registration,
-          .searched = &searched,
-          .confirmed = &confirmed,
-          .minutes = needs.time ? [this, &ways = on_site()](
-                                      std::span<const PlacedStation> stations) { return ways.visit(stations).minutes; }
-                                : std::function<double(std::span<const PlacedStation>)>()});
+  EvaluationOptions options = evaluation_options(problem);
+  if (needs.registration) options.registration = problem.registration;
+  evaluator_.emplace(EvaluationSite{.simulator = simulator_,
+                                    .surroundings = needs.surroundings ? &surroundings() : nullptr,
+                                    .on_site = needs.time ? &on_site() : nullptr,
+                                    .clash = &site_.clash()},
+                     measures_, std::move(options),
+                     SimulatorEvaluator::Attainable{.searched = &searched, .confirmed = &confirmed},
+                     surroundings_voxels());
 }
 
 const OnSite& PlanContext::on_site() {

@@ -2,9 +2,9 @@
 #include "plan/proposal.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
+#include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
 
 namespace vantage {
@@ -32,8 +32,7 @@ Proposal propose(Optimiser& optimiser, const DecisionSpace& space, std::size_t r
   }
   const std::size_t n = space.dimension(), count = asked.size() / n;
   Proposal batch{.xs = {asked.begin(), asked.end()}, .networks = std::vector<PlacedNetwork>(count)};
-  std::vector<std::size_t> open(count);
-  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::vector<std::size_t> open = first_numbers(count);
   for (std::size_t round = 0;; ++round) {
     parallel::for_all(std::size_t{0}, open.size(), [&](std::size_t i) {
       batch.networks[open[i]] = space.decode(std::span<const double>(batch.xs).subspan(open[i] * n, n));

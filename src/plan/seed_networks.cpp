@@ -2,9 +2,9 @@
 // First networks for a search, chosen among candidates.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
+#include "core/first_numbers.hpp"
 #include "core/parse.hpp"
 #include "core/part_of.hpp"
 #include "plan/placement_oracle.hpp"
@@ -27,8 +27,7 @@ Positions positions_to_choose(Site& site, std::size_t candidates, std::span<cons
   Positions found{.stations = existing_stations(make_placement_oracle(site), existing, setups), .existing = {}};
   for (PlacedStation& one : found.stations)
     if (active(one)) one.status = StationStatus::ok;  // others are not traced
-  found.existing.resize(found.stations.size());
-  std::iota(found.existing.begin(), found.existing.end(), std::size_t{0});
+  found.existing = first_numbers(found.stations.size());
   for (const PlacedStation& one : candidate_positions(site, candidates)) found.stations.push_back(one);
   return found;
 }

@@ -7,7 +7,6 @@
 #include "core/parallel.hpp"
 #include "core/part_of.hpp"
 #include "objective/number_of.hpp"
-#include "objective/registered_sample.hpp"
 #include "trace/tracer_maker.hpp"
 
 namespace vantage {
@@ -31,8 +30,8 @@ std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) 
 
 // As many as keep all devices busy with every ray, so that a search can be stopped, and saved, often.
 std::size_t SimulatorEvaluator::chunk() const {
-  const std::size_t devices = std::max<std::size_t>(simulator_.config().devices.size(), 1);
-  const TracerMaker* const shared = simulator_.config().shared.get();
+  const std::size_t devices = std::max<std::size_t>(site_.simulator.config().devices.size(), 1);
+  const TracerMaker* const shared = site_.simulator.config().shared.get();
   return shared ? devices * shared->networks_at_once() : devices;
 }
 
@@ -47,7 +46,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     return counts && sample.voxels == counts->sample_voxels() && sample.from == counts->from();
   };
   const AttainableCounts* attainable = nullptr;
-  if (needs.attainable) attainable = on_sample(options_.confirmed) ? options_.confirmed : options_.searched;
+  if (needs.attainable) attainable = on_sample(attainable_.confirmed) ? attainable_.confirmed : attainable_.searched;
   const bool in_one = needs.counts && on_sample(attainable);
   if (needs.counts) {
     SampleOptions options{.voxels = sample.voxels,
@@ -63,17 +62,17 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
         counted.captured[k] = attainable->captured(points);
       };
     }
-    auto counts = count_with(simulator_, networks, options, progress);
+    auto counts = count_with(site_.simulator, networks, options, progress);
     if (!counts) return std::nullopt;
     counted.surveyed = std::move(*counts);
   }
   if (attainable && !in_one) {
-    counted.captured = captured_shares(simulator_, *attainable, networks, {.report = {}, .stop = progress.stop});
+    counted.captured = captured_shares(site_.simulator, *attainable, networks, {.report = {}, .stop = progress.stop});
     if (counted.captured.size() < networks.size()) return std::nullopt;
   }
   if (needs.surroundings) {
-    auto counts = count_with(*options_.surroundings, networks,
-                             {.voxels = std::min(sample.voxels, options_.surroundings_voxels),
+    auto counts = count_with(*site_.surroundings, networks,
+                             {.voxels = std::min(sample.voxels, surroundings_voxels_),
                               .from = sample.from,
                               .overlap = true,
                               .count_to = CountTo::one,
@@ -90,7 +89,7 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
                                                                          std::span<const Network> networks,
                                                                          const SampleOptions& sample,
                                                                          const Progress& progress) {
-  const EvaluateOptions every_ray{
+  const EveryRayOptions every_ray{
       .overlap = sample.overlap, .registration = sample.registration, .meshes = sample.meshes};
   std::vector<NetworkCounts> counts = sample.voxels > 0 ? simulator.evaluate_sampled(networks, sample, progress)
                                                         : simulator.evaluate_each(networks, every_ray, progress);
@@ -100,26 +99,6 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
   return counts;
 }
 
-MeasuredNetwork SimulatorEvaluator::measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations,
-                                             const Network& network, const RequiredInputs& needs) const {
-  const NetworkCounts& counts = counted.surveyed[k];
-  const NetworkCounts* const surroundings = needs.surroundings ? &counted.surroundings[k] : nullptr;
-  MeasuredNetwork made{
-      .counts = counts,
-      .stations = stations,
-      .existing = options_.existing,
-      .goal_density = simulator_.goal_density(),
-      .voxels = simulator_.voxel_count(),
-      .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},
-      .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
-      .surroundings = surroundings,
-      .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
-      .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0,
-      .scene = &simulator_.scene()};
-  if (needs.attainable) made.captured = counted.captured[k];
-  return made;
-}
-
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
                                                                              const VoxelWindow& sample,
                                                                              const Progress& progress) {
@@ -127,10 +106,10 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, false, progress);
   if (!counts) return std::nullopt;
-  const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<double>> values(placed.size());
   parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
-    const MeasuredNetwork network = measured_at(k);
+    const CountedNetwork counted = counts->network(k, placed[k]);
+    const MeasuredNetwork network = evaluator_.measured(counted, needs);
     for (std::size_t m = 0; m < measures_.searched; ++m) values[k].push_back(number_of(measures_.all[m], network));
   });
   return values;
@@ -145,10 +124,10 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, true, progress);
   if (!counts) return std::nullopt;
-  const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<Estimate>> estimates(placed.size());
   parallel::for_all(std::size_t{0}, placed.size(), [&](std::size_t k) {
-    const MeasuredNetwork network = measured_at(k);
+    const CountedNetwork counted = counts->network(k, placed[k]);
+    const MeasuredNetwork network = evaluator_.measured(counted, needs);
     for (const Objective& objective : estimated) estimates[k].push_back(vantage::estimate(objective, network));
   });
   return estimates;
@@ -156,38 +135,23 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
 
 std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<const PlacedNetwork> placed,
                                                                    const Progress& progress) {
-  const RequiredInputs needs = measures_.all_needs();
   const std::vector<Network> networks = to_networks(placed);
-  const auto count = [&](Simulator& simulator, const EvaluateOptions& options, const Progress& own) {
-    std::vector<NetworkCounts> counts = simulator.evaluate_each(networks, options, own);
-    for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
-    return counts;
-  };
-  const std::size_t parts = needs.surroundings ? 2 : 1;
   Counted counted;
-  VoxelField field;
-  EvaluateOptions surveyed = count_surveyed(needs, options_.registration, simulator_);
-  if (networks.size() == 1 && simulator_.voxel_count() <= kKeptVoxels) surveyed.field = &field;
-  surveyed.meshes = needs.meshes;
-  counted.surveyed = count(simulator_, surveyed, part_of(progress, 0, parts));
-  if (needs.surroundings)
-    counted.surroundings =
-        count(*options_.surroundings,
-              count_surroundings(needs, options_.registration, counted.surveyed, simulator_, *options_.surroundings),
-              part_of(progress, 1, parts));
-  if (needs.attainable)
+  const bool field = networks.size() == 1 && site_.simulator.voxel_count() <= kKeptVoxels;
+  static_cast<CountedNetworks&>(counted) = evaluator_.count(networks, field, progress);
+  for (const auto* counts : {&counted.surveyed, &counted.surroundings})
+    for (const NetworkCounts& c : *counts) trace_seconds_ += c.trace_seconds;
+  const bool share = evaluator_.needs().attainable;
+  if (share)
     counted.captured =
-        captured_shares(simulator_, *options_.confirmed, networks, {.report = {}, .stop = progress.stop});
+        captured_shares(site_.simulator, *attainable_.confirmed, networks, {.report = {}, .stop = progress.stop});
 
   std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {
-    if (counted.surveyed[k].cancelled || (needs.surroundings && counted.surroundings[k].cancelled) ||
-        (needs.attainable && counted.captured.empty()))
-      continue;
-    all[k] = evaluation_of(measured(counted, k, placed[k], networks[k], needs), measures_.all,
-                           needs.registration ? std::optional(options_.registration) : std::nullopt);
-    if (needs.attainable) all[k]->attainable = options_.confirmed->coverage();
-    if (surveyed.field) all[k]->field = std::move(field);
+    if (!counted.whole(k) || (share && counted.captured.empty())) continue;
+    all[k] = evaluator_.evaluate(counted.network(k, placed[k]));
+    if (share) all[k]->attainable = attainable_.confirmed->coverage();
+    if (field) all[k]->field = std::move(counted.field);
   }
   return all;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-
+#include "evaluate/evaluator.hpp"
 #include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
 #include "vantage/simulator.hpp"
@@ -11,23 +10,19 @@ namespace vantage {
 
 class SimulatorEvaluator final : public NetworkEvaluator {
  public:
-  struct Options {
-    std::size_t existing = 0;  // number of existing stations, the first of every network
-    // Connected components of the visibility graph; required if a measure needs it.
-    std::function<std::size_t(const Network&)> visible_parts = {};
-    // All surfaces; required if a measure needs them. With a number of sampled voxels, or every ray.
-    Simulator* surroundings = nullptr;
-    std::uint64_t surroundings_voxels = 0;
-    RegistrationOptions registration = {};  // of confirmed networks, where a measure needs it
-    // By which searches and confirmed networks are told what they capture; needed where a measure needs it. On
-    // different voxels, or a network would be confirmed on those that it was chosen by.
+  // Share of what is attainable, by which searches and confirmed networks are told what they capture; needed where a
+  // measure needs it. On different voxels, or a network would be confirmed on those that it was chosen by.
+  struct Attainable {
     const AttainableCounts *searched = nullptr, *confirmed = nullptr;
-    // Minutes on site without the existing stations; needed where a measure needs it.
-    std::function<double(std::span<const PlacedStation>)> minutes = {};
   };
-  // Borrows the simulators.
-  SimulatorEvaluator(Simulator& simulator, Measures measures, Options options)
-      : simulator_(simulator), measures_(std::move(measures)), options_(std::move(options)) {}
+  // Borrows the site's parts, which measures need. A search counts so many voxels of the surroundings; 0: every ray.
+  SimulatorEvaluator(const EvaluationSite& site, Measures measures, EvaluationOptions options, Attainable attainable,
+                     std::uint64_t surroundings_voxels)
+      : site_(site),
+        measures_(std::move(measures)),
+        attainable_(attainable),
+        surroundings_voxels_(surroundings_voxels),
+        evaluator_(site, std::move(options), measures_.all) {}
 
   std::size_t chunk() const override;
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
@@ -41,9 +36,14 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   double trace_seconds() const override { return trace_seconds_; }
 
  private:
-  struct Counted {
-    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
-    std::vector<Estimate> captured;                     // the same
+  struct Counted : CountedNetworks {
+    std::vector<Estimate> captured;  // empty where nothing needs them
+    CountedNetwork network(std::size_t k, const PlacedNetwork& stations) const {
+      return {.stations = stations,
+              .surveyed = surveyed[k],
+              .surroundings = surroundings.empty() ? nullptr : &surroundings[k],
+              .captured = captured.empty() ? Estimate{} : captured[k]};
+    }
   };
   // `errors`: whether standard errors are needed.
   std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample,
@@ -51,12 +51,12 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   // A window without voxels means every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);
-  MeasuredNetwork measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations, const Network& network,
-                           const RequiredInputs& needs) const;
 
-  Simulator& simulator_;
+  EvaluationSite site_;
   Measures measures_;
-  Options options_;
+  Attainable attainable_;
+  std::uint64_t surroundings_voxels_;
+  Evaluator evaluator_;
   double trace_seconds_ = 0;
 };
 

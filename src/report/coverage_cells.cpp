@@ -6,6 +6,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "scan/captured_share.hpp"
+
 namespace vantage {
 namespace {
 
@@ -114,7 +116,7 @@ CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32
   std::vector<Seer> seen(cells.keys.size(), 0);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     const std::uint32_t cell = cells.cell_of[cells.place_of(ranks[i])];
-    sum[cell] += std::min(counts[i] / simulator.goal_density(ranks[i]), 1.0);
+    sum[cell] += captured_share(simulator, ranks[i], counts[i]);
     seen[cell] = together(seen[cell], seen_by[i]);
     ++voxels[cell];
   }

@@ -7,6 +7,7 @@
 
 #include "core/read_file.hpp"
 #include "export/missed_colours.hpp"
+#include "export/run_json.hpp"
 #include "export/shown_links.hpp"
 #include "export/station_json.hpp"
 #include "report/packed.hpp"
@@ -19,8 +20,6 @@ namespace vantage {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
 
 ordered_json measure_json(const Objective& measure) {
   return {{"name", measure.name},
@@ -126,11 +125,9 @@ ordered_json targets_json(const std::vector<Target>& targets) {
 }  // namespace
 
 ordered_json network_json(const Evaluation& network, std::span<const Requirement> requirements) {
-  ordered_json values, summary = ordered_json::array();
+  ordered_json values;
   for (const auto& [name, value] : network.values)
     values[name] = {{"value", known(value.value)}, {"standard_error", value.standard_error}};
-  for (const auto& [heading, text] : summary_lines(network, requirements))
-    summary.push_back({{"heading", heading}, {"text", text}});
   ordered_json json = {{"confirmed", network.exact},
                        {"missed", known(network.violation)},
                        {"values", std::move(values)},
@@ -138,7 +135,7 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"captured", nullptr},
                        {"random_mm", nullptr},
                        {"minutes_on_site", nullptr},
-                       {"summary", std::move(summary)},
+                       {"summary", lines_json(summary_lines(network, requirements))},
                        {"stations", stations_json(network)},
                        {"visit", nullptr},
                        {"parts", nullptr}};
@@ -247,8 +244,7 @@ ordered_json report_json(const Report& report) {
   for (const Report::Network& network : report.networks) {
     networks.push_back(network_json(network.evaluation, report.requirements));
     networks.back()["dominated"] = network.dominated;
-    for (const auto& [heading, text] : report.ground)
-      networks.back()["summary"].push_back({{"heading", heading}, {"text", text}});
+    for (ordered_json& line : lines_json(report.ground)) networks.back()["summary"].push_back(std::move(line));
   }
   ordered_json& stations = networks[report.answer]["stations"];
   for (std::size_t k = 0; k < report.pictures.size(); ++k)

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
@@ -45,7 +45,7 @@ void front_plans(Sheet& sheet, const Report& report, Site& site, const std::stop
   if (report.plan.empty()) {
     std::span<const StationError> errors;
     if (network.registration) errors = network.registration->stations;
-    const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
+    const StationLinks links = links_to_draw(network);
     drawn = plan_view_pictures({.scene = site.scene(),
                                 .area = site.area(),
                                 .stations = network.stations,
@@ -68,8 +68,7 @@ void front_plans(Sheet& sheet, const Report& report, Site& site, const std::stop
         return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
       });
     };
-    std::vector<std::size_t> order(plans.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::size_t> order = first_numbers(plans.size());
     std::ranges::stable_sort(order, std::ranges::greater{}, standing);
     std::vector<const Canvas*> sorted;
     for (const std::size_t k : order) sorted.push_back(plans[k]);

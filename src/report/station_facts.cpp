@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "core/text.hpp"
 #include "export/section.hpp"
 #include "report/coverage_cells.hpp"
@@ -183,8 +183,7 @@ std::string session_links(const Session& session, const Evaluation& network) {
 }
 
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts) {
-  std::vector<std::size_t> order(facts.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = first_numbers(facts.size());
   std::ranges::stable_sort(order, {},
                            [&](std::size_t k) { return facts[k].visit == 0 ? facts.size() + 1 : facts[k].visit; });
   return order;

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "core/disjoint_sets.hpp"
 
 namespace vantage {
 namespace {
@@ -114,20 +115,14 @@ Welded weld(const SceneData& scene) {
 // Marks the vertices of closed surfaces: connected triangles that pass every edge as often in one direction as in the
 // other.
 void mark_solids(Welded& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets surfaces(mesh.positions.size());
   std::vector<std::pair<std::uint64_t, int>> edges;  // both ends, lower first; whether passed upward
   edges.reserve(mesh.indices.size());
   for (std::size_t k = 0; k < mesh.indices.size(); k += 3)
     for (const std::size_t j : {0u, 1u, 2u}) {
       const std::uint32_t a = mesh.indices[k + j], b = mesh.indices[k + (j + 1) % 3];
       edges.emplace_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), a < b ? 1 : -1);
-      const std::uint32_t one = root(a), other = root(b);
-      parent[std::max(one, other)] = std::min(one, other);
+      surfaces.join(a, b);
     }
   std::ranges::sort(edges, {}, &std::pair<std::uint64_t, int>::first);
   std::vector<bool> open(mesh.positions.size(), false);
@@ -135,10 +130,10 @@ void mark_solids(Welded& mesh) {
     int sum = 0;
     const std::uint64_t edge = edges[k].first;
     for (; k < edges.size() && edges[k].first == edge; ++k) sum += edges[k].second;
-    if (sum != 0) open[root(static_cast<std::uint32_t>(edge))] = true;
+    if (sum != 0) open[surfaces.find(static_cast<std::uint32_t>(edge))] = true;
   }
-  for (std::uint32_t v = 0; v < parent.size(); ++v)
-    if (!open[root(v)]) mesh.kinds[v] |= kSolidVertex;
+  for (std::uint32_t v = 0; v < surfaces.size(); ++v)
+    if (!open[surfaces.find(v)]) mesh.kinds[v] |= kSolidVertex;
 }
 
 // Meshoptimizer knows no kinds: each is simplified separately, to its share of the triangles.

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "core/disjoint_sets.hpp"
 
 namespace vantage {
 namespace {
@@ -55,12 +56,7 @@ std::vector<double> WallCorners::straight_runs() const {
     ends[square_key(lines_[k].ax, lines_[k].ay, 1e-3)].push_back(k);
     ends[square_key(lines_[k].bx, lines_[k].by, 1e-3)].push_back(k);
   }
-  std::vector<std::uint32_t> parent(lines_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
+  DisjointSets stretches(lines_.size());
   constexpr std::size_t kCrowd = 64;  // lines at one point: no wall
   for (const auto& [key, all] : ends) {
     if (all.size() > kCrowd) continue;
@@ -69,14 +65,13 @@ std::vector<double> WallCorners::straight_runs() const {
         const Line &a = lines_[all[i]], &b = lines_[all[j]];
         const double ax = a.bx - a.ax, ay = a.by - a.ay, bx = b.bx - b.ax, by = b.by - b.ay;
         if (std::abs(ax * bx + ay * by) < kStraight * std::hypot(ax, ay) * std::hypot(bx, by)) continue;
-        const std::uint32_t p = root(all[i]), q = root(all[j]);
-        parent[std::max(p, q)] = std::min(p, q);
+        stretches.join(all[i], all[j]);
       }
   }
   std::vector<double> sums(lines_.size(), 0), runs(lines_.size());
   for (std::uint32_t k = 0; k < lines_.size(); ++k)
-    sums[root(k)] += std::hypot(lines_[k].bx - lines_[k].ax, lines_[k].by - lines_[k].ay);
-  for (std::uint32_t k = 0; k < lines_.size(); ++k) runs[k] = sums[root(k)];
+    sums[stretches.find(k)] += std::hypot(lines_[k].bx - lines_[k].ax, lines_[k].by - lines_[k].ay);
+  for (std::uint32_t k = 0; k < lines_.size(); ++k) runs[k] = sums[stretches.find(k)];
   return runs;
 }
 

@@ -14,6 +14,7 @@
 #include "core/seconds_since.hpp"
 #include "core/text.hpp"
 #include "export/pictures.hpp"
+#include "export/shown_links.hpp"
 #include "export/station_files.hpp"
 #include "export/tables.hpp"
 #include "plan/why_missed.hpp"
@@ -81,7 +82,7 @@ class FolderWriter {
         time_(options.max_seconds ? std::max(*options.max_seconds, 1e-9) : 0, watch.stop),
         entry_(result.front[answer(result)]),
         names_(station_names(entry_.stations, entry_.names)),
-        links_(entry_.links().value_or(StationLinks{.least = entry_.link_overlap})) {}
+        links_(links_to_draw(entry_)) {}
 
   WrittenFolder write() {
     // The evaluation that counted the answer mostly kept its points.

@@ -9,12 +9,12 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "core/add_saturating.hpp"
+#include "core/first_numbers.hpp"
 #include "core/lru_cache.hpp"
 #include "core/parallel.hpp"
 #include "core/parse.hpp"
@@ -317,8 +317,7 @@ struct Simulator::Impl {
   }
   // The same of every voxel.
   std::vector<MeshVoxels> count_meshes(std::span<const std::uint32_t> points) {
-    std::vector<std::uint32_t> voxel_indices(grid->size());
-    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+    std::vector<std::uint32_t> voxel_indices = first_numbers<std::uint32_t>(grid->size());
     return std::move(count_meshes(points, voxel_indices, 0, 1).front());
   }
   // Fills the counts by mesh of a sample, and of its groups.
@@ -379,8 +378,7 @@ struct Simulator::Impl {
                       const RegistrationModel& model, const std::stop_token& stop) {
     const bool kept = grid->size() <= kKeptPlanes;
     const auto planes = [&](std::size_t first, std::size_t many) -> std::shared_ptr<const Patches> {
-      std::vector<std::uint32_t> voxel_indices(many);
-      std::iota(voxel_indices.begin(), voxel_indices.end(), static_cast<std::uint32_t>(first));
+      std::vector<std::uint32_t> voxel_indices = first_numbers<std::uint32_t>(many, static_cast<std::uint32_t>(first));
       if (kept) {
         const std::optional<RegistrationJob> job = registration_of(voxel_indices, 0, model, false, stop);
         return job ? job->patches : nullptr;
@@ -396,7 +394,7 @@ struct Simulator::Impl {
   }
   // Fills the sums of a sample that grows until they are known well enough, or of every voxel. False if stopped.
   bool register_enough(std::span<const TraceStation> stations, NetworkCounts& counts, const StationMasks& masks,
-                       const EvaluateOptions& options, std::size_t network, const std::stop_token& stop) {
+                       const EveryRayOptions& options, std::size_t network, const std::stop_token& stop) {
     for (std::uint64_t voxels = options.registration_voxels; voxels < grid->size(); voxels *= kSampleGrowth) {
       const std::vector<std::uint32_t>& sample = sample_of(voxels, 0).voxel_indices;
       const auto job = registration_of(sample, 0, *options.registration, true, stop);
@@ -434,9 +432,9 @@ struct Simulator::Impl {
   NetworkCounts count_beams(std::span<const TraceStation> stations, std::uint32_t station_count,
                             const BeamOptions& beam, bool masks, VoxelField& field, const Progress& progress);
   // `place`: the network's number among those of the caller.
-  NetworkCounts evaluate(const Network& network, const EvaluateOptions& options, std::size_t place,
+  NetworkCounts evaluate(const Network& network, const EveryRayOptions& options, std::size_t place,
                          const Progress& progress);
-  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
+  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EveryRayOptions& options,
                                            const Progress& progress);
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                               const Progress& progress);
@@ -582,14 +580,14 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
   return impl_->alone([&] { return impl_->scan(station, options, sink, progress); });
 }
-NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
+NetworkCounts Simulator::evaluate(const Network& network, const EveryRayOptions& options, const Progress& progress) {
   return impl_->alone([&] {
     NetworkCounts counts = impl_->evaluate(network, options, 0, progress);
     impl_->done.networks += 1, impl_->done.rays += counts.rays;
     return counts;
   });
 }
-std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
+std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EveryRayOptions& options,
                                                     const Progress& progress) {
   return impl_->alone([&] {
     std::vector<NetworkCounts> all = impl_->evaluate_each(networks, options, progress);
@@ -711,7 +709,7 @@ NetworkCounts Simulator::Impl::count_beams(std::span<const TraceStation> station
   return counts;
 }
 
-NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOptions& options, std::size_t place,
+NetworkCounts Simulator::Impl::evaluate(const Network& network, const EveryRayOptions& options, std::size_t place,
                                         const Progress& progress) {
   check_registration(options.registration, options.overlap);
   if (options.registration_voxels == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
@@ -748,7 +746,7 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
 }
 
 std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Network> networks,
-                                                          const EvaluateOptions& options, const Progress& progress) {
+                                                          const EveryRayOptions& options, const Progress& progress) {
   if (options.field && networks.size() != 1)
     throw Error(Errc::invalid_argument, "the points of every voxel are kept of one network at a time");
   std::vector<NetworkCounts> all(networks.size());

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
+#include "core/first_numbers.hpp"
 #include "core/golden_step.hpp"
 #include "core/parallel.hpp"
 #include "core/philox.hpp"
@@ -19,11 +19,8 @@ constexpr std::uint64_t sample_stream = 0x766f78656cull;
 std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t size, std::uint64_t seed,
                                         std::uint64_t from) {
   assert(population < (std::uint64_t{1} << 32));
-  std::vector<std::uint32_t> voxel_indices(std::min(size, population));
-  if (size >= population) {
-    std::iota(voxel_indices.begin(), voxel_indices.end(), std::uint32_t{0});
-    return voxel_indices;
-  }
+  if (size >= population) return first_numbers<std::uint32_t>(population);
+  std::vector<std::uint32_t> voxel_indices(size);
   const std::uint64_t step = golden_step(population);
   auto voxel_index =
       static_cast<std::uint64_t>(RandomStream(seed, sample_stream).uniform() * static_cast<double>(population));

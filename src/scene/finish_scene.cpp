@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/rounded.hpp"
 #include "scene/cut_coplanar.hpp"
 #include "scene/raw_scene.hpp"
 #include "scene/shared_meshes.hpp"
@@ -151,11 +151,9 @@ void note_lost_precision(RawScene& raw, const Box& local) {
                                     std::abs(local.max.x), std::abs(local.max.y), std::abs(local.max.z)});
   const double lost = raw.coarsest_input_spacing_m;
   if (lost < kWorthSaying_m || lost < 8 * spacing_of_floats_at(farthest)) return;
-  char metres[32];
-  std::snprintf(metres, sizeof metres, "%.3g", lost);
   raw.notes.push_back(
-      std::string("large coordinates are baked into float32 vertices, which the file resolves only to ") + metres +
-      " m; export with the offset in a node's translation instead");
+      std::string("large coordinates are baked into float32 vertices, which the file resolves only to ") +
+      rounded(lost) + " m; export with the offset in a node's translation instead");
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
+#include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
 #include "scene/door_leaf.hpp"
 #include "scene/positions.hpp"
@@ -100,17 +102,9 @@ Connected connect(std::span<const Triangle> triangles, std::span<const Position>
   for (const Triangle& t : triangles)
     for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
   if (triangles.empty()) return {};
-  std::vector<std::uint32_t> parent(high - low + 1), order(parent.size());
-  std::iota(parent.begin(), parent.end(), 0U), std::iota(order.begin(), order.end(), 0U);
-  const auto find = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  const auto join = [&](std::uint32_t v, std::uint32_t w) {
-    v = find(v), w = find(w);
-    parent[std::max(v, w)] = std::min(v, w);
-  };
-  for (const Triangle& t : triangles) join(t[0] - low, t[1] - low), join(t[0] - low, t[2] - low);
+  DisjointSets parts(high - low + 1);
+  std::vector<std::uint32_t> order = first_numbers<std::uint32_t>(parts.size());
+  for (const Triangle& t : triangles) parts.join(t[0] - low, t[1] - low), parts.join(t[0] - low, t[2] - low);
   const auto key = [&](std::uint32_t v) {
     const Position& p = positions[low + v];
     return std::tie(p.x, p.y, p.z);
@@ -121,18 +115,19 @@ Connected connect(std::span<const Triangle> triangles, std::span<const Position>
   });
   parallel::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) { return key(v) < key(w); });
   for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i]) == key(order[i - 1])) join(order[i], order[i - 1]);
+    if (key(order[i]) == key(order[i - 1])) parts.join(order[i], order[i - 1]);
   Connected out{std::vector<std::uint32_t>(triangles.size()), {0}};
   std::vector<std::uint32_t>& number = order;  // of the part of each root
-  number.assign(parent.size(), kNone);
+  number.assign(parts.size(), kNone);
   for (const Triangle& t : triangles) {
-    std::uint32_t& part = number[find(t[0] - low)];
+    std::uint32_t& part = number[parts.find(t[0] - low)];
     if (part == kNone) part = static_cast<std::uint32_t>(out.begin.size()) - 1, out.begin.push_back(0);
     ++out.begin[part + 1];
   }
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
   std::vector<std::uint32_t> at = out.begin;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) out.triangles[at[number[find(triangles[i][0] - low)]]++] = i;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    out.triangles[at[number[parts.find(triangles[i][0] - low)]]++] = i;
   return out;
 }
 

@@ -5,11 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
+#include "core/person.hpp"
 #include "scene/columns.hpp"
 #include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
@@ -22,8 +23,8 @@ namespace {
 constexpr std::array<UpAxis, 3> kAxes{UpAxis::y, UpAxis::z, UpAxis::x};
 constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::centimetre, Unit::millimetre};
 
-// A person, and what is built for one. Metres.
-constexpr double kTall = 1.8, kClimb = 0.25, kRoom_m2 = 2;
+// What is built for a person. Metres.
+constexpr double kRoom_m2 = 2;
 constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLowestDoor = 1.85, kHighestDoor = 2.6,
                  kThickestWall = 0.8, kLintel = 0.1;
 constexpr double kLeastRise = 0.12, kMostRise = 0.215, kLeastGoing = 0.2, kMostGoing = 0.45;
@@ -55,26 +56,25 @@ class Walk {
   Walk(const Columns& columns, double metres)
       : c_(columns),
         metres_(metres),
-        tall_(static_cast<float>(kTall / metres)),
-        climb_(static_cast<float>(std::max(kClimb / metres, 0.9 * columns.cell()))),
-        part_(columns.levels().size()) {
-    std::iota(part_.begin(), part_.end(), 0U);
+        tall_(static_cast<float>(person::kHeight_m / metres)),
+        climb_(static_cast<float>(std::max(person::kStep_m / metres, 0.9 * columns.cell()))),
+        parts_(columns.levels().size()) {
     for (std::uint32_t column = 0; column < c_.count(); ++column)
       for (int axis = 0; axis < 2; ++axis)
         if (const auto beside = neighbour(column, axis))
           for (std::uint32_t a = c_.first(column); a < c_.first(column + 1); ++a)
             for (std::uint32_t b = c_.first(*beside); b < c_.first(*beside + 1); ++b)
-              if (linked(column, axis, a, b)) join(a, b);
+              if (linked(column, axis, a, b)) parts_.join(a, b);
   }
 
   void measure(Hypothesis& h) {
     const double cell = c_.cell() * metres_, square = cell * cell;
-    std::vector<std::uint32_t> size(part_.size(), 0);
+    std::vector<std::uint32_t> size(parts_.size(), 0);
     std::vector<std::pair<double, double>> headroom;
     double under = 0;
-    for (std::uint32_t i = 0; i < part_.size(); ++i) {
+    for (std::uint32_t i = 0; i < parts_.size(); ++i) {
       const Columns::Level& level = c_.levels()[i];
-      if (level.free >= tall_) ++size[root(i)];
+      if (level.free >= tall_) ++size[parts_.find(i)];
       if (std::isinf(level.free)) continue;
       under += 1;
       h.rooms += within(level.free * metres_, 1.7, 2.2, 5, 12);
@@ -88,9 +88,9 @@ class Walk {
       if (n * square >= kRoom_m2) h.floor_m2 += n * square;
     }
     std::vector<float> heights;
-    for (std::uint32_t i = 0; i < part_.size(); ++i)
+    for (std::uint32_t i = 0; i < parts_.size(); ++i)
       if (const float free = c_.levels()[i].free;
-          !std::isinf(free) && size[root(i)] * square >= kRoom_m2 && free >= tall_)
+          !std::isinf(free) && size[parts_.find(i)] * square >= kRoom_m2 && free >= tall_)
         heights.push_back(free);
     if (!heights.empty()) {
       const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
@@ -99,11 +99,11 @@ class Walk {
     }
     h.reached = largest * square / outline;
     std::array<std::vector<std::uint8_t>, 2> lintel;
-    for (auto& some : lintel) some.assign(part_.size(), 0);
+    for (auto& some : lintel) some.assign(parts_.size(), 0);
     const auto for_places = [&](const auto& visit) {
       for (std::uint32_t column = 0; column < c_.count(); ++column)
         for (std::uint32_t i = c_.first(column); i < c_.first(column + 1); ++i)
-          if (c_.levels()[i].free >= tall_ && size[root(i)] * square >= kRoom_m2) visit(Place{column, i});
+          if (c_.levels()[i].free >= tall_ && size[parts_.find(i)] * square >= kRoom_m2) visit(Place{column, i});
     };
     for_places([&](const Place& at) {
       for (int axis = 0; axis < 2; ++axis) {
@@ -203,19 +203,10 @@ class Walk {
     return false;
   }
 
-  std::uint32_t root(std::uint32_t i) {
-    while (part_[i] != i) i = part_[i] = part_[part_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    part_[std::max(a, b)] = std::min(a, b);
-  }
-
   const Columns& c_;
   double metres_;
   float tall_, climb_;
-  std::vector<std::uint32_t> part_;
+  DisjointSets parts_;
 };
 
 // The unit that a model's drawing grid is of: most faces across an axis lie at multiples of 8 where it is drawn in

@@ -19,8 +19,8 @@ namespace {
 
 glm::dvec3 survey(const MeshPlace& place, const Float3& p) { return to_glm(place(p)); }
 
-// Whether a ray can be moved into the mesh's frame and back without losing much of its precision: the axes are not
-// much unequal, nor nearly in one plane.
+// True if a ray keeps most of its precision when it is moved into the mesh's frame and back. The axes must have similar
+// lengths, and must not lie nearly in one plane.
 bool moves_rays(const MeshPlace& place) {
   constexpr double kMostCondition = 24;  // 3 where axes are equal and upright; some 23 where one is 16 times the others
   constexpr double kLeastScale = 1e-6, kMostScale = 1e4;
@@ -28,7 +28,8 @@ bool moves_rays(const MeshPlace& place) {
   return size >= kLeastScale && size <= kMostScale && condition(place.x, place.y, place.z) <= kMostCondition;
 }
 
-// Appends the vertices of a placed mesh. The arrays are as long as the positions once any mesh has such values.
+// Appends the vertices of a placed mesh. An array of attributes is as long as the positions as soon as one mesh has
+// that attribute.
 template <class T, class Value>
 void append(std::vector<T>& values, bool any, std::size_t before, std::size_t count, T fallback, const Value& value) {
   if (!any && values.empty()) return;
@@ -89,8 +90,8 @@ MeshPlace place_of(const glm::dmat4& m) {
   place.y = to_vec3(glm::dvec3(m[1]));
   place.z = to_vec3(glm::dvec3(m[2]));
   place.origin = to_vec3(glm::dvec3(m[3]));
-  // Normals map as by the inverse transpose: the cofactors, signed by the determinant, which stay defined where the
-  // matrix flattens space.
+  // Normals map by the inverse transpose. The cofactors, with the sign of the determinant, equal it up to a factor, and
+  // are defined even if the matrix flattens space.
   place.mirrored = dot(place.x, cross(place.y, place.z)) < 0;
   const double sign = place.mirrored ? -1 : 1;
   place.normal_x = cross(place.y, place.z) * sign;
@@ -160,7 +161,8 @@ void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored) {
 
 void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
               const std::vector<std::vector<std::uint8_t>>& taken) {
-  // Per mesh: the mesh without what is taken, which takes its number if no run is left to it.
+  // `rest` is, for each mesh, the mesh without the taken triangles. It takes the mesh's own number if no run keeps the
+  // whole mesh.
   const std::size_t count = raw.shared.size();
   std::vector<std::uint32_t> rest(count), part(count);
   std::vector<std::uint8_t> whole(count, 0);
@@ -179,7 +181,7 @@ void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
     if (whole[m]) raw.shared.push_back(SharedMesh(raw.shared[m]));
     keep(raw.shared[rest[m]], left);
   }
-  // The triangles that are taken are a mesh of their own until they are stored.
+  // The taken triangles form a mesh of their own until they are stored.
   const std::size_t left = raw.shared.size();
   raw.shared.insert(raw.shared.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   std::vector<std::uint8_t> stored;

@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-// Of `survey_from_mesh`, which is affine.
+// Returns the place of a mesh with this transform, which is affine.
 MeshPlace place_of(const glm::dmat4& survey_from_mesh);
 // The same, followed by the change of axes and unit of reinterpret_axes().
 MeshPlace reinterpreted(const MeshPlace& place, Unit unit, UpAxis up);
@@ -35,11 +35,12 @@ std::vector<PlacedRun> placed_runs(const RawScene& raw);
 // The run of a triangle. REQUIRES: it is none of the scene's own.
 std::size_t run_of(std::span<const PlacedRun> runs, std::uint32_t triangle);
 
-// Stores runs where they stand, behind the range's own triangles: those that are not 0, one for each run.
+// Stores some runs where they stand, behind the range's own triangles. `runs` has an entry for each run; those that are
+// not 0 are stored.
 void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored);
-// Stores some triangles of the runs that are not 0 where these stand, likewise, and shares the others. `taken` has an
-// entry for each shared mesh: empty, or per triangle what is not 0 if it is taken. REQUIRES: it is not empty for these
-// runs.
+// Stores some triangles of these runs where they stand, likewise, and shares the others. `taken` has an entry for each
+// shared mesh. It is empty, or has an element for each triangle; those that are not 0 are stored. REQUIRES: it is not
+// empty for the meshes of these runs.
 void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
               const std::vector<std::vector<std::uint8_t>>& taken);
 
@@ -59,16 +60,17 @@ void for_each_placed(const RawScene& raw, std::size_t range, const Visit& visit)
   }
 }
 
-// A part of the scene in which nothing is shared: all of its own triangles, and as many shared meshes, in their order,
-// as have no more than `most` triangles together.
+// Returns a part of the scene in which nothing is shared. It has all of the scene's own triangles, and the first shared
+// meshes as long as these have at most `most` triangles together.
 RawScene excerpt(const RawScene& raw, std::size_t most);
 
-// What cleaning did to shared meshes, in triangles of the scene.
+// Number of the scene's triangles that cleaning dropped from shared meshes.
 struct SharedCleaning {
   std::size_t not_finite = 0, without_area = 0, duplicates = 0;
 };
-// Drops what finish_scene() drops. A triangle that has no area at one of its places, once rounded to float there, is
-// dropped at all of them; those that coincide with triangles of other meshes are kept.
+// Drops triangles of shared meshes for the same reasons as finish_scene(). A triangle may have no area at one of its
+// places, once its corners are rounded to float there. It is then dropped at all of its places. Triangles that coincide
+// with those of other meshes are kept.
 class SharedCleaner {
  public:
   explicit SharedCleaner(RawScene& raw) : raw_(raw) {}

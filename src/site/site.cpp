@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/read_json.hpp"
+#include "core/rounded.hpp"
 #include "core/setting_list.hpp"
 #include "core/site_reach.hpp"
 #include "core/utf8.hpp"
 #include "placement/ground_weights.hpp"
 #include "placement/nearest_place.hpp"
+#include "placement/no_ground.hpp"
 #include "placement/place_head.hpp"
 #include "scan/scan_seconds.hpp"
 #include "scene/scene_data.hpp"
@@ -22,13 +23,6 @@
 
 namespace vantage {
 namespace {
-
-// For people.
-std::string rounded(double value, int digits = 3) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
-  return buffer.data();
-}
 
 // The common detail of all surveyed meshes; empty if they have none or differ.
 std::optional<double> common_detail(const Scene& scene) {
@@ -171,6 +165,7 @@ struct Site::Impl {
   WalkableOptions walkable;
   std::vector<SiteChoice> choices;
   std::optional<SearchArea> area;
+  bool no_ground = false;  // found out once
   std::optional<ClashChecker> clash;
   std::optional<Simulator> simulator, surroundings;
 
@@ -280,12 +275,11 @@ struct Site::Impl {
   bool has_area() {
     if (scene.has_search_area() || area) return true;
     try {
-      search_area();
-      return true;
-    } catch (const Error& error) {
-      if (error.code() != Errc::invalid_argument) throw;
-      return false;
+      if (!no_ground) search_area();
+    } catch (const NoGround&) {
+      no_ground = true;
     }
+    return !no_ground;
   }
 
   // Raises the weight of everything except the ground, so that ground has a third of coverage at most.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/beyond.hpp"
+#include "core/first_numbers.hpp"
 #include "core/graph.hpp"
 #include "core/parallel.hpp"
 #include "scene/changed_scene.hpp"
@@ -261,12 +261,11 @@ std::optional<NextAnswer> next_stations(Site& found, std::span<const TakenScan> 
 
   CoverProblem problem{.matrix = table.matrix,
                        .graph = config.link > 0 ? &table.graph : nullptr,
-                       .existing = std::vector<std::size_t>(table.scans),
+                       .existing = first_numbers(table.scans),
                        .fewest = 0,
                        .most = config.most,
                        .coverage = config.capture,
                        .link = config.link};
-  std::iota(problem.existing.begin(), problem.existing.end(), std::size_t{0});
   const CoverSolution chosen = choose(table, problem, answer.planned, progress.stop);
   if (progress.stopped()) return std::nullopt;
   order(table, chosen.chosen, config.link, answer);

@@ -28,7 +28,7 @@ constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
 };
 
 // Resolves `automatic`.
-DeviceChoice settled(Engine engine, std::optional<std::uint32_t> device_index) {
+DeviceChoice resolved(Engine engine, std::optional<std::uint32_t> device_index) {
   if (engine != Engine::automatic) return {engine, device_index};
   const auto engines = list_engines();
   const EngineInfo& chosen = engines[default_engine(engines, device_index)];
@@ -84,7 +84,7 @@ std::vector<EngineInfo> list_engines() {
 }
 
 ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_index) {
-  const DeviceChoice chosen = settled(engine, device_index);
+  const DeviceChoice chosen = resolved(engine, device_index);
   ChosenDevice device{.engine = chosen.engine};
   if (chosen.engine == Engine::embree) return device;
   const std::vector<EngineInfo> listed = list_vulkan_engines(vulkan_engines);
@@ -101,7 +101,7 @@ ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_in
 
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
-  const DeviceChoice device = settled(engine, device_index);
+  const DeviceChoice device = resolved(engine, device_index);
   if (device.engine == Engine::embree) return make_once(device, scene);
   return std::make_unique<RebuildingTracer>([=] { return make_once(device, scene); }, std::move(warn));
 }
@@ -122,7 +122,7 @@ std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const
   std::vector<std::future<std::unique_ptr<Tracer>>> building;
   for (const DeviceChoice& device : devices)
     building.push_back(
-        std::async(std::launch::async, [&] { return make_once(settled(device.engine, device.index), scene); }));
+        std::async(std::launch::async, [&] { return make_once(resolved(device.engine, device.index), scene); }));
   std::vector<std::unique_ptr<Tracer>> tracers;
   std::optional<DeviceFault> fault;
   for (auto& each : building) try {

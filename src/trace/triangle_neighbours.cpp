@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 #include <tuple>
 
+#include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
 #include "shared/trace_types.h"
 
@@ -20,8 +20,7 @@ std::vector<std::uint32_t> first_at_its_place(std::span<const Float3> positions)
     return std::array{std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
                       std::bit_cast<std::uint32_t>(p.z)};
   };
-  std::vector<std::uint32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
+  std::vector<std::uint32_t> order = first_numbers<std::uint32_t>(positions.size());
   parallel::sort(order.begin(), order.end(),
                  [&](std::uint32_t a, std::uint32_t b) { return std::tuple(place(a), a) < std::tuple(place(b), b); });
   std::vector<std::uint32_t> first(positions.size());

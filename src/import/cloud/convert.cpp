@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "core/rounded.hpp"
 #include "import/cloud/byte_file.hpp"
 #include "import/cloud/cell_grid.hpp"
 #include "import/cloud/density.hpp"
@@ -45,11 +45,7 @@ std::string counted(std::uint64_t n, const char* what) {
   return text + " " + what;
 }
 
-std::string with_unit(double value, const char* unit) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g ", value);
-  return std::string(text) + unit;
-}
+std::string with_unit(double value, const char* unit) { return rounded(value) + " " + unit; }
 
 // A place with Z up as glTF has it, with Y up, or as it is.
 std::array<double, 3> up_axis(const Eigen::Vector3d& p, bool y_up) {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/text.hpp"
 #include "import/floor_plan/drawing.hpp"
 #include "import/floor_plan/join_ends.hpp"
 #include "import/floor_plan/layers.hpp"
@@ -60,12 +60,6 @@ Point scale_to_metres(Drawing& drawing, double metres) {
   for (Area& area : drawing.areas)
     for (auto& ring : area.rings) ring = simplified(ring, kCurve_m / 10);
   return origin;
-}
-
-std::string fixed(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
 }
 
 std::string counted(std::size_t count, const char* what) {

@@ -5,9 +5,9 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 
+#include "core/disjoint_sets.hpp"
 #include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/walls.hpp"
 
@@ -343,12 +343,7 @@ class Finder {
 
   void cluster(const std::vector<std::pair<Point, Point>>& loose, const std::vector<Kind>& kinds) {
     // Lines of one window touch, or lie side by side, at most a wall's thickness apart.
-    std::vector<std::size_t> root(loose.size());
-    std::iota(root.begin(), root.end(), std::size_t{0});
-    const auto find = [&](std::size_t i) {
-      while (root[i] != i) i = root[i] = root[root[i]];
-      return i;
-    };
+    DisjointSets windows(loose.size());
     const auto to_line = [](Point p, const std::pair<Point, Point>& line) {
       const Point along = line.second - line.first;
       const double t = std::clamp(dot(p - line.first, along) / std::max(dot(along, along), 1e-12), 0.0, 1.0);
@@ -368,11 +363,11 @@ class Finder {
       for (const Point& p : {loose[i].first, loose[i].second, (loose[i].first + loose[i].second) * 0.5})
         grid.visit(p, p, [&](std::size_t j) {
           if (kinds[j] == kinds[i] && (to_line(p, loose[j]) <= kTouch || abreast(loose[i], loose[j])))
-            root[find(i)] = find(j);
+            windows.join(i, j);
         });
     std::map<std::size_t, std::size_t> groups;
     for (std::size_t i = 0; i < loose.size(); ++i) {
-      const auto [found, is_new] = groups.try_emplace(find(i), groups_.size());
+      const auto [found, is_new] = groups.try_emplace(windows.find(i), groups_.size());
       if (is_new) groups_.push_back({kinds[i], {}});
       groups_[found->second].points.push_back(loose[i].first);
       groups_[found->second].points.push_back(loose[i].second);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
+#include "core/rounded.hpp"
 #include "import/floor_plan/dxf.hpp"
 #include "import/floor_plan/grid.hpp"
 #include "import/floor_plan/swings.hpp"
@@ -41,12 +41,6 @@ std::optional<double> door_width(const Drawing& drawing) {
     return *middle;
   }
   return std::nullopt;
-}
-
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 std::string sizes(const Drawing& drawing) {

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
+
+#include "core/first_numbers.hpp"
 
 namespace vantage::importer {
 namespace {
@@ -144,8 +145,7 @@ void cut_into_triangles(std::span<const glm::dvec3> points, std::span<const std:
   std::vector<std::vector<std::uint32_t>> loops;
   std::uint32_t first = 0;
   for (const std::size_t count : loop_sizes) {
-    std::vector<std::uint32_t> loop(count);
-    std::iota(loop.begin(), loop.end(), first);
+    std::vector<std::uint32_t> loop = first_numbers<std::uint32_t>(count, first);
     first += static_cast<std::uint32_t>(count);
     const bool hole = !loops.empty();
     if (hole && area_of(flat, loop) > 0) std::ranges::reverse(loop);

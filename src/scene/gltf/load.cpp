@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/rounded.hpp"
 #include "core/text.hpp"
 #include "import/import.hpp"
 #include "scene/cut_masks.hpp"
@@ -381,9 +381,7 @@ class Loader {
       if (std::ranges::find(names, raw_.meshes[m].name) == names.end()) names.push_back(raw_.meshes[m].name);
     }
     if (names.empty()) return std::nullopt;
-    char metres[32];
-    std::snprintf(metres, sizeof metres, "%.3g", area);
-    return Extent{metres, some_of(names)};
+    return Extent{rounded(area), some_of(names)};
   }
 
   void note_glass() {

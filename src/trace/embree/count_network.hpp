@@ -14,8 +14,8 @@ NetworkCounts count_network(std::span<const StationRays> scanners, std::span<con
                             std::uint32_t station_count, double goal_density, const Tracer::CountOptions& options,
                             PassField& scratch, const Progress& progress);
 
-// Tracer::count_each. A station common to several networks is traced once while there is room for its points: networks
-// of one front share half of their stations.
+// Tracer::count_each. A station that several networks share is traced once, as long as there is room for its points.
+// Networks of one front share half of their stations.
 std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
                                           std::span<const std::vector<TraceStation>> networks,
                                           std::span<const std::uint32_t> station_counts, double goal_density,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle as seen from a head, to be drawn: where RayCaster is certain to report it, and where it cannot.
+// A triangle as seen from a head, to be drawn. It tells which rays RayCaster certainly reports it for, and which it
+// cannot.
 //
 // Embree lets a ray of direction d through where the three Uₖ = edgeₖ·d have one sign, each off by up to doubtₖ. As d =
 // Σ Uₖ cornerₖ / K with K = normal·corner, Σ|Uₖ| >= K / farthest. If that is eight times the doubt, a ray may pass only
@@ -42,7 +43,7 @@ struct DrawnTriangle {
   Band band() const;
 
   double distance() const;  // of the head from the triangle
-  // Rays that may pass. REQUIRES: not flat.
+  // Bounds on the rays that may pass. REQUIRES: not flat.
   RayRanges rays(const RayPattern& pattern, const Turn* turn) const;
 
  private:
@@ -51,7 +52,8 @@ struct DrawnTriangle {
   double largest_;
 };
 
-// From the local frame to the scanner's; exact for dot products with the pattern's directions before they are turned.
+// Turns a direction from the local frame to the scanner's. Dot products with the pattern's directions, before these are
+// turned, are exact.
 Vec3 turned_back(const Turn* turn, const Vec3& v);
 
 }  // namespace vantage

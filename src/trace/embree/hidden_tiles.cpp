@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of a voxel's window are hidden, or pass beside its surfaces.
+// Finds the parts of a voxel's window that are hidden, or whose rays pass beside the voxel's surfaces.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,9 +11,9 @@
 namespace vantage {
 namespace {
 
-// Rays of a tile that are worth a probe and the tests of some triangles.
+// Least number of rays in a tile that pays for a probe and for tests of some triangles.
 constexpr std::uint32_t kTile = 64;
-// More than the rounding of directions adds to a cone around some.
+// Upper bound on what the rounding of directions adds to a cone around them.
 constexpr double kConeDoubt = 1e-6;
 
 }  // namespace
@@ -72,7 +72,8 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
       const double slope = dot(normal, cone.middle), least = slope - cone.radius;
       if (slope + cone.radius < -graze) continue;  // behind the head
       if (!(least > graze)) return false;
-      // A hit lies so far from that of the middle ray at most, and computed ones so much farther.
+      // Bound on the distance of a hit from that of the middle ray; computed hits may lie farther away by the second
+      // term.
       const double spread = height / least * cone.radius * (1 + 1 / slope);
       const Vec3 at = cone.middle * (height / slope) - centre;
       if (largest(at) - spread - static_cast<double>(float_doubt) * far / least > half) continue;

@@ -10,15 +10,15 @@ namespace vantage {
 inline constexpr double trust = 0x1p-7;
 // Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
 inline constexpr float grazing = 0x1p-10f;
-// If a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
-// plane well beyond the voxel, whatever the rounding.
+// A head may be higher above a plane than this part of the distance, over slenderness. A more grazing ray then meets
+// the plane well beyond the voxel, whatever the rounding.
 inline constexpr float sure_height = 1.5f * grazing;
-// Distances to planes are computed in float, with an error less than this part of the farthest, over the cosine.
-// Embree's allowance is at least eight times that, so half as much again is allowed for it.
+// Distances to planes are computed in float. Their error is less than this part of the farthest distance, over the
+// cosine. Embree's allowance is at least eight times as large, so the margin is half as much again.
 inline constexpr float float_doubt = 0x1p-21f;
 inline constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
 // Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
-// Above `steep`, cosine / slenderness makes that less than what `steep_part` leaves.
+// If cosine / slenderness is above `steep`, that error is less than `steep_part` allows for.
 inline constexpr float steep = 0x1p-5f, steep_part = 1 - 0x1.8p-13f;
 
 }  // namespace vantage

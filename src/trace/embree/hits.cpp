@@ -9,7 +9,7 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
-// Deviations that noise moves a point by at most: it is truncated at five, and rounded.
+// Largest number of standard deviations by which noise moves a point. It is truncated at five, and rounded.
 constexpr float kFarthest = 5.01f;
 
 // Shades several hits of one triangle. Each kind of normal has its own loop, since a branch would prevent
@@ -29,8 +29,8 @@ constexpr float kFarthest = 5.01f;
   }
 }
 
-// True if eight hits stay in their voxels, however they are moved within this reach: no side of their cells is as near,
-// along any axis, with all roundings of a coordinate allowed for.
+// True if eight hits stay in their voxels, however they are moved within this reach. Along each axis, all sides of
+// their cells must be farther away than that, with all roundings of a coordinate.
 [[gnu::always_inline]] inline bool stay_in_voxels(const Floats8& reach, const Float3& origin, const VoxelGrid& grid,
                                                   const Hits& hits, std::uint32_t first) {
   Floats8 t;

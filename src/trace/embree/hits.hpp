@@ -41,8 +41,8 @@ struct Hits {
   Float3 point(const Float3& origin, std::uint32_t k) const { return point_at(origin, {x[k], y[k], z[k]}, range[k]); }
 };
 
-// Fills `range`: distances of the points, noise included. `place` also keys the noise. With a grid, only the voxels of
-// the points are right: a range stays the hit's distance where noise moves no point out of its voxel.
+// Fills `range`, the distances of the points with their noise. `place` also keys the noise. With a grid, only the
+// points' voxels are right: a range stays the hit's distance if its noise moves no point out of its voxel.
 void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                  const VoxelGrid* grid = nullptr);
 

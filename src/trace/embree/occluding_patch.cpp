@@ -42,7 +42,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
   const SeenBox seen_box(box);
   const double away = std::sqrt(dot(seen_box.middle, seen_box.middle)),
                width = std::sqrt(dot(seen_box.half, seen_box.half)) / away;
-  // Whether a ray to the box may pass so near to a corner.
+  // True if a ray to the box may pass this near to a corner.
   const auto is_near = [&](const Vec3& corner, double doubt) {
     const Vec3 across = cross(corner, seen_box.middle);
     return !(std::sqrt(dot(across, across)) > (width + doubt) * away * std::sqrt(dot(corner, corner)));

@@ -18,11 +18,12 @@ class OccludingPatches {
   // Borrows the scene. Neighbours are found when they are first asked for.
   explicit OccludingPatches(const SceneData& scene) : scene_(scene) {}
 
-  // Whether any ray passes within `radius` of a point, as seen from the head.
+  // True if a ray passes within `radius` of a point, as seen from the head.
   using AnyRayNear = std::function<bool(const Vec3& point, double radius)>;
 
-  // Whether Embree is certain to report a hit on the triangle, or on others connected to it, beyond `start` and before
-  // a point of the box, for every ray of the scanner that reaches such a point. `box`: relative to the head.
+  // True if every ray of the scanner that would reach a point of the box is certain to be stopped. Embree must report a
+  // hit on the triangle, or on others connected to it, beyond `start` and before that point. `box` is relative to the
+  // head.
   //
   // Embree computes the same product, but for its sign, for both triangles of an edge, so a ray near an edge hits one
   // of them. Triangles of a shared mesh are tested in its own frame, so scenes that share meshes have no patches. The

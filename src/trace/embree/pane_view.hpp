@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces of glass as seen from one head. Rays that certainly pass one, or certainly none, are told without a tree.
+// Faces of glass as seen from one head. It decides without a tree which rays certainly pass a face, and which certainly
+// pass none.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace vantage {
 
 class PaneView {
  public:
-  // Of more faces, a tree finds those of a ray faster.
+  // The largest number of faces. A tree finds the faces of a ray faster if there are more.
   static constexpr std::size_t most_faces = 2048;
 
   // Shares ownership of both. REQUIRES: the scene has glass.
@@ -41,7 +42,7 @@ class PaneView {
   std::shared_ptr<const Planes> planes_;
   Float3 head_;
   std::vector<Face> faces_;
-  // Of the faces, in whole vectors: directions to their middles, and bounds of what lies around them.
+  // Directions to the middles of the faces, and bounds around these, in whole vectors.
   std::vector<float> x_, y_, z_, cosine_, sine_, nearest_;
 };
 

@@ -24,8 +24,9 @@ namespace {
 
 constexpr std::uint32_t in_doubt = 0x80000000u;
 
-// Of two inverse distances with a ratio below this, either may be the larger. In float, C sin θ + D cos θ has an error
-// of 2^-21 of the inverse of the plane's height: 2^-17 of the value where the cosine of the incidence is `steep`.
+// If the ratio of two inverse distances is below this, either may be the larger. In float, C sin θ + D cos θ has an
+// error of 2^-21 of the inverse of the plane's height. That is 2^-17 of the value if the cosine of the incidence is
+// `steep`.
 constexpr float apart = 1 + 0x1p-15f;
 constexpr float steep = 0x1p-4f;
 constexpr double least_slope = 0x1p-9;     // Planes clamps distances at half of it
@@ -35,7 +36,7 @@ constexpr float past_all = 8;              // beyond any angle
 constexpr std::int32_t lanes = 8;
 constexpr std::int32_t few_rows = 32;  // so many are quicker evaluated than bounded
 
-// What a triangle's rows are computed from, in the scanner's frame.
+// Coefficients from which a triangle's rows are computed, in the scanner's frame.
 struct Outline {
   float x[3], y[3], z[3], doubt[3];                       // edges
   float inverse_x, inverse_y, inverse_z, inverse_height;  // inverse distance along d: their product with d
@@ -265,7 +266,7 @@ class Picture::StripDrawing {
     const SceneData& scene = picture_.rays_.scene();
     const std::size_t end = picture_.begin_[index + 1];
     for (std::size_t k = picture_.begin_[index]; k < end; ++k) {
-      // By distance, triangles are anywhere in memory.
+      // Triangles in order of distance lie anywhere in memory.
       if (k + 8 < end && in_sight(picture_.items_[k + 8]))
         __builtin_prefetch(&scene.triangles[picture_.items_[k + 8].triangle]);
       if (k + 4 < end && in_sight(picture_.items_[k + 4]))
@@ -276,7 +277,7 @@ class Picture::StripDrawing {
   }
 
  private:
-  // Whether it is to be drawn in any of the tiles.
+  // True if the triangle is to be drawn in any of the tiles.
   bool in_sight(const Item& item) const {
     return item.row_begin < tiles_.end * block && item.row_end > tiles_.first * block;
   }
@@ -288,7 +289,7 @@ class Picture::StripDrawing {
   const float* sine() const { return picture_.sines(); }
   const float* cosine() const { return picture_.cosines(); }
 
-  // Whether something hides all of the tile that is no nearer.
+  // True if something hides everything in the tile that is no nearer.
   [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
     if (nearest * apart < strip_.farthest_[tile]) return true;
     if (strip_.stale_[tile] == 0) return false;
@@ -305,7 +306,7 @@ class Picture::StripDrawing {
     strip_.stale_[tile] = 0;
     return nearest * apart < least;
   }
-  // A triangle may be hit there, no nearer than that.
+  // Notes that a triangle may be hit in this row, no nearer than this.
   void doubt(std::uint32_t column, std::int32_t row, float nearest) {
     float& value = inverse(column)[row];
     if (nearest * apart < value) return;
@@ -319,7 +320,7 @@ class Picture::StripDrawing {
     const Float3 turned = picture_.station_.turn ? (*picture_.station_.turn)(d) : d;
     return {RayCaster::safe(turned.x), RayCaster::safe(turned.y), RayCaster::safe(turned.z)};
   }
-  // Of two triangles that are certainly hit, the one that RayCaster takes.
+  // Chooses between two triangles that are certainly hit as RayCaster does.
   void settle(std::uint32_t column, std::int32_t row, float value, std::uint32_t triangle) {
     std::uint32_t& held = triangles(column)[row];
     if (held >= none) return doubt(column, row, value);
@@ -395,7 +396,7 @@ class Picture::StripDrawing {
       merge(column, row, triangle, c * sines + outline.inverse_z * cosines, possible, sure);
     }
   }
-  // For grazing rays and near hits: with all that may go wrong.
+  // Draws grazing rays and near hits, with all their doubts.
   [[gnu::always_inline]] void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column,
                                              const Rows& rows) {
     const std::int32_t begin = rows.begin[column], end = rows.end[column];
@@ -427,8 +428,8 @@ class Picture::StripDrawing {
       merge(column, row, item.triangle, value, possible, sure);
     }
   }
-  // Rays within the band of a flat triangle are in doubt: around where the band's plane meets the column, and where it
-  // does opposite. In a column, |R sin(θ₀ − θ)| <= doubt.
+  // Marks the rays within the band of a flat triangle as in doubt. They lie around the two zeniths at which the band's
+  // plane meets the column: |R sin(θ₀ − θ)| <= doubt.
   void draw_band(const DrawnTriangle::Band& band, const Item& item, std::uint32_t column, std::int32_t row_begin,
                  std::int32_t row_end) {
     const RayPattern& pattern = picture_.rays_.pattern();
@@ -493,7 +494,7 @@ inline void Picture::StripDrawing::draw(const Item& item) {
   outline.inverse_z = static_cast<float>(plane.z);
   outline.inverse_height = static_cast<float>(1 / seen.height);
   if (bottom - top > 4) {
-    // Of a large triangle, only what lies in a tile counts.
+    // A large triangle counts only by the part in the tile.
     const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
     const double radius = tile_radius_ / seen.height;
     const auto nearest_in = [&](std::uint32_t tile) {

@@ -23,14 +23,14 @@ class Picture {
 
   // Whether drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
-  // Of the rays within `ends`. Null where they are to be traced. Borrows all.
+  // Returns a picture of the rays within `ends`; null if they are to be traced. Borrows all.
   static std::unique_ptr<const Picture> where_it_pays(const StationRays& rays, const TraceStation& station,
                                                       const TileEnds& ends);
 
-  // Of the rays within `ends`. Borrows all. REQUIRES: the scene shares no meshes.
+  // Prepares the picture of the rays within `ends`. Borrows all. REQUIRES: the scene shares no meshes.
   Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends);
 
-  // It cannot from a head that stands in a surface.
+  // False if the head stands in a surface. Nothing can be drawn then.
   bool drawable() const { return drawable_; }
   std::uint32_t strips() const { return ends_.wide; }
 
@@ -43,7 +43,7 @@ class Picture {
     std::uint32_t first = 0, columns = 0;  // of the pattern
     std::uint64_t rays = 0;                // drawn, within the ends
     std::uint64_t traced = 0;              // of these, rays that drawing was not certain of
-    // Of the rays of a column, by rows.
+    // Values of the rays of a column, by rows.
     const std::uint32_t* triangles(std::uint32_t column) const { return triangle_[column * blocks_].of; }
 
    private:
@@ -56,7 +56,7 @@ class Picture {
     std::vector<std::uint8_t> doubts_;            // [tile] has rays in doubt
   };
 
-  // Of the zeniths, by row; readable up to eight beyond the last.
+  // Sines and cosines of the zeniths, by row. Up to eight elements beyond the last can be read.
   const float* sines() const { return sine_.front().of; }
   const float* cosines() const { return cosine_.front().of; }
 
@@ -81,7 +81,8 @@ class Picture {
   };
   class StripDrawing;
 
-  // Appends where it is to be drawn. Returns false if nothing can be, for the sake of this triangle.
+  // Appends the places where the triangle is to be drawn. Returns false if the triangle keeps anything from being
+  // drawn.
   bool place(std::uint32_t triangle, std::vector<Item>& items) const;
   void draw_triangles(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
   void trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip) const;

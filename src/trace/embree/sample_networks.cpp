@@ -49,8 +49,8 @@ struct SharedStation {
   std::vector<Use> uses;
 };
 
-// Stations of networks that share half of theirs or more. Empty if they share fewer, for which counting would not end
-// at a network's goal.
+// Returns the stations of networks that share half of their stations or more. It is empty if they share fewer, since
+// shared counting does not end at a network's goal.
 std::vector<SharedStation> shared_stations(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks) {
   const StationIds ids = station_ids(scanners, networks);

@@ -13,14 +13,14 @@
 namespace vantage {
 namespace {
 
-// What is wanted of a chunk's rays, and where it goes.
+// The outputs wanted of a chunk's rays, and the arrays for them.
 struct Wanted {
   Tracer::RawChunk& chunk;
   std::uint32_t outputs;
   std::uint64_t first_ray;  // of the chunk
 };
 
-// The elements of rays that hit nothing.
+// Fills the elements of rays that hit nothing.
 void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
   for (std::uint32_t i = 0; i < tile.rows; ++i) {
     const std::uint64_t first = rays.ray(tile.row + i, tile.column) - wanted.first_ray;

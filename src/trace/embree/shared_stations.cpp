@@ -5,8 +5,9 @@
 #include <array>
 #include <bit>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "core/first_numbers.hpp"
 
 namespace vantage {
 namespace {
@@ -59,8 +60,7 @@ SharedStations::SharedStations(std::span<const StationRays> scanners,
 }
 
 void SharedStations::put_in_order() {
-  std::vector<std::size_t> waiting(ids_.size());
-  std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+  std::vector<std::size_t> waiting = first_numbers(ids_.size());
   std::vector<bool> in_last(uses_.size());
   const auto in_common = [&](std::size_t network) {
     return std::ranges::count_if(ids_[network], [&](std::size_t id) { return in_last[id]; });

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-// How far the rays of each tile must be traced; 0: not at all.
+// The distance to which the rays of each tile must be traced; 0: not at all.
 struct TileEnds {
   std::uint32_t tall = 0, wide = 0;  // tiles
   std::vector<float> end;            // [row of tiles][column of tiles]

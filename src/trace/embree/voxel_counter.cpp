@@ -30,14 +30,14 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t rays_at_once = 2048;
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-// Rays of a voxel are probed one by one for an occluder as long as there are as many, and each hides as many: to trace
-// fewer takes no longer than a probe.
+// Rays of a voxel are probed one by one for an occluder as long as at least this many are left, and each probe hides at
+// least this many. Fewer rays are traced as fast as one is probed.
 constexpr std::uint32_t kWorthProbe = 8;
-// Rays of a voxel that are listed and traced next where there is a limit, in times of those before.
+// With a limit `stop_at`, each further step lists and traces this many times the rays of the step before.
 constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
-// Units of a window that are looked at before its tiles are.
+// Units of a window that are traced before its tiles are tested.
 constexpr std::uint32_t kFirstUnits = 64;
 
 // Whether VoxelGrid::cell_of(p) is `cell`.
@@ -102,8 +102,8 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
   }
 }
 
-// Finds the voxels of the block that the current station need look at: most voxels of a large site are behind walls,
-// and one triangle hides many of them.
+// Finds the voxels of the block that the current station may see. Most voxels of a large site are behind walls, and one
+// triangle hides many of them.
 void SampledVoxelCounter::find_open(std::size_t n) {
   met_.clear();
   for (std::uint32_t i = 0; i < n; ++i) open_[i] = !full(i);
@@ -286,8 +286,8 @@ bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
                              [&](const SampledVoxels::Plane& plane) { return crosses(plane, look.cube); });
 }
 
-// How far noise moves a hit on the planes of voxel number i, nearer than `far`: the less, the brighter they are and the
-// steeper they are seen.
+// Bound on how far noise moves a hit on the planes of voxel number i, nearer than `far`. It is smaller for bright
+// planes, and for planes that are met steeply.
 double SampledVoxelCounter::reach_of(std::uint32_t i, double far) const {
   const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
   double least = planes.empty() ? 0 : 1;
@@ -305,8 +305,8 @@ bool SampledVoxelCounter::crosses(const SampledVoxels::Plane& plane, const Cube&
   return !(std::abs(plane.offset) > (cube.half + static_cast<float>(4 * pad_)) * across);
 }
 
-// Of the head over a plane of voxel number i. In double, so that rounding, which turned the plane, turned it around the
-// voxel.
+// Height of the head over a plane of voxel number i. It is computed in double, so that the rounding that turned the
+// plane turned it around the voxel.
 float SampledVoxelCounter::height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const {
   return static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
                             static_cast<double>(plane.offset));
@@ -324,7 +324,7 @@ SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
   return {relative(p[0], head_), relative(p[1], head_), relative(p[2], head_)};
 }
 
-// Drops voxels that one triangle hides whole.
+// Drops voxels that a single triangle hides completely.
 void SampledVoxelCounter::drop_hidden_boxes() {
   probes_.clear();
   std::size_t kept = 0;
@@ -374,7 +374,7 @@ void SampledVoxelCounter::list_rays(const Look& look) {
   if (!window.empty()) list_rays({look, window, 0, counts_[i], {}}, wanted(i));
 }
 
-// Those planes of the voxel on which hits may count.
+// Collects the planes of the voxel on which hits may count.
 std::span<const SampledVoxelCounter::Ahead> SampledVoxelCounter::planes_of(const Look& look) {
   const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + look.voxel);
   std::size_t n = 0;
@@ -391,7 +391,7 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   const std::uint32_t i = look.voxel;
   const Cube& cube = look.cube;
   const std::span<const Ahead> planes = planes_of(look);
-  // Whole vectors of the batch, which are worth a test.
+  // The batch is emptied in whole vectors, since a test of fewer rays does not pay.
   std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
 
@@ -461,7 +461,7 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   return added;
 }
 
-// Those listed last are all of a voxel, or as many as are traced at once.
+// The rays that were listed last are all rays of a voxel, or as many as are traced at once.
 void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   rays.end = listed_size_;
   if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
@@ -487,9 +487,9 @@ void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
   rays.end = kept;
 }
 
-// Traces the listed rays. Most are stopped before they come near the voxel, and any hit is found faster than the
-// nearest. Occluders are therefore sought first, and nearest hits only for the other rays. An occluder comes before
-// everything that counts, so the answer for the other rays is the same.
+// Traces the listed rays. Most are stopped before they come near the voxel, and Embree finds any hit faster than the
+// nearest. Occluders are therefore sought first, and nearest hits for the other rays alone. An occluder lies before all
+// hits that count, so it changes no count.
 void SampledVoxelCounter::settle() {
   visible_.clear();
   while (!voxel_rays_.empty()) {
@@ -531,8 +531,8 @@ void SampledVoxelCounter::settle() {
 }
 
 // Traces the rays of visible voxels and counts points. With a limit `stop_at`, a first pass traces as many rays as
-// usually suffice, or one if the voxel is full and only the station's bit is missing; more and more follow until they
-// do.
+// usually suffice, or one if the voxel is full and only the station's bit is missing. Larger passes follow until the
+// limit is reached or no ray is left.
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
   if (stop_at_ == 0) {

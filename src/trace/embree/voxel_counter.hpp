@@ -16,8 +16,8 @@
 
 namespace vantage {
 
-// How far beyond the noise's reach of a cube a triangle may lie whose hit counts there: Embree's error at edges,
-// stretched by a slant.
+// Largest distance of a triangle from the noise's reach of a cube, if a hit on it counts there. It allows for Embree's
+// error at edges, stretched by a slant.
 inline double triangle_margin(double pad) { return 64 * pad; }
 
 // Works on blocks of voxels, one station after the other: bounds are computed side by side, and many rays are traced at
@@ -39,7 +39,8 @@ class SampledVoxelCounter {
   std::uint64_t traced() const { return traced_; }
 
  private:
-  // Region of hits whose points count in the voxel: within the noise's reach of its cube. Relative to the head.
+  // Region of the hits whose points count in the voxel. It ends at the noise's reach from the cube. Relative to the
+  // head.
   struct Cube {
     Float3 centre;
     float half;
@@ -54,7 +55,7 @@ class SampledVoxelCounter {
     alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
     alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the plane in work
   };
-  // What can be said of one voxel of the block before its rays are listed.
+  // Facts about one voxel of the block that are known before its rays are listed.
   struct Look {
     std::uint32_t voxel = 0;  // index in the block
     Cube cube;
@@ -66,13 +67,13 @@ class SampledVoxelCounter {
     const SampledVoxels::Plane* plane;
     float height;
   };
-  // Tiles of a window: up to 8 × 8 of 2^row_shift rows and 2^unit_shift units of SpreadUnits, and a bit for each of
-  // which no ray leaves a point in the voxel.
+  // Tiles of a window, up to 8 × 8, each of 2^row_shift rows and 2^unit_shift units of SpreadUnits. A bit is set for
+  // each tile from which no ray leaves a point in the voxel.
   struct Tiles {
     std::uint32_t row_shift = 31, unit_shift = 31;
     std::uint64_t hidden = 0;
   };
-  // A voxel of which some rays were listed, as many as usually suffice: the first `units` of SpreadUnits.
+  // A voxel whose first `units` of SpreadUnits were listed: as many rays as usually suffice.
   struct Rest {
     Look look;
     RayRanges window;
@@ -95,7 +96,7 @@ class SampledVoxelCounter {
   };
 
   void look_from(std::size_t first, std::size_t n);
-  // Whether the current station can skip voxel number i of the block.
+  // True if the current station can skip voxel number i of the block.
   bool full(std::uint32_t i) const {
     if (!leave_out_.empty() && leave_out_[i] != 0) return true;
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
@@ -110,13 +111,13 @@ class SampledVoxelCounter {
   void drop_hidden_groups(std::size_t level, std::size_t n);
   Box box_of(const SampledVoxels::Cells& cells) const;
   void drop_hidden_boxes();
-  // Triangles that were met last; those of a group are likely to hide its neighbours, too.
+  // Remembers a triangle that a ray met. One that hides a group of voxels is likely to hide its neighbours, too.
   void meet(std::uint32_t triangle);
   bool is_hidden(const SeenBox& box);
-  // Whether the triangle, alone or with others, hides all of the box.
+  // True if the triangle, alone or with others, hides all of the box.
   bool hides(std::uint32_t triangle, const Box& box);
   bool any_ray_near(const Vec3& point, double radius) const;
-  // Points that are still to be counted in voxel number i of the block, or more.
+  // Upper bound on the points that are still to be counted in voxel number i of the block.
   std::uint32_t wanted(std::uint32_t i) const;
   void list_rays(const Look& look);
   void list_rays(Rest rest, std::uint32_t enough);

@@ -116,6 +116,19 @@ TEST(Site, TakesTheSpacingOfWhatIsToBeMade) {
   }
 }
 
+TEST(Site, RefusesSettingsThatLeaveNoGround) {
+  SiteOptions options = on_embree();
+  options.enter = {{500, 4, 0}};
+  try {
+    Site site(floor_of(20), options);
+    FAIL() << "an entrance half a kilometre off the floor";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("entrance"), std::string::npos) << error.what();
+  }
+  options.enter = {}, options.levels_m = {{50, 60}};
+  EXPECT_THROW(Site(floor_of(20), options), Error);
+}
+
 TEST(Site, MakesGroundAndSimulatorOnce) {
   SiteOptions options = on_embree();
   options.user_size_m = 0.5, options.spacing_m = 0.2;

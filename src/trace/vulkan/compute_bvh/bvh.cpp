@@ -7,10 +7,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "core/first_numbers.hpp"
 #include "core/glm.hpp"
 #include "core/parallel.hpp"
 
@@ -369,8 +369,7 @@ Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle
   std::vector<Bvh> meshes(placed.meshes.size());
   std::vector<std::vector<WideBox>> boxes(meshes.size());
   parallel::for_all(std::size_t{0}, meshes.size(), [&](std::size_t m) {
-    std::vector<std::uint32_t> own(placed.meshes[m].size());
-    std::iota(own.begin(), own.end(), 0u);
+    std::vector<std::uint32_t> own = first_numbers<std::uint32_t>(placed.meshes[m].size());
     meshes[m] = build_bvh(positions, placed.meshes[m], own);
     boxes[m] = boxes_within(meshes[m]);
   });

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluate/evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/part_of.hpp"
+#include "evaluate/sight_targets.hpp"
+#include "evaluate/visibility.hpp"
+#include "objective/registered_sample.hpp"
+#include "placement/nearest_place.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kMillimetres = 1000;
+
+RequiredInputs required_inputs_of(std::span<const Objective> measures, const EvaluationOptions& options) {
+  RequiredInputs needs = vantage::required_inputs_of(measures);
+  if (!options.registration) return needs;
+  const bool all_surfaces = options.registration->surfaces == RegistrationSurfaces::all;
+  return needs | RequiredInputs{.pairs = true,
+                                .surroundings = all_surfaces,
+                                .registration = options.registration->model,
+                                .surroundings_registration = all_surfaces};
+}
+
+// The prediction whose error is to be known.
+RegistrationOptions registration_of(const RequiredInputs& needs, const EvaluationOptions& options) {
+  RegistrationOptions plain;
+  if (needs.registration) plain.model = *needs.registration;
+  if (needs.surroundings_registration) plain.surfaces = RegistrationSurfaces::all;
+  return options.registration.value_or(plain);
+}
+
+// As many voxels as the caller wants.
+EveryRayOptions registered_by(EveryRayOptions counting, std::uint64_t voxels) {
+  if (voxels > 0) counting.registration_voxels = voxels, counting.registration_known = nullptr;
+  return counting;
+}
+
+std::size_t existing_of(std::span<const PlacedStation> stations) {
+  return static_cast<std::size_t>(std::ranges::count(stations, true, &PlacedStation::existing));
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const EvaluationSite& site, EvaluationOptions options, std::vector<Objective> measures)
+    : site_(site),
+      options_(std::move(options)),
+      measures_(std::move(measures)),
+      needs_(required_inputs_of(measures_, options_)) {}
+
+CountedNetworks Evaluator::count(std::span<const Network> networks, bool field, const Progress& progress) const {
+  CountedNetworks counts;
+  const std::size_t parts = site_.surroundings ? 2 : 1;
+  if (options_.sample_voxels) {
+    counts.surveyed = site_.simulator.evaluate_sampled(networks,
+                                                       {.voxels = *options_.sample_voxels,
+                                                        .overlap = options_.overlap,
+                                                        .registration = needs_.registration,
+                                                        .meshes = needs_.meshes},
+                                                       part_of(progress, 0, parts));
+  } else {
+    EveryRayOptions every_ray = registered_by(
+        count_surveyed(needs_, registration_of(needs_, options_), site_.simulator), options_.registration_voxels);
+    every_ray.overlap = options_.overlap, every_ray.skip = options_.skip;
+    every_ray.beam = options_.beam, every_ray.meshes = needs_.meshes;
+    if (field) every_ray.field = &counts.field;
+    const Progress own = part_of(progress, 0, parts);
+    if (networks.size() == 1)
+      counts.surveyed.push_back(site_.simulator.evaluate(networks.front(), every_ray, own));
+    else
+      counts.surveyed = site_.simulator.evaluate_each(networks, every_ray, own);
+  }
+  if (site_.surroundings)
+    counts.surroundings = site_.surroundings->evaluate_each(
+        networks,
+        registered_by(count_surroundings(needs_, registration_of(needs_, options_), counts.surveyed, site_.simulator,
+                                         *site_.surroundings),
+                      options_.registration_voxels),
+        part_of(progress, 1, parts));
+  return counts;
+}
+
+MeasuredNetwork Evaluator::measured(const CountedNetwork& network, const RequiredInputs& needs) const {
+  const std::size_t existing = existing_of(network.stations);
+  const auto visible_parts = [&] {
+    return visibility_parts([&](const Vec3& a, const Vec3& b) { return site_.clash->sees(a, b); },
+                            site_.simulator.scanner().max_range_m, to_network(network.stations));
+  };
+  const auto minutes = [&] {
+    return network.visit ? network.visit->minutes : site_.on_site->visit(network.stations.subspan(existing)).minutes;
+  };
+  MeasuredNetwork made{.counts = network.surveyed,
+                       .stations = network.stations,
+                       .existing = existing,
+                       .goal_density = site_.simulator.goal_density(),
+                       .voxels = site_.simulator.voxel_count(),
+                       .overlap = needs.pairs ? overlap_matrix(network.surveyed) : OverlapMatrix{},
+                       .visible_parts = needs.visibility ? visible_parts() : 0,
+                       .surroundings = network.surroundings,
+                       .surroundings_voxels = network.surroundings ? site_.surroundings->voxel_count() : 0,
+                       .minutes_on_site = needs.time ? minutes() : 0,
+                       .scene = &site_.simulator.scene()};
+  if (needs.attainable) made.captured = network.captured;
+  return made;
+}
+
+Visit Evaluator::visit(const CountedNetwork& network, double most_min) const {
+  Evaluation linked{.stations = {network.stations.begin(), network.stations.end()},
+                    .overlap_matrix = needs_.pairs ? overlap_matrix(network.surveyed) : OverlapMatrix{}};
+  if (network.surroundings) linked.scan_overlap_matrix = scan_overlap_matrix(*network.surroundings);
+  linked.link_overlap = options_.link_overlap, linked.link = options_.link;
+  return visit_of(linked, *site_.on_site, most_min);
+}
+
+Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
+  const MeasuredNetwork measured = this->measured(network, needs_);
+  const std::optional<RegistrationOptions>& registration = options_.registration;
+  std::vector<Target> targets = options_.targets;
+  std::vector<RegistrationTarget> sighted;
+  if (!targets.empty())
+    sighted = sight_targets(site_.simulator, *site_.clash, network.stations, targets, options_.target);
+  Evaluation made = evaluation_of(measured, measures_, registration, sighted);
+  take_options(made, options_);
+  made.targets = std::move(targets);
+  if (registration && !made.targets.empty())
+    made.without_targets_m = registration_error(network.surveyed, measured.voxels, *registration, network.surroundings,
+                                                measured.surroundings_voxels)
+                                 .rms_m;
+  if (registration && std::ranges::count(measures_, "registration", &Objective::name) == 0) {
+    const Estimate rms = registration_estimate(network.surveyed, measured.voxels, *registration, network.surroundings,
+                                               measured.surroundings_voxels, sighted);
+    made.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
+  }
+  if (network.visit) made.visit = *network.visit;
+  return made;
+}
+
+void take_options(Evaluation& evaluation, const EvaluationOptions& options) {
+  evaluation.names = options.names;
+  if (!evaluation.names.empty()) evaluation.names.resize(evaluation.stations.size());
+  evaluation.link_overlap = options.link_overlap, evaluation.link = options.link;
+  evaluation.accuracy_class = options.target.wanted;
+}
+
+void add_round(Evaluation& evaluation, const OnSite& on_site, double most_min) {
+  evaluation.visit = visit_of(evaluation, on_site, most_min);
+  if (const auto time = evaluation.values.find("time"); time != evaluation.values.end())
+    if (!std::isnan(time->second.value)) time->second.value = evaluation.visit->minutes;
+}
+
+void look_closer(Evaluation& evaluation, const EvaluationSite& site) {
+  if (site.on_site && evaluation.visit) {
+    add_sessions(evaluation, *site.on_site);
+    evaluation.storey_ties = storey_ties_of(evaluation, *site.on_site);
+  }
+  if (site.area && site.clash)
+    evaluation.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, evaluation.stations);
+}
+
+}  // namespace vantage
