@@ -6,10 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "core/first_numbers.hpp"
 #include "core/graph.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
@@ -172,8 +172,7 @@ std::vector<PlacedStation> FewestChoice::placed_of(const CoverSolution& solution
 CoverProblem cover_problem(const FewestChoice& choice) {
   const FewestAsked& asked = choice.asked;
   const std::size_t visiting = choice.visiting.size();
-  std::vector<std::size_t> existing(asked.existing);
-  std::iota(existing.begin(), existing.end(), std::size_t{0});
+  std::vector<std::size_t> existing = first_numbers(asked.existing);
   existing.insert(existing.end(), choice.visiting.begin(), choice.visiting.end());
   return {.matrix = choice.table.matrix(),
           .graph = &choice.table.graph(),
