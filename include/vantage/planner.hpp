@@ -56,8 +56,9 @@ struct SurveyProblem {
   bool fewest = false;
   /// Each station has to capture so much surface that the others do not, in m². A plan finds the number after which a
   /// further one would not, adds one for each room and part of the floor that has none and where one adds a fifth of
-  /// that at least, and requires what so many can `capture`, or what a requirement asks for if that is more. Where
-  /// `stations_max` or a limit on the time on site ends it before, it requires no more than its answer has.
+  /// that at least, and requires what so many can `capture`, or what a requirement asks for if that is more. Further
+  /// stations that links need stay as far as they pay, too. Where `stations_max` or a limit on the time on site ends it
+  /// before, it requires no more than its answer has.
   std::optional<double> pays_m2 = {};
   /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
   /// `capture` is asked for. A plan finds it anew, whatever is given.
