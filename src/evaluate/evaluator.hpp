@@ -21,7 +21,7 @@ struct CountedNetworks {
   }
 };
 
-// What evaluate() knows of one network. Borrows all.
+// All that evaluate() knows of one network; it borrows that.
 struct CountedNetwork {
   std::span<const PlacedStation> stations;
   const NetworkCounts& surveyed;
@@ -38,7 +38,7 @@ class Evaluator {
   const RequiredInputs& needs() const { return needs_; }
   // Counts networks as the options say, and their surroundings if the site has some. A stop leaves the rest cancelled.
   CountedNetworks count(std::span<const Network> networks, bool field, const Progress& progress) const;
-  // What measures with these needs are functions of. Keeps references to the network.
+  // The arguments of measures with these needs. It keeps references to the network.
   MeasuredNetwork measured(const CountedNetwork& network, const RequiredInputs& needs) const;
   // The round along the links of a network.
   Visit visit(const CountedNetwork& network, double most_min) const;

@@ -108,7 +108,7 @@ bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double as
   problem.coverage = 1;  // as much as there is
   const ColumnIndex columns(problem.matrix);
   const std::size_t beyond = choice.placed() - pays.stations, each = 1 + (beyond - 1) / kPointsThatPay;
-  // By falling number, each of which captures most.
+  // Networks of falling numbers, each of which captures most.
   std::vector<std::vector<std::size_t>> networks{improve_by_swaps(problem, columns, choice.network.chosen, stop)};
   for (std::size_t left = beyond; left > 0 && !stop.stop_requested();) {
     std::vector<std::size_t> now = networks.back();

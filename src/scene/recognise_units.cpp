@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<UpAxis, 3> kAxes{UpAxis::y, UpAxis::z, UpAxis::x};
 constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::centimetre, Unit::millimetre};
 
-// What is built for a person. Metres.
+// Measures of what is built for a person, in metres.
 constexpr double kRoom_m2 = 2;
 constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLowestDoor = 1.85, kHighestDoor = 2.6,
                  kThickestWall = 0.8, kLintel = 0.1;

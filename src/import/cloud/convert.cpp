@@ -349,7 +349,7 @@ class Converter {
   std::string unit_note_;
   std::optional<CellGrid> grid_;
   std::uint64_t points_ = 0, far_ = 0;
-  // Whether all coordinates along an axis are numbers of float32.
+  // True if all coordinates along an axis are numbers of float32.
   Eigen::Array<bool, 3, 1> floats_ = Eigen::Array<bool, 3, 1>::Constant(true);
   std::size_t posed_ = 0;  // scans with a pose
   double unknown_m2_ = 0;

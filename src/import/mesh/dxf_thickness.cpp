@@ -138,7 +138,7 @@ class ThickLine {
   void stand_on(const std::vector<Point>& line, double elevation) {
     for (std::size_t k = 0; k + 1 < line.size(); ++k) add_side(line[k], line[k + 1], elevation);
   }
-  // Of a counter-clockwise ring: the upper one shows up, the lower one down.
+  // The ring is counter-clockwise; the upper lid shows up, the lower one down.
   void add_lids(const std::vector<Point>& ring, double elevation) {
     std::vector<glm::dvec3> upper, lower;
     for (const Point& p : ring)
