@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/graph.hpp"
 #include "plan/sample_seen.hpp"
 
 namespace vantage {
@@ -160,10 +159,7 @@ void CandidateTable::leave_out_ties(std::vector<Pair> further) {
     share = graph_.overlap(pair.first, pair.second);
     if (static_cast<double>(share) >= link_) graph_.set_overlap(pair.first, pair.second, 0);
   }
-  const std::vector<std::size_t> part = components_along(graph_.size(), [&](std::size_t k, const auto& visit) {
-                                          for (const StationGraph::Overlap& other : graph_.overlaps(k))
-                                            if (static_cast<double>(other.share) >= link_) visit(other.candidate);
-                                        }).of;
+  const std::vector<std::size_t> part = linked_parts(graph_, link_).of;
   for (const auto& [pair, share] : ties_)
     if (part[pair.first] != part[pair.second]) graph_.set_overlap(pair.first, pair.second, share);
 }
@@ -208,6 +204,13 @@ bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {
         return false;
     }
   return true;
+}
+
+Components linked_parts(const StationGraph& graph, double least) {
+  return components_along(graph.size(), [&](std::size_t k, const auto& visit) {
+    for (const StationGraph::Overlap& other : graph.overlaps(k))
+      if (static_cast<double>(other.share) >= least) visit(other.candidate);
+  });
 }
 
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,

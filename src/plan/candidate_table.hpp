@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/graph.hpp"
 #include "plan/placement_oracle.hpp"
 #include "vantage/candidates.hpp"
 
@@ -98,6 +99,9 @@ class CandidateTable {
   CoverageMatrix matrix_, around_;
   StationGraph graph_;
 };
+
+// The parts of the candidates that links of at least `least` connect.
+Components linked_parts(const StationGraph& graph, double least);
 
 // Allowed positions around each of `stations`, `each` of them within `radius_m`, spread evenly over the disc.
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,

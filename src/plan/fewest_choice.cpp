@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -81,10 +82,7 @@ struct Unlinked {
 };
 Unlinked unlinked_help(const FewestChoice& choice) {
   const StationGraph& graph = choice.table.graph();
-  const Components parts = components_along(graph.size(), [&](std::size_t k, const auto& visit) {
-    for (const StationGraph::Overlap& one : graph.overlaps(k))
-      if (static_cast<double>(one.share) >= choice.asked.link) visit(one.candidate);
-  });
+  const Components parts = linked_parts(graph, choice.asked.link);
   std::vector<std::size_t> stations(parts.count, 0);
   for (const std::size_t k : choice.network.chosen) ++stations[parts.of[k]];
   const auto main = static_cast<std::size_t>(std::ranges::max_element(stations) - stations.begin());
@@ -115,10 +113,12 @@ std::vector<PlacedStation> on_the_way(const FewestChoice& choice, std::size_t fr
   };
   std::ranges::sort(ends, {}, away_m);
   std::vector<Vec3> shortest;
-  for (const std::size_t end : std::span(ends).first(std::min(ends.size(), kNearest)))
-    if (std::vector<Vec3> way = choice.way(stations[from].ground, stations[end].ground);
-        !way.empty() && (shortest.empty() || length_m(way) < length_m(shortest)))
-      shortest = std::move(way);
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const std::size_t end : std::span(ends).first(std::min(ends.size(), kNearest))) {
+    std::vector<Vec3> way = choice.way(stations[from].ground, stations[end].ground);
+    if (const double metres = length_m(way); !way.empty() && metres < least_m)
+      shortest = std::move(way), least_m = metres;
+  }
   if (!shortest.empty()) return positions_along(oracle, shortest, kAlong_m);
   const std::size_t nearest =
       *std::ranges::max_element(ends, {}, [&](std::size_t k) { return choice.table.graph().overlap(from, k); });

@@ -33,7 +33,7 @@ constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel are probed one by one for an occluder as long as at least this many are left, and each probe hides at
 // least this many. Fewer rays are traced as fast as one is probed.
 constexpr std::uint32_t kWorthProbe = 8;
-// With a limit `stop_at`, each further step lists and traces this many times the rays of the step before.
+// Each further step of a count with a limit `stop_at` lists and traces this many times the rays of the step before.
 constexpr std::uint32_t kMore = 4;
 // Triangles that are remembered.
 constexpr std::size_t kMet = 4;
