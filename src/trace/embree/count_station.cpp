@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/target_clones.hpp"
 #include "trace/embree/picture.hpp"
+#include "trace/embree/run_steps.hpp"
 #include "trace/embree/tile_selection.hpp"
 
 namespace vantage {
@@ -139,45 +140,83 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   return at;
 }
 
+// Points that lie in the voxel of one of them, of several voxels.
+struct SettledPoints {
+  std::uint32_t size = 0;
+  std::array<Float3, VoxelLookup::capacity> point;
+  std::array<std::uint32_t, VoxelLookup::capacity> many;
+
+  bool full() const { return size == VoxelLookup::capacity; }
+  void add(const Float3& of_voxel, std::uint32_t points) {
+    point[size] = of_voxel;
+    many[size++] = points;
+  }
+  [[gnu::always_inline]] void count(VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift,
+                                    StationTotals& totals) {
+    voxels.set(size, [&](std::uint32_t k) { return point[k]; });
+    voxels.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
+      std::uint32_t sum = 0;
+      for (std::uint32_t k = begin; k < end; ++k) sum += many[k];
+      totals.points_on_surveyed += sum;
+      for (; sum > PointBuckets::most_at_once; sum -= PointBuckets::most_at_once)
+        points.add(voxel_index, shift, PointBuckets::most_at_once);
+      points.add(voxel_index, shift, sum);
+    });
+    size = 0;
+  }
+};
+
 VANTAGE_TARGET_CLONES
 StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const PaneView* panes,
-                          const Picture& picture, const Picture::Strip& strip, VoxelLookup& voxels,
-                          PointBuckets::Local& points, std::uint32_t shift) {
+                          const Picture& picture, const RunSteps& steps, const Picture::Strip& strip,
+                          VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift) {
   const Surface& surface = station_rays.surface();
   const std::uint32_t rows = station_rays.pattern().rows();
   StationTotals totals;
   totals.rays = strip.rays;
   Hits hits;
   hits.size = 0;
+  SettledPoints settled;
   const auto count = [&]() __attribute__((always_inline)) {
     station_rays.find_ranges(station, hits, true);
     count_points(station_rays, station.origin, hits, panes, voxels, points, shift, totals);
     hits.size = 0;
   };
+  Facet facet;
+  std::uint32_t known = Picture::none;  // the facet's triangle
   for (std::uint32_t j = 0; j < strip.columns; ++j) {
     const std::uint32_t* const triangles = strip.triangles(j);
-    for (std::uint32_t row = 0; row < rows;) {
+    for (std::uint32_t row = 0, end; row < rows; row = end) {
       const std::uint32_t triangle = triangles[row];
-      const std::uint32_t end = std::min(rows, end_of_run(triangles, row + 1, rows, triangle));
-      if (triangle == Picture::none) {
-        row = end;
-        continue;
-      }
+      end = std::min(rows, end_of_run(triangles, row + 1, rows, triangle));
+      if (triangle == Picture::none) continue;
       totals.points += end - row;
-      if (!surface.surveyed(triangle)) {
-        row = end;
+      if (!surface.surveyed(triangle)) continue;
+      const Planes::Seen plane = station_rays.planes().seen(triangle, station.origin);
+      const auto one_by_one = [&](std::uint32_t from, std::uint32_t to) __attribute__((always_inline)) {
+        while (from < to) {
+          const std::uint32_t many = std::min(to - from, RayBundle::capacity - hits.size);
+          add_run(station_rays, station, picture, strip.first + j, from, many, triangle, plane, hits);
+          from += many;
+          if (hits.size == RayBundle::capacity) count();
+        }
+      };
+      if (!steps.pay(end - row)) {
+        one_by_one(row, end);
         continue;
       }
-      const Planes::Seen plane = station_rays.planes().seen(triangle, station.origin);
-      while (row < end) {
-        const std::uint32_t many = std::min(end - row, RayBundle::capacity - hits.size);
-        add_run(station_rays, station, picture, strip.first + j, row, many, triangle, plane, hits);
-        row += many;
-        if (hits.size == RayBundle::capacity) count();
-      }
+      if (triangle != known) facet = surface.facet(triangle), known = triangle;
+      steps.along(
+          row, end, strip.first + j, triangle, plane, facet,
+          [&](const Float3& point, std::uint32_t many) __attribute__((always_inline)) {
+            settled.add(point, many);
+            if (settled.full()) settled.count(voxels, points, shift, totals);
+          },
+          one_by_one);
     }
   }
   count();
+  settled.count(voxels, points, shift, totals);
   return totals;
 }
 
@@ -204,6 +243,8 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
   const std::unique_ptr<const Picture> picture = Picture::where_it_pays(rays, station, ends);
   const std::vector<SelectedTile> tiles = picture ? std::vector<SelectedTile>() : selected(ends, rays.pattern());
   const std::unique_ptr<const PaneView> panes = rays.glass() ? rays.glass()->view(station.origin) : nullptr;
+  const std::unique_ptr<const RunSteps> steps =
+      picture ? std::make_unique<const RunSteps>(rays, station, *picture) : nullptr;
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   const std::size_t parts = picture ? picture->strips() : tiles.size();
   // About a tenth of a second between checks of the stop token.
@@ -218,7 +259,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
                  Picture::Strip& strip = strips.local();
                  const auto index = static_cast<std::uint32_t>(k);
                  picture->draw(index, strip);
-                 return count_strip(rays, station, panes.get(), *picture, strip, voxels, local, shift);
+                 return count_strip(rays, station, panes.get(), *picture, *steps, strip, voxels, local, shift);
                });
     } else {
       totals = totals + add_up(first, end, 16, rays, points, [&](std::size_t k, VoxelLookup& voxels, auto& local) {

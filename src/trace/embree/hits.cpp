@@ -9,6 +9,8 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
+// Fewer hits in a row of one triangle are looked at with others: a bound for them alone costs as much as their noise.
+constexpr std::uint32_t kFew = 4;
 // Largest number of standard deviations by which noise moves a point. It is truncated at five, and rounded.
 constexpr float kFarthest = 5.01f;
 
@@ -29,31 +31,31 @@ constexpr float kFarthest = 5.01f;
   }
 }
 
-// True if eight hits stay in their voxels, however they are moved within this reach. Along each axis, all sides of
-// their cells must be farther away than that, with all roundings of a coordinate.
-[[gnu::always_inline]] inline bool stay_in_voxels(const Floats8& reach, const Float3& origin, const VoxelGrid& grid,
-                                                  const Hits& hits, std::uint32_t first) {
+// Which of eight hits may leave their voxels if they are moved within this reach. Along each axis, all sides of a cell
+// must be farther away than that, with all roundings of a coordinate.
+[[gnu::always_inline]] inline void leave_voxels(const Floats8& reach, const Float3& origin, const VoxelGrid& grid,
+                                                const float* x, const float* y, const float* z, const float* distance,
+                                                Ints8& leaves) {
   Floats8 t;
-  load(t, hits.t + first);
+  load(t, distance);
   const float cells = static_cast<float>(1u << grid.depth()), inverse = grid.inverse_size();
   // Three roundings of the largest coordinate, and as many of what is moved.
   const auto doubt_of = [&](float from, float min) {
     return 0x1p-20f * ((std::abs(from) + std::abs(min)) * inverse + cells);
   };
-  Ints8 leaves{};
+  leaves = Ints8{};
   const auto along = [&](const float* directions, float from, float min) __attribute__((always_inline)) {
     Floats8 d;
-    load(d, directions + first);
+    load(d, directions);
     const Floats8 at = ((from + t * d) - min) * inverse;
-    const Floats8 inside = at >= 0.0f & at < cells ? at : Floats8{};  // others are as near to a side as can be
+    const Floats8 inside = (at >= 0.0f) & (at < cells) ? at : Floats8{};  // others are as near to a side as can be
     const Floats8 part = inside - __builtin_convertvector(__builtin_convertvector(inside, Ints8), Floats8),
                   nearest = part < 1.0f - part ? part : 1.0f - part, size = d < 0.0f ? -d : d;
     leaves |= nearest <= reach * inverse * size + doubt_of(from, min);
   };
-  along(hits.x, origin.x, grid.min()[0]);
-  along(hits.y, origin.y, grid.min()[1]);
-  along(hits.z, origin.z, grid.min()[2]);
-  return !any(leaves);
+  along(x, origin.x, grid.min()[0]);
+  along(y, origin.y, grid.min()[1]);
+  along(z, origin.z, grid.min()[2]);
 }
 
 // Bound on how far noise moves hits of a facet, without their normals.
@@ -76,6 +78,34 @@ constexpr float kFarthest = 5.01f;
   return noise.reach_within(farthest[0], static_cast<float>(darkest));
 }
 
+// Lists the hits whose noise matters: all, or with a grid those that may leave their voxels. Returns their number.
+template <class FacetOf>
+[[gnu::always_inline]] inline std::uint32_t list_moved(const RangeNoise& noise, const Float3& origin, const Hits& hits,
+                                                       const VoxelGrid* grid, const FacetOf& facet_of,
+                                                       std::uint32_t* moved) {
+  std::uint32_t many = 0;
+  for (std::uint32_t first = 0, end; first < hits.size; first = end) {
+    end = first + 1;
+    while (end < hits.size && hits.primitive[end] == hits.primitive[first]) ++end;
+    if (!grid || end - first < kFew) {
+      for (std::uint32_t k = first; k < end; ++k) moved[many++] = k;
+      continue;
+    }
+    const float reach = reach_of(noise, facet_of(hits.primitive[first]), hits, first, end);
+    for (std::uint32_t k = first; k < end; k += lanes) {
+      Ints8 leaves;
+      leave_voxels(reach - Floats8{}, origin, *grid, hits.x + k, hits.y + k, hits.z + k, hits.t + k, leaves);
+      if (!any(leaves)) continue;
+      const std::uint32_t of_run = std::min(end - k, lanes);
+      for (std::uint32_t i = 0; i < of_run; ++i) {
+        moved[many] = k + i;
+        many += leaves[i] != 0;
+      }
+    }
+  }
+  return many;
+}
+
 VANTAGE_TARGET_CLONES
 void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                const VoxelGrid* grid) {
@@ -85,36 +115,34 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
     if (triangle != known) facet = surface.facet(triangle), known = triangle;
     return facet;
   };
-  float reach = 0;
-  std::uint32_t of_one = 0;  // hits before this one are of one triangle, and noise moves them less than `reach`
-  for (std::uint32_t first = 0; first < hits.size; first += lanes) {
-    alignas(32) float reflectivity[2 * lanes];
-    const std::uint32_t last = std::min(first + lanes, hits.size);
-    // Hits in a row are mostly those of one triangle, and their noise mostly matters to no voxel.
-    if (grid && first >= of_one) {
-      of_one = first;
-      while (of_one < hits.size && hits.primitive[of_one] == hits.primitive[first]) ++of_one;
-      if (of_one >= last) reach = reach_of(noise, facet_of(hits.primitive[first]), hits, first, of_one);
+  std::uint32_t moved[Hits::capacity];
+  const std::uint32_t many = list_moved(noise, origin, hits, grid, facet_of, moved);
+  std::copy_n(hits.t, hits.size, hits.range);
+  for (std::uint32_t first = 0; first < many; first += lanes) {
+    alignas(32) float x[2 * lanes]{}, y[2 * lanes]{}, z[2 * lanes]{}, t[2 * lanes]{}, reflectivity[2 * lanes],
+        range[lanes];
+    alignas(32) std::uint32_t low[lanes], high[lanes], triangle[lanes], bits[lanes];
+    const std::uint32_t here = std::min(many - first, lanes);
+    for (std::uint32_t i = 0; i < lanes; ++i) {
+      const std::uint32_t k = moved[first + std::min(i, here - 1)];
+      x[i] = hits.x[k], y[i] = hits.y[k], z[i] = hits.z[k], t[i] = hits.t[k];
+      low[i] = hits.ray_low[k], high[i] = hits.ray_high[k], triangle[i] = hits.primitive[k];
     }
-    if (grid && last <= of_one && stay_in_voxels(reach - Floats8{}, origin, *grid, hits, first)) {
-      std::copy_n(hits.t + first, lanes, hits.range + first);
-      continue;
-    }
-    for (std::uint32_t k = first; k < last;) {
-      const std::uint32_t triangle = hits.primitive[k];
+    for (std::uint32_t i = 0; i < here;) {
       // Runs past the triangle's hits; those values are overwritten by the next triangle's, or never read.
-      shade(facet_of(triangle), origin, hits.x + k, hits.y + k, hits.z + k, hits.t + k, reflectivity + (k - first));
-      while (k < last && hits.primitive[k] == triangle) ++k;
+      shade(facet_of(triangle[i]), origin, x + i, y + i, z + i, t + i, reflectivity + i);
+      for (const std::uint32_t one = triangle[i]; i < here && triangle[i] == one;) ++i;
     }
     Floats8 sigmas;
-    noise.find_sigmas(hits.t + first, reflectivity, sigmas);
-    if (grid && stay_in_voxels(kFarthest * sigmas, origin, *grid, hits, first)) {
-      std::copy_n(hits.t + first, lanes, hits.range + first);
-      continue;
+    noise.find_sigmas(t, reflectivity, sigmas);
+    if (grid) {
+      Ints8 leaves;
+      leave_voxels(kFarthest * sigmas, origin, *grid, x, y, z, t, leaves);
+      if (!any(leaves)) continue;
     }
-    alignas(32) std::uint32_t bits[lanes];
-    noise.draw<lanes>(hits.ray_low + first, hits.ray_high + first, place, bits);
-    noise.displace_eight(hits.t + first, sigmas, bits, hits.range + first);
+    noise.draw<lanes>(low, high, place, bits);
+    noise.displace_eight(t, sigmas, bits, range);
+    for (std::uint32_t i = 0; i < here; ++i) hits.range[moved[first + i]] = range[i];
   }
 }
 

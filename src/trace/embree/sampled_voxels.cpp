@@ -18,13 +18,14 @@ double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 struct ExactPlane {
   Vec3 normal;
   double offset = 0, slenderness = HUGE_VAL, diffuse = 1, tilt = 0;
+  Box box;  // around its triangles
 };
 
 ExactPlane plane_of(const Corners& t) {
   const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
   const double area = length(n);
   if (!(area > 0)) return {};
-  return {n * (1 / area), dot(n, t[0]) / area, SeenTriangle::slenderness(t[0], t[1], t[2], area)};
+  return {n * (1 / area), dot(n, t[0]) / area, SeenTriangle::slenderness(t[0], t[1], t[2], area), 1, 0, {}};
 }
 
 SampledVoxels::Piece piece_of(const Corners& t) {
@@ -44,30 +45,10 @@ SampledVoxels::Piece piece_of(const Corners& t) {
   return piece;
 }
 
-// Extends `box` by the intersection of the plane with the cube around the origin. Returns whether there is any.
-bool extend(Box& box, const ExactPlane& plane, double half) {
-  bool any = false;
-  const auto corner = [&](unsigned k) {
-    return Vec3{k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half};
-  };
-  for (unsigned k = 0; k < 8; ++k) {
-    const Vec3 p = corner(k);
-    const double above = dot(plane.normal, p) - plane.offset;
-    for (unsigned axis = 1; axis < 8; axis *= 2) {
-      if (k & axis) continue;
-      const Vec3 q = corner(k | axis);
-      const double other = dot(plane.normal, q) - plane.offset;
-      if ((above > 0 && other > 0) || (above < 0 && other < 0)) continue;
-      any = true;
-      if (above == other) {
-        box.extend(p);
-        box.extend(q);
-      } else {
-        box.extend(p + (q - p) * (above / (above - other)));
-      }
-    }
-  }
-  return any;
+// Whether the plane passes the cube around the origin.
+bool crosses(const ExactPlane& plane, double half) {
+  const double across = std::abs(plane.normal.x) + std::abs(plane.normal.y) + std::abs(plane.normal.z);
+  return std::abs(plane.offset) <= half * across;
 }
 
 }  // namespace
@@ -84,13 +65,11 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
   pieces_.resize(lists.triangle.size());
   std::vector<Plane> planes(lists.triangle.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    places_.cell[axis].resize(n);
-    places_.middle[axis].resize(n);
-    places_.half[axis].resize(n);
+    cells_[axis].resize(n);
   }
   const double side = grid.voxel_size();
   // A hit's point lies on its plane except for rounding.
-  const double half = side / 2 + pad, wide = half + reach + 2 * pad;
+  const double half = side / 2 + pad, wide = half + reach + 2 * pad, beside = margin - reach + pad;
 
   parallel::for_all(std::size_t{0}, n, [&](std::size_t i) {
     const std::array<std::uint32_t, 3> cell = morton_decode(grid.key(voxel_indices[i]));
@@ -104,7 +83,8 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     std::vector<ExactPlane> own;
     std::vector<std::pair<std::size_t, std::uint32_t>> of;  // plane and triangle
     for (std::uint32_t k = first; k < end && own.size() <= most_planes; ++k) {
-      const ExactPlane plane = plane_of(corners_of(k));
+      const Corners corners = corners_of(k);
+      const ExactPlane plane = plane_of(corners);
       // Close enough that no hit in the cube moves by a noticeable part of the pad, however grazing.
       const auto same = [&](const ExactPlane& other) {
         const double sign = dot(plane.normal, other.normal) < 0 ? -1 : 1;
@@ -114,19 +94,18 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
       const auto known = std::find_if(own.begin(), own.end(), same);
       of.emplace_back(known - own.begin(), k);
       ExactPlane& all = known == own.end() ? own.emplace_back(plane) : *known;
+      for (const Vec3& corner : corners) all.box.extend(corner);
       all.slenderness = std::max(all.slenderness, plane.slenderness);
       all.diffuse = std::min(all.diffuse, scene.meshes[scene.mesh_of(lists.triangle[k])].diffuse);
       all.tilt = std::max(all.tilt, tilt_of(scene, lists.triangle[k], all.normal));
     }
     if (own.size() > most_planes) own.clear();
 
-    Box box;
-    std::vector<bool> crosses(own.size());
-    for (std::size_t k = 0; k < own.size(); ++k) crosses[k] = extend(box, own[k], wide);
+    for (std::size_t axis = 0; axis < 3; ++axis) cells_[axis][i] = static_cast<std::int32_t>(cell[axis]);
     std::uint32_t piece = first, plane = first;
     for (const bool now : {true, false}) {
       for (std::size_t k = 0; k < own.size(); ++k) {
-        if (crosses[k] != now) continue;
+        if (crosses(own[k], wide) != now) continue;
         const std::uint32_t from = piece;
         for (const auto& [place, triangle] : of) {
           if (place == k) pieces_[piece++] = piece_of(corners_of(triangle));
@@ -136,25 +115,14 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
                            std::nextafter(static_cast<float>(own[k].slenderness), HUGE_VALF),
                            static_cast<float>(own[k].diffuse),
                            static_cast<float>(own[k].tilt),
+                           narrow(own[k].box.min - Vec3{beside, beside, beside}),
+                           narrow(own[k].box.max + Vec3{beside, beside, beside}),
                            from,
                            piece};
       }
       if (now) crossing_[i] = plane - first;
     }
     offset_[i + 1] = plane - first;
-    // Noise may move a point into the cube from elsewhere. Without noise, a point is as near to its plane as to the
-    // cube.
-    if (box.empty() || reach > 0) box = {{-half, -half, -half}, {half, half, half}};
-    const auto place = [&](std::size_t axis, double low, double high) {
-      low = std::max(low - pad, -half), high = std::min(high + pad, half);
-      const auto at = static_cast<float>((low + high) / 2);
-      places_.cell[axis][i] = static_cast<std::int32_t>(cell[axis]);
-      places_.middle[axis][i] = at;
-      places_.half[axis][i] = std::nextafter(static_cast<float>(std::max(high - at, at - low)), HUGE_VALF);
-    };
-    place(0, box.min.x, box.max.x);
-    place(1, box.min.y, box.max.y);
-    place(2, box.min.z, box.max.z);
   });
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t count = offset_[i + 1];
@@ -166,7 +134,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     for (std::size_t first = 0; first < n; first += group_sizes[level]) {
       Cells& cells = groups_[level].emplace_back();
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto of = std::span(places_.cell[axis]).subspan(first, std::min(group_sizes[level], n - first));
+        const auto of = std::span(cells_[axis]).subspan(first, std::min(group_sizes[level], n - first));
         cells.low[axis] = std::ranges::min(of), cells.high[axis] = std::ranges::max(of);
       }
     }

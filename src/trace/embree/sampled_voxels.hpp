@@ -33,14 +33,10 @@ class SampledVoxels {
     float diffuse;      // the least of a triangle
     // No hit has a normal farther from that of the plane, as vectors of unit length; 1 or above: nothing is known.
     float tilt;
+    Float3 low, high;  // corners of a box around the triangles, and all hits on them, from the middle of the cube
     std::uint32_t first, end;
   };
-  // Per voxel: its cell, and a box around all that can be hit on its planes there and count. The box is given by its
-  // middle, relative to that of the cube, and its half extents.
-  struct Places {
-    std::array<std::vector<std::int32_t>, 3> cell;
-    std::array<std::vector<float>, 3> middle, half;
-  };
+  using Cell = std::array<std::vector<std::int32_t>, 3>;  // by axis and voxel
 
   // Neighbouring voxels, by their number: `size` of them from a multiple of it on lie in these cells.
   struct Cells {
@@ -56,8 +52,8 @@ class SampledVoxels {
   bool made_for(std::span<const std::uint32_t> voxel_indices, double pad, double reach) const;
   std::size_t size() const { return voxel_indices_.size(); }
   std::array<std::uint32_t, 3> cell(std::size_t i) const {
-    return {static_cast<std::uint32_t>(places_.cell[0][i]), static_cast<std::uint32_t>(places_.cell[1][i]),
-            static_cast<std::uint32_t>(places_.cell[2][i])};
+    return {static_cast<std::uint32_t>(cells_[0][i]), static_cast<std::uint32_t>(cells_[1][i]),
+            static_cast<std::uint32_t>(cells_[2][i])};
   }
   // Planes that pass the cube, followed by the others. Empty: too many to be worth testing.
   std::span<const Plane> planes(std::size_t i) const {
@@ -65,7 +61,7 @@ class SampledVoxels {
   }
   std::uint32_t crossing(std::size_t i) const { return crossing_[i]; }
   const Piece& piece(std::size_t k) const { return pieces_[k]; }
-  const Places& places() const { return places_; }
+  const Cell& cells() const { return cells_; }
   // Number k of the groups of group_sizes[level] voxels.
   const Cells& group(std::size_t level, std::size_t k) const { return groups_[level][k]; }
 
@@ -75,7 +71,7 @@ class SampledVoxels {
   std::vector<std::uint32_t> offset_, crossing_;
   std::vector<Plane> planes_;
   std::vector<Piece> pieces_;
-  Places places_;
+  Cell cells_;
   std::array<std::vector<Cells>, group_sizes.size()> groups_;
 };
 

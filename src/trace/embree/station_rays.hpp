@@ -139,6 +139,14 @@ class StationRays {
     }
     return true;
   }
+  // Whether all hits on a triangle count, with no glass before them, at cosines of incidence from `cosine` on and
+  // distances up to t. False where it is not known.
+  bool all_count(std::uint32_t triangle, double cosine, double t) const {
+    if (!limited()) return true;
+    if (!echo_alone_) return false;
+    const double reach_square = judge_.reach_square(surface().mesh(triangle));
+    return reach_square == 0 || t * t * (1 + 0x1p-20) <= reach_square * cosine;
+  }
   // Limits for which a point is dropped; none if it counts. `passed`: share of its echo that passes glass. REQUIRES:
   // limited(); rays.primitive[slot] is a hit.
   DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot, double passed) const {

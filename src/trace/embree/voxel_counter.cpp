@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// For each station in turn, find_open() leaves out groups of voxels that one triangle hides. look_from() bounds the
-// rows and columns of rays that can cross each cube of the block, all side by side. drop_hidden_boxes() probes the way
-// to the middle of each cube: a triangle there that hides all of the cube settles it, and one that hides a part saves
-// rays. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
-// fill_nearest() intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors.
-// Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
-// ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
-// listed, settle() probes one ray of each `VoxelRays` up to its nearest hit that counts. A triangle in the way hides
-// that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. Once that removes
-// few, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
-// included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays. With a
-// limit `stop_at`, as many rays of a voxel are listed as usually suffice, and the rest only if they did not. If none of
-// them left a point, most of the voxel is hidden, though not by one triangle: find_hidden() looks which tiles of its
-// window are, since there may be thousands of rays in each.
+// For each station in turn, find_open() leaves out groups of voxels that one triangle hides. look_at() bounds the hits
+// that count in each other voxel: of a wall, they lie in a thin slab of the cube. drop_hidden_boxes() probes the way to
+// their middle: a triangle there that hides all of them settles the voxel. If it hides a part, find_hidden() looks
+// which tiles of the voxel's window of rays are hidden. find_windows() bounds the rows and columns of that window, all
+// voxels side by side. list_rays() walks the windows and gathers rays in a RayBatch. When that is full, fill_nearest()
+// intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors. Each ray gets
+// the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the ray. The rays
+// listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are listed,
+// settle() probes one ray of each `VoxelRays` up to its nearest hit that counts. A triangle in the way hides that ray,
+// and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. Once that removes few, cast()
+// traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise included, lies in
+// the voxel. Only certain occlusion is used, so the counts are those of casting all rays. With a limit `stop_at`, as
+// many rays of a voxel are listed as usually suffice, and the rest only if they did not. If none of them left a point,
+// most of the voxel is hidden, though not in its middle: find_hidden() looks at its window then, since there may be
+// thousands of rays in each.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
@@ -86,7 +87,15 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     for (std::uint32_t i = 0; i < counts.size(); ++i)
       if (open_[i] && look_at(i, look)) looks_.push_back(look);
     drop_hidden_boxes();
-    for (const Look& each : looks_) list_rays(each);
+    find_windows();
+    for (std::size_t k = 0; k < looks_.size(); ++k) {
+      const Look& each = looks_[k];
+      const RayRanges window = window_of(k);
+      if (window.empty()) continue;
+      // What stands before the middle mostly hides more than that.
+      const Tiles tiles = each.occluder != RayBundle::no_hit ? find_hidden(each, window) : Tiles();
+      list_rays({each, window, 0, counts_[each.voxel], tiles}, wanted(each.voxel));
+    }
     settle();
     for (std::uint64_t times = kMore; !rest_.empty(); times *= kMore) {
       std::swap(rest_, again_);
@@ -94,7 +103,8 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       for (Rest& rest : again_) {
         const std::uint32_t i = rest.look.voxel;
         if (full(i)) continue;
-        if (times == kMore && counts_[i] == rest.count) rest.tiles = find_hidden(rest.look, rest.window);
+        if (times == kMore && counts_[i] == rest.count && rest.look.occluder == RayBundle::no_hit)
+          rest.tiles = find_hidden(rest.look, rest.window);
         list_rays(rest, static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(i), kAll)));
       }
       settle();
@@ -191,29 +201,49 @@ bool SampledVoxelCounter::is_hidden(const SeenBox& box) {
   return false;
 }
 
-// Bounds the rays to look at, for the block's voxels from the current head.
+// Finds the middles of the block's cubes from the current head.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
-  const SampledVoxels::Places& places = voxels_.places();
   const double side = rays_->grid().voxel_size();
-  const auto along = [&](std::size_t axis, double origin, double* __restrict centre, double* __restrict middle,
-                         double* __restrict half) {
-    const std::int32_t* const cell = places.cell[axis].data() + first;
-    const float *const from = places.middle[axis].data() + first, *const extent = places.half[axis].data() + first;
-    for (std::size_t i = 0; i < n; ++i) {
-      centre[i] = origin + (cell[i] + 0.5) * side;
-      middle[i] = centre[i] + static_cast<double>(from[i]);
-      half[i] = static_cast<double>(extent[i]);
-    }
+  const auto along = [&](std::size_t axis, double origin, double* __restrict centre) {
+    const std::int32_t* const cell = voxels_.cells()[axis].data() + first;
+    for (std::size_t i = 0; i < n; ++i) centre[i] = origin + (cell[i] + 0.5) * side;
   };
   const std::array<float, 3>& min = rays_->grid().min();
-  along(0, min[0] - head_.x, x_.data(), boxes_.x, boxes_.half_x);
-  along(1, min[1] - head_.y, y_.data(), boxes_.y, boxes_.half_y);
-  along(2, min[2] - head_.z, z_.data(), boxes_.z, boxes_.half_z);
+  along(0, min[0] - head_.x, x_.data());
+  along(1, min[1] - head_.y, y_.data());
+  along(2, min[2] - head_.z, z_.data());
   for (std::size_t i = 0; i < n; ++i) distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
-  boxes_.size = static_cast<std::uint32_t>(n);
+}
+
+// Bounds the rays that can leave a point in each voxel of looks_.
+void SampledVoxelCounter::find_windows() {
+  const double half = rays_->grid().voxel_size() / 2 + pad_;
+  boxes_.size = static_cast<std::uint32_t>(looks_.size());
+  const auto along = [&](double centre, double low, double high, double reach, double& middle, double& extent) {
+    low = std::max(low - reach, centre - half), high = std::min(high + reach, centre + half);
+    middle = (low + high) / 2, extent = std::max((high - low) / 2, 0.0);
+  };
+  for (std::size_t k = 0; k < looks_.size(); ++k) {
+    const auto& [i, cube, reach, hits, sure, occluder] = looks_[k];
+    along(x_[i], hits.min.x, hits.max.x, reach, boxes_.x[k], boxes_.half_x[k]);
+    along(y_[i], hits.min.y, hits.max.y, reach, boxes_.y[k], boxes_.half_y[k]);
+    along(z_[i], hits.min.z, hits.max.z, reach, boxes_.z[k], boxes_.half_z[k]);
+  }
   if (station_->turn) turn_back(*station_->turn, boxes_);
   rays_of_boxes(rays_->pattern(), boxes_);
+}
+
+RayRanges SampledVoxelCounter::window_of(std::size_t k) const {
+  RayRanges window;
+  if (boxes_.simple[k]) {
+    window.rows = {static_cast<std::uint32_t>(boxes_.row_begin[k]), static_cast<std::uint32_t>(boxes_.row_end[k])};
+    window.columns[0] = {static_cast<std::uint32_t>(boxes_.column_begin[k]),
+                         static_cast<std::uint32_t>(boxes_.column_end[k])};
+    return window;
+  }
+  const Vec3 middle{boxes_.x[k], boxes_.y[k], boxes_.z[k]}, half{boxes_.half_x[k], boxes_.half_y[k], boxes_.half_z[k]};
+  return rays_of_box(rays_->pattern(), middle - half, middle + half);
 }
 
 // Turns the batch with its scanner, and fills batch_.nearest.
@@ -281,9 +311,9 @@ bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   look.sure = !planes.empty();
   for (const SampledVoxels::Plane& plane : planes)
     look.sure &= std::abs(height_over(plane, i)) >= sure_height * plane.slenderness * look.cube.farthest;
-  return !look.sure ||
-         std::ranges::any_of(planes.first(voxels_.crossing(first_ + i)),
-                             [&](const SampledVoxels::Plane& plane) { return crosses(plane, look.cube); });
+  look.reach = reach;
+  look.hits = hits_of(look);
+  return !look.hits.empty();
 }
 
 // Bound on how far noise moves a hit on the planes of voxel number i, nearer than `far`. It is smaller for bright
@@ -312,11 +342,40 @@ float SampledVoxelCounter::height_over(const SampledVoxels::Plane& plane, std::u
                             static_cast<double>(plane.offset));
 }
 
-// Holds every point that counts, before the noise moves it, relative to the head.
-Box SampledVoxelCounter::box_of(const Look& look) const {
+// Around all parts of the voxel's triangles that the cube holds, if no others can be hit.
+Box SampledVoxelCounter::hits_of(const Look& look) const {
   const std::uint32_t i = look.voxel;
-  const double half = static_cast<double>(look.cube.half) + pad_;
-  return {{x_[i] - half, y_[i] - half, z_[i] - half}, {x_[i] + half, y_[i] + half, z_[i] + half}};
+  const Vec3 centre{x_[i], y_[i], z_[i]};
+  const auto half = static_cast<double>(look.cube.half);
+  const Vec3 pad{2 * pad_, 2 * pad_, 2 * pad_};
+  Box hits;
+  if (!look.sure) {
+    hits.extend(centre - Vec3{half, half, half} - pad);
+    hits.extend(centre + Vec3{half, half, half} + pad);
+    return hits;
+  }
+  for (const SampledVoxels::Plane& plane : voxels_.planes(first_ + i).first(voxels_.crossing(first_ + i))) {
+    if (!crosses(plane, look.cube)) continue;
+    const Vec3 n = widen(plane.normal), all{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+    const double offset = static_cast<double>(plane.offset), across = all.x + all.y + all.z;
+    // Where the plane lies in the cube, along an axis: its other coordinates are at most `half`. Planes along the axis
+    // lie everywhere, and those nearly along it too, for roundings of the normal.
+    const auto along = [&](double part, double size, float low, float high) {
+      double from = std::max(static_cast<double>(low), -half), to = std::min(static_cast<double>(high), half);
+      if (size >= 0x1p-6) {
+        const double middle = offset / part, extent = half * (across - size) / size;
+        from = std::max(from, middle - extent), to = std::min(to, middle + extent);
+      }
+      return std::pair(from, to);
+    };
+    const auto x = along(n.x, all.x, plane.low.x, plane.high.x), y = along(n.y, all.y, plane.low.y, plane.high.y),
+               z = along(n.z, all.z, plane.low.z, plane.high.z);
+    const Vec3 low = Vec3{x.first, y.first, z.first} - pad, high = Vec3{x.second, y.second, z.second} + pad;
+    if (low.x > high.x || low.y > high.y || low.z > high.z) continue;
+    hits.extend(centre + low);
+    hits.extend(centre + high);
+  }
+  return hits;
 }
 
 SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
@@ -329,12 +388,10 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   probes_.clear();
   std::size_t kept = 0;
   for (const Look& look : looks_) {
-    if (is_hidden(SeenBox(box_of(look)))) continue;
-    const std::uint32_t i = look.voxel;
-    const double inverse = 1 / std::max(distance_[i], std::numeric_limits<double>::min());
-    const Float3 d{static_cast<float>(x_[i] * inverse), static_cast<float>(y_[i] * inverse),
-                   static_cast<float>(z_[i] * inverse)};
-    probes_.push_back({d, look.cube.nearest * static_cast<float>(1 - trust)});
+    if (is_hidden(SeenBox(look.hits))) continue;
+    const Vec3 middle = (look.hits.min + look.hits.max) * 0.5;
+    const double inverse = 1 / std::max(std::sqrt(dot(middle, middle)), std::numeric_limits<double>::min());
+    probes_.push_back({narrow(middle * inverse), look.cube.nearest * static_cast<float>(1 - trust)});
     looks_[kept++] = look;
   }
   looks_.resize(kept);
@@ -343,7 +400,7 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   kept = 0;
   for (std::size_t k = 0; k < looks_.size(); ++k) {
     const std::uint32_t by = probes_[k].hit;
-    if (by != RayBundle::no_hit && hides(by, box_of(looks_[k]))) continue;
+    if (by != RayBundle::no_hit && hides(by, looks_[k].hits)) continue;
     looks_[kept] = looks_[k];
     looks_[kept++].occluder = by;
   }
@@ -353,25 +410,6 @@ void SampledVoxelCounter::drop_hidden_boxes() {
 std::uint32_t SampledVoxelCounter::wanted(std::uint32_t i) const {
   if (stop_at_ == 0) return kAll;
   return counts_[i] >= stop_at_ ? 1 : stop_at_ + stop_at_ / 4 + 1;
-}
-
-// Lists rays that may leave a point in a voxel: all, or as many as usually suffice.
-void SampledVoxelCounter::list_rays(const Look& look) {
-  const RayPattern& pattern = rays_->pattern();
-  const std::uint32_t i = look.voxel;
-  RayRanges window;
-  if (look.sure && boxes_.simple[i]) {
-    window.rows = {static_cast<std::uint32_t>(boxes_.row_begin[i]), static_cast<std::uint32_t>(boxes_.row_end[i])};
-    window.columns[0] = {static_cast<std::uint32_t>(boxes_.column_begin[i]),
-                         static_cast<std::uint32_t>(boxes_.column_end[i])};
-  } else {
-    const double half = rays_->grid().voxel_size() / 2 + pad_;
-    const Vec3 narrow{half, half, half}, centre{x_[i], y_[i], z_[i]};
-    Vec3 low = centre - narrow, high = centre + narrow;
-    if (station_->turn) turn_back(*station_->turn, low, high);
-    window = rays_of_box(pattern, low, high);
-  }
-  if (!window.empty()) list_rays({look, window, 0, counts_[i], {}}, wanted(i));
 }
 
 // Collects the planes of the voxel on which hits may count.

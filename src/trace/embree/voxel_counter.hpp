@@ -59,6 +59,8 @@ class SampledVoxelCounter {
   struct Look {
     std::uint32_t voxel = 0;  // index in the block
     Cube cube;
+    double reach = 0;                            // by which noise moves its hits at most
+    Box hits;                                    // holds every hit that counts, relative to the head
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
     std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
   };
@@ -105,7 +107,8 @@ class SampledVoxelCounter {
   double reach_of(std::uint32_t i, double far) const;
   bool crosses(const SampledVoxels::Plane& plane, const Cube& cube) const;
   float height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const;
-  Box box_of(const Look& look) const;
+  Box hits_of(const Look& look) const;
+  void find_windows();
   SeenTriangle seen(std::uint32_t triangle) const;  // from the current head
   void find_open(std::size_t n);
   void drop_hidden_groups(std::size_t level, std::size_t n);
@@ -119,7 +122,7 @@ class SampledVoxelCounter {
   bool any_ray_near(const Vec3& point, double radius) const;
   // Upper bound on the points that are still to be counted in voxel number i of the block.
   std::uint32_t wanted(std::uint32_t i) const;
-  void list_rays(const Look& look);
+  RayRanges window_of(std::size_t k) const;
   void list_rays(Rest rest, std::uint32_t enough);
   Tiles find_hidden(const Look& look, const RayRanges& window);
   std::span<const Ahead> planes_of(const Look& look);
@@ -146,7 +149,7 @@ class SampledVoxelCounter {
   std::span<const std::uint8_t> leave_out_;
   std::uint64_t traced_ = 0;
 
-  BoxBatch boxes_;
+  BoxBatch boxes_;                                              // around the points that count, of looks_
   alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
   std::array<bool, block> open_;  // by voxel of the block: whether the current station may need to look at it
   std::vector<std::pair<std::uint32_t, SeenTriangle>> met_;
