@@ -82,6 +82,8 @@ inline constexpr double usual_spacing_m = 0.02;
 /// the line that is drawn; of an accuracy class of the USIBD, "LOA20" to "LOA50", its bound at 95 %: 50, 15, 5 or 1 mm.
 /// Throws Error invalid_argument.
 double spacing_for(const std::string& deliverable);
+/// `target` with the accuracy class that the site's scans are for, unless it has one or they are for none.
+TargetOptions with_class_of(const SiteOptions& site, TargetOptions target);
 
 /// One row for each setting, in the order in which they are listed.
 const SettingTable<SiteOptions>& site_settings();

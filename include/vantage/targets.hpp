@@ -48,13 +48,17 @@ struct TargetOptions {
   /// Standard deviation of a fitted centre in each axis, above 0, besides range noise and what a calibration leaves.
   /// Empty: 0.2 mm by a scanner that states its accuracy of angles and of ranges, 1 mm by one that does not.
   std::optional<double> sigma_m = {};
-  std::size_t least_points = 60;                ///< A scan with fewer points on a target does not measure it.
-  std::size_t least = 0, most = 40;             ///< Proposed targets.
-  AccuracyClass wanted = AccuracyClass::loa30;  ///< Proposals end once the predicted registration error meets it,
-  std::optional<double> largest_rms_m = {};     ///< and is at most this, if it is given; above 0.
+  std::size_t least_points = 60;     ///< A scan with fewer points on a target does not measure it.
+  std::size_t least = 0, most = 40;  ///< Proposed targets.
+  /// What the predicted registration error is judged by. Proposals end once it is met. Empty: the class that the site's
+  /// scans are for (`SiteOptions::deliverable`), if any, and else LOA30.
+  std::optional<AccuracyClass> accuracy_class = {};
+  std::optional<double> largest_rms_m = {};  ///< Proposals go on while the error is above this; above 0.
   bool exact = false;  ///< Trace every ray, as evaluations and plans do, in place of a sample of the voxels.
 };
-/// Largest root mean square error that `wanted` and `largest_rms_m` allow.
+/// `accuracy_class`, or LOA30.
+AccuracyClass wanted_class(const TargetOptions& options) noexcept;
+/// Largest root mean square error that `wanted_class()` and `largest_rms_m` allow.
 double allowed_rms_m(const TargetOptions& options);
 Settings settings(const TargetOptions& options);
 /// One row for each setting that users give, and its bounds.

@@ -361,15 +361,15 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   EvaluationOptions chosen = evaluation_options(options, simulator, to_network(stations), progress);
   chosen.names = names;
-  chosen.target = options.target;
+  chosen.target = with_class_of(site.options(), options.target);
   if (options.targets) chosen.targets = read_targets_csv(*options.targets);
   if (options.proposed_targets) {
-    TargetOptions wanted = options.target;
+    TargetOptions wanted = chosen.target;
     wanted.exact = !options.sampled();
     std::optional<TargetProposal> proposal =
         propose_targets(site, placed, options.registration, wanted, chosen.targets, progress);
     if (!proposal) throw Stopped{};
-    spdlog::info("{}", proposal_text(*proposal, options.target.wanted));
+    spdlog::info("{}", proposal_text(*proposal, wanted_class(chosen.target)));
     chosen.targets = std::move(proposal->targets);
   }
   Candidates candidates;

@@ -340,7 +340,8 @@ void EditSession::measure(bool quick) {
   if (share) measures.push_back(make_objective("capture"));
   const auto stations = placed();
   evaluation_ = Evaluator({.simulator = simulator_, .surroundings = &surroundings_},
-                          {.link = options_.link, .names = names()}, std::move(measures))
+                          {.target = with_class_of(site_.options(), {}), .link = options_.link, .names = names()},
+                          std::move(measures))
                     .evaluate({.stations = stations,
                                .surveyed = surveyed_.counts(),
                                .surroundings = &around_.counts(),
@@ -440,6 +441,7 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<st
                                        stations,
                                        {.field = true,
                                         .registration = options_.registration,
+                                        .target = with_class_of(site_.options(), {}),
                                         .attainable = attainable_ ? &*attainable_ : nullptr,
                                         .link = options_.link,
                                         .names = names()},

@@ -143,7 +143,7 @@ void take_options(Evaluation& evaluation, const EvaluationOptions& options) {
   evaluation.names = options.names;
   if (!evaluation.names.empty()) evaluation.names.resize(evaluation.stations.size());
   evaluation.link_overlap = options.link_overlap, evaluation.link = options.link;
-  evaluation.accuracy_class = options.target.wanted;
+  evaluation.accuracy_class = wanted_class(options.target);
 }
 
 void add_round(Evaluation& evaluation, const OnSite& on_site, double most_min) {

@@ -50,9 +50,10 @@ const SettingTable<TargetOptions>& target_settings() {
                 "otherwise, or 0.001 by a scanner that states no calibration",
                 &Options::sigma_m, {.low = 1e-5, .high = 0.1})
         .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
-                "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
+                "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; the class of --for, or LOA30 "
+                "otherwise",
                 [](Options& options, const std::string& text, const std::string& what) {
-                  options.wanted = named(what, [&] { return accuracy_class_from_string(text); });
+                  options.accuracy_class = named(what, [&] { return accuracy_class_from_string(text); });
                 })
         .take();
   }();

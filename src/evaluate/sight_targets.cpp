@@ -87,7 +87,7 @@ Settings settings(const TargetOptions& options) {
       .add("target_points", options.least_points)
       .add("targets_least", options.least)
       .add("targets_most", options.most)
-      .add("accuracy_class", to_string(options.wanted), {"accuracy-class"})
+      .add("accuracy_class", to_string(wanted_class(options)), {"accuracy-class"})
       .add("target_largest_rms_m", options.largest_rms_m)
       .add("target_exact", options.exact)
       .take();
@@ -98,8 +98,12 @@ void check(const TargetOptions& options) {
   if (options.largest_rms_m) require_above_zero("targets", "largest_rms_m", *options.largest_rms_m);
 }
 
+AccuracyClass wanted_class(const TargetOptions& options) noexcept {
+  return options.accuracy_class.value_or(AccuracyClass::loa30);
+}
+
 double allowed_rms_m(const TargetOptions& options) {
-  const double by_class = largest_error_m(options.wanted) / error_at_95_percent(1);
+  const double by_class = largest_error_m(wanted_class(options)) / error_at_95_percent(1);
   return options.largest_rms_m ? std::min(by_class, *options.largest_rms_m) : by_class;
 }
 

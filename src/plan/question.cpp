@@ -193,7 +193,8 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   asked.link_overlap = least;
   asked.registration = question.registration;
   asked.on_site = question.on_site;
-  asked.targets = question.targets, asked.existing_targets = question.existing_targets, asked.target = question.target;
+  asked.targets = question.targets, asked.existing_targets = question.existing_targets;
+  asked.target = with_class_of(site.options(), question.target);
   if (!asked.on_site.entrance && !site.walkable().enter.empty()) asked.on_site.entrance = site.walkable().enter.front();
   for (Objective& objective : asked.objectives)
     if (objective.needs.registration) objective = make_objective(objective.name, asked.settings());

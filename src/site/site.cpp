@@ -437,12 +437,14 @@ Evaluation Site::evaluate(std::span<const PlacedStation> stations, const Evaluat
   if (has_area()) walk = on_site(options_on_site);
   if (!walk && options_on_site.day_min)
     throw Error(Errc::invalid_argument, "day: there is no ground in the model for a round that sessions are made of");
+  EvaluationOptions chosen = options;
+  chosen.target = with_class_of(this->options(), options.target);
   return evaluate_stations({.simulator = simulator(),
                             .surroundings = options.overlap ? &surroundings() : nullptr,
                             .on_site = walk ? &*walk : nullptr,
                             .clash = &clash(),
                             .area = has_area() ? &area() : nullptr},
-                           stations, options, progress);
+                           stations, chosen, progress);
 }
 
 }  // namespace vantage

@@ -37,6 +37,12 @@ double spacing_for(const std::string& deliverable) {
   }
 }
 
+TargetOptions with_class_of(const SiteOptions& site, TargetOptions target) {
+  if (!target.accuracy_class && site.deliverable && !site.deliverable->starts_with("1:"))
+    target.accuracy_class = accuracy_class_from_string(*site.deliverable);
+  return target;
+}
+
 Scanner site_scanner(const SiteOptions& options, double scale) {
   Scanner scanner;
   scanner.height_m *= scale;

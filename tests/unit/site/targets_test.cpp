@@ -102,11 +102,20 @@ TEST(Targets, AreProposedWhereTheyHelpMost) {
   EXPECT_GT(tried, 5);
 }
 
+TEST(Targets, TheClassIsThatOfWhatTheScansAreFor) {
+  EXPECT_EQ(with_class_of({}, {}).accuracy_class, std::nullopt);
+  EXPECT_EQ(with_class_of({.deliverable = "1:50"}, {}).accuracy_class, std::nullopt);
+  EXPECT_EQ(with_class_of({.deliverable = "loa40"}, {}).accuracy_class, AccuracyClass::loa40);
+  EXPECT_EQ(with_class_of({.deliverable = "LOA40"}, {.accuracy_class = AccuracyClass::loa20}).accuracy_class,
+            AccuracyClass::loa20);
+  EXPECT_EQ(wanted_class({}), AccuracyClass::loa30);
+}
+
 TEST(Targets, AreAsFewAsTheClassTakes) {
   Site site = tunnel();
   const auto stations = stations_of(site);
   for (const AccuracyClass wanted : {AccuracyClass::loa20, AccuracyClass::loa30, AccuracyClass::loa40}) {
-    const TargetOptions options{.wanted = wanted, .exact = true};
+    const TargetOptions options{.accuracy_class = wanted, .exact = true};
     const auto proposal = propose_targets(site, stations, {}, options);
     ASSERT_TRUE(proposal);
     ASSERT_LE(proposal->with.rms_m, allowed_rms_m(options)) << to_string(wanted);
