@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """For mkdocs build: code in tables, and links to headings."""
+import glob
 import os
 import re
 
@@ -14,14 +15,15 @@ def on_page_markdown(markdown, **_):
 
 def on_post_build(config, **_):
     """mkdocs looks for the pages that links name, and this for their headings."""
-    pages = {}
-    for name in os.listdir(config["site_dir"]):
-        if name.endswith(".html") and name != "404.html":
-            with open(os.path.join(config["site_dir"], name), encoding="utf-8") as file:
+    site, pages = config["site_dir"], {}
+    for path in glob.glob(os.path.join(site, "**", "*.html"), recursive=True):
+        name = os.path.relpath(path, site)
+        if name != "404.html":
+            with open(path, encoding="utf-8") as file:
                 pages[name] = file.read()
     headings = {name: set(re.findall(r'\bid="([^"]+)"', page)) for name, page in pages.items()}
     wrong = [f"{name}: {to}#{heading}" for name, page in pages.items()
-             for to, heading in re.findall(r'href="([a-z_]*(?:\.html)?)#([^"]+)"', page)
-             if heading not in headings.get(to or name, ())]
+             for to, heading in re.findall(r'href="((?:[a-z_./]+\.html)?)#([^"]+)"', page)
+             if heading not in headings.get(os.path.normpath(os.path.join(os.path.dirname(name), to)) if to else name, ())]
     if wrong:
         raise PluginError("links to headings that are not there: " + ", ".join(wrong))

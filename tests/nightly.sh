@@ -4,7 +4,7 @@
 # What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
 #
 #   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked; random drawings and clouds;
-#              the sweep of docs/sweep.md
+#              the sweep of docs/evidence/sweep.md
 #   faults     every n of the faults of device, disk and process, and every number for every option
 #   address, undefined, thread
 #              every suite under that sanitizer (tests/sanitizers/check.sh)

@@ -59,7 +59,7 @@ struct MoCmaEsConfig {
   Scheme scheme = Scheme::steady_state;
   std::size_t batch = 1;  ///< Offspring asked for at once in the steady state, to keep a GPU busy.
   /// The next four apply to the steady state; all 0 gives the published algorithm. With them it needs a fraction of the
-  /// evaluations on planning problems and leaves local fronts (measured in docs/optimisers.md).
+  /// evaluations on planning problems and leaves local fronts (measured in docs/evidence/optimisers.md).
   double guided = 0.5;   ///< Share of parents drawn by hypervolume contribution instead of uniformly from the front.
   double spread = 0.25;  ///< Share of steps that also follow the differences to the parent's neighbours on the front.
   double recombined = 0.15;  ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.

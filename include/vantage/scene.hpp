@@ -124,7 +124,7 @@ struct SceneOptions {
   std::vector<std::string> wall_layers = {};
   std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.
   /// Meshes that several nodes place are stored so (docs/scenes.md). It changes memory, and results by no more than the
-  /// rounding of coordinates (docs/stability.md).
+  /// rounding of coordinates (docs/evidence/stability.md).
   SharedMeshes shared_meshes = SharedMeshes::automatic;
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
   /// read. 0: half of what is free.

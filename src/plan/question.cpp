@@ -138,10 +138,10 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
 }
 
 // Sample sizes of a search, for errors of .002 in coverage, and of .007 in overlap, on large sites
-// (docs/benchmarks.md).
+// (docs/evidence/benchmarks.md).
 constexpr std::uint64_t kSampleForCoverage = 20'000, kSampleForOverlap = 100'000;
 // A front is searched with fewer voxels, redrawn regularly, so that no network survives by luck, as with a fixed
-// sample; every ray then judges the archive (docs/cases.md).
+// sample; every ray then judges the archive (docs/evidence/cases.md).
 constexpr std::uint64_t kSampleRedrawn = 5'000;
 constexpr std::size_t kIterationsOfASample = 20;
 // A search for the best of so many stations; the number is chosen by a larger sample.

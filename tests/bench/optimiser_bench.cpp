@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The optimisers beside other libraries on reference problems: hypervolume after so many evaluations, evaluations to a
-// target, and the optimiser's own time. docs/optimisers.md explains the tables.
+// target, and the optimiser's own time. docs/evidence/optimisers.md explains the tables.
 #include <tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>

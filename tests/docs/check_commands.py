@@ -15,7 +15,7 @@ import tempfile
 BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:3])
 MARKS = ["<!-- runs -->"] + (["<!-- runs at night -->"] if "--night" in sys.argv[3:] else [])
 PROGRAM = os.path.join(BUILD, "vantage")
-PAGES = [os.path.join(SOURCE, "README.md"), *sorted(glob.glob(os.path.join(SOURCE, "docs", "*.md")))]
+PAGES = [os.path.join(SOURCE, "README.md"), *sorted(glob.glob(os.path.join(SOURCE, "docs", "**", "*.md"), recursive=True))]
 
 
 def lines_of(page):

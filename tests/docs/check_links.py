@@ -8,7 +8,7 @@ import re
 import sys
 
 SOURCE = os.path.abspath(sys.argv[1])
-PAGES = [os.path.join(SOURCE, "README.md"), *sorted(glob.glob(os.path.join(SOURCE, "docs", "*.md")))]
+PAGES = [os.path.join(SOURCE, "README.md"), *sorted(glob.glob(os.path.join(SOURCE, "docs", "**", "*.md"), recursive=True))]
 
 
 def text_of(page):
@@ -41,8 +41,9 @@ def dead_links(page):
 def main():
     errors = [error for page in PAGES for error in dead_links(page)]
     with open(os.path.join(SOURCE, "mkdocs.yml"), encoding="utf-8") as file:
-        listed = set(re.findall(r": (\w+\.md)$", file.read(), re.M))
-    errors += [f"mkdocs.yml does not list {os.path.basename(page)}" for page in PAGES[1:] if os.path.basename(page) not in listed]
+        listed = set(re.findall(r": ([\w/]+\.md)$", file.read(), re.M))
+    names = [os.path.relpath(page, os.path.join(SOURCE, "docs")) for page in PAGES[1:]]
+    errors += [f"mkdocs.yml does not list {name}" for name in names if name not in listed]
     if len(PAGES) < 2 or errors:
         raise SystemExit("\n".join(errors) or "there are no pages")
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes Vulkan calls of a small plan fail, one by one, and reports the outcome:
 //     vantage-device-faults ENGINE [EVERY [FIRST]]
-// Tries each call, or one of EVERY, from number FIRST (default 0) on; docs/reliability.md has the table. If
+// Tries each call, or one of EVERY, from number FIRST (default 0) on; docs/evidence/reliability.md has the table. If
 // VANTAGE_FAULTS_UNWATCHED is set, runs without the validation layer.
 #include <unistd.h>
 

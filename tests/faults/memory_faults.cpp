@@ -2,7 +2,7 @@
 // Makes allocations of a small plan fail, one by one, and reports the outcome:
 //     vantage-memory-faults ENGINE sites|EVERY [FIRST]
 // sites: the first allocation of each place in the code, identified by its call stack. EVERY: one of EVERY allocations,
-// from number FIRST on. Allocations by libraries for themselves are excluded: docs/reliability.md.
+// from number FIRST on. Allocations by libraries for themselves are excluded: docs/evidence/reliability.md.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <unistd.h>

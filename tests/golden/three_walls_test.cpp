@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 3 of the method: one station facing three walls, without and with noise. Prints the tables of docs/cases.md.
+// Table 3 of the method: one station facing three walls, without and with noise. Prints the tables of
+// docs/evidence/cases.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vantage-stress: prints the tables of docs/stability.md, each under its command.
+// vantage-stress: prints the tables of docs/evidence/stability.md, each under its command.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -117,7 +117,7 @@ bool Picture::Item::operator<(const Item& other) const {
 }
 
 // Drawing looks at every triangle, tracing only at those near a ray. On a plant of 300 000, with as many rays, both
-// take as long (docs/benchmarks.md).
+// take as long (docs/evidence/benchmarks.md).
 constexpr std::uint64_t least_rays_a_triangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
   return triangles < none && rays >= least_rays_a_triangle * triangles;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double word_bytes = 4, vertex = 12, triangle = 12;
 constexpr double most_staging = 1 << 25;  // commands.cpp
-// Per triangle, measured (docs/reliability.md): nodes of our tree, most of whose leaves hold two triangles; bytes of a
-// driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
+// Per triangle, measured (docs/evidence/reliability.md): nodes of our tree, most of whose leaves hold two triangles;
+// bytes of a driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
 constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
 // Glass has a tree of our own on every engine.

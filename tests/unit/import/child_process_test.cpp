@@ -130,7 +130,7 @@ TEST_F(ChildProcessTest, ReachesNoNetwork) {
   close(door);
 }
 
-// Lines of docs/reliability.md: what an importer is let do.
+// Lines of docs/evidence/reliability.md: what an importer is let do.
 TEST_F(ChildProcessTest, ChangesNothingOfAnyFile) {
   const std::string file = write("readable/model", "model").string(), other = (folder_ / "other").string();
   const auto before = std::filesystem::last_write_time(file);
