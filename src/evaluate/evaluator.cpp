@@ -104,7 +104,7 @@ MeasuredNetwork Evaluator::measured(const CountedNetwork& network, const Require
                        .surroundings_voxels = network.surroundings ? site_.surroundings->voxel_count() : 0,
                        .minutes_on_site = needs.time ? minutes() : 0,
                        .scene = &site_.simulator.scene()};
-  if (needs.attainable) made.captured = network.captured;
+  if (needs.attainable) made.captured = network.captured.all, made.captured_of_meshes = network.captured.meshes;
   return made;
 }
 
