@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/part_of.hpp"
+#include "evaluate/scan_data.hpp"
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
 #include "objective/registered_sample.hpp"
@@ -125,6 +126,7 @@ Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
     sighted = sight_targets(site_.simulator, *site_.clash, network.stations, targets, options_.target);
   Evaluation made = evaluation_of(measured, measures_, registration, sighted);
   take_options(made, options_);
+  made.data = scan_data(network, site_.simulator, site_.surroundings);
   made.targets = std::move(targets);
   if (registration && !made.targets.empty())
     made.without_targets_m = registration_error(network.surveyed, measured.voxels, *registration, network.surroundings,

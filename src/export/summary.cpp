@@ -264,6 +264,19 @@ std::vector<std::string> stations_advice(const Evaluation& evaluation, const std
   return advice;
 }
 
+// "4.2 GB", "76 MB", "210 million", as few digits as an estimate has.
+std::string amount(double value, const char* millions, const char* billions) {
+  const bool large = value >= 999.5e6;
+  const double shown = value / (large ? 1e9 : 1e6);
+  return fixed(shown, shown < 9.95 ? 1 : 0) + " " + (large ? billions : millions);
+}
+
+// "about 210 million points: 4.2 GB as E57, 7.6 GB as LAS"
+std::string data_text(const ScanData& data) {
+  return "about " + amount(data.points, "million", "billion") + " points: " + amount(data.e57_bytes, "MB", "GB") +
+         " as E57, " + amount(data.las_bytes, "MB", "GB") + " as LAS";
+}
+
 // "96.3 % ± 0.4 % of what is attainable of IfcWall*, of which at least 95 % were asked for"
 std::string of_meshes_text(const Requirement& requirement, const Estimate& share) {
   const std::string& meshes = requirement.objective.meshes;
@@ -328,6 +341,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (evaluation.visit)
     lines.push_back({"on site", evaluation.visit->sessions.empty() ? "about " + duration(60 * evaluation.visit->minutes)
                                                                    : sessions_text(*evaluation.visit)});
+  if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
