@@ -273,8 +273,10 @@ std::string amount(double value, const char* millions, const char* billions) {
 
 // "about 210 million points: 4.2 GB as E57, 7.6 GB as LAS"
 std::string data_text(const ScanData& data) {
-  return "about " + amount(data.points, "million", "billion") + " points: " + amount(data.e57_bytes, "MB", "GB") +
-         " as E57, " + amount(data.las_bytes, "MB", "GB") + " as LAS";
+  const std::string points = data.points < 1e6 ? grouped(static_cast<std::uint64_t>(std::llround(data.points)))
+                                               : amount(data.points, "million", "billion");
+  return "about " + points + " points: " + amount(data.e57_bytes, "MB", "GB") + " as E57, " +
+         amount(data.las_bytes, "MB", "GB") + " as LAS";
 }
 
 // "96.3 % ± 0.4 % of what is attainable of IfcWall*, of which at least 95 % were asked for"
