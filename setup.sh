@@ -16,7 +16,7 @@ readonly packages=(
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
   libpng-dev libseccomp-dev libturbojpeg0-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
-  libassimp-dev libdraco-dev libexpat1-dev libgeos-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
+  libminizip-dev libassimp-dev libdraco-dev libexpat1-dev libgeos-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin poppler-utils gdal-bin dpkg-dev file mmdebstrap
   pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib python3-jsonschema libopenmpi-dev openmpi-bin)

@@ -20,6 +20,7 @@ pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp) # what importers may do
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
+pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip) # BCF files
 pkg_check_modules(proj REQUIRED IMPORTED_TARGET "proj>=7")
 # The report is a page with three.js in it. It is left out where one of these is missing.
 option(VANTAGE_WITH_REPORT "Write reports where what they take is installed" ON)

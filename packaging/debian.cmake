@@ -69,7 +69,7 @@ plans, with numpy's arrays.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers, nodejs, xdg-utils")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers, vantage (= ${PROJECT_VERSION}), python3-matplotlib")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libembree-dev, libtbb-dev, libcairo2-dev, coinor-libcbc-dev, coinor-libclp-dev, libpng-dev, libseccomp-dev, libturbojpeg0-dev, libproj-dev, pkgconf")
+    "libembree-dev, libtbb-dev, libcairo2-dev, coinor-libcbc-dev, coinor-libclp-dev, libpng-dev, libseccomp-dev, libturbojpeg0-dev, libproj-dev, libminizip-dev, pkgconf")
 if(VANTAGE_HAVE_REPORT)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libmeshoptimizer-dev, zlib1g-dev")
 endif()

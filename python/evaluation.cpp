@@ -47,6 +47,22 @@ py::array_t<std::uint64_t> shared_voxels(const Evaluation& e) {
   return adopt<std::uint64_t>(std::move(shared), {static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(n)});
 }
 
+}  // namespace
+
+const char* const kData =
+    "What its scans hold, besides those of existing stations: a dict with `points` on all surfaces, counted or "
+    "estimated from\nthe surroundings, and `e57_bytes` and `las_bytes` of files with their reflectivity. None if it is "
+    "not known.";
+
+py::object data_of(const Evaluation& e) {
+  if (!e.data) return py::none();
+  py::dict dict;
+  dict["points"] = e.data->points, dict["e57_bytes"] = e.data->e57_bytes, dict["las_bytes"] = e.data->las_bytes;
+  return dict;
+}
+
+namespace {
+
 py::dict values_of(const Evaluation& e) {
   py::dict dict = from_json(evaluation_json(e));
   dict["points"] = e.counts.points;
@@ -249,6 +265,8 @@ void add_evaluations(py::module_& m) {
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
           "Whether it was stopped: its counts are then too low, and its measures raise `vantage.Error`.")
+      .def_property_readonly(
+          "data", [](const Evaluation& e) { return data_of(e); }, kData)
       .def_readonly("visit", &Evaluation::visit, "The round on site without existing stations; None if unknown.")
       .def_property_readonly(
           "summary", [](const Evaluation& e) { return summary_text(e); }, "Summary in plain words.")

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "arrays.hpp"
+#include "vantage/evaluation.hpp"
 
 namespace vantage::python {
 
@@ -18,5 +19,9 @@ inline py::array_t<double> matrix_of(PairMatrix matrix) {
   kept.release();
   return py::array_t<double>(Shape{n, n}, data, owner);
 }
+
+/// What the scans of an evaluation hold, as a dict; None if it is not known.
+py::object data_of(const Evaluation& e);
+extern const char* const kData;  // its docstring
 
 }  // namespace vantage::python

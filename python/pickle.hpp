@@ -43,6 +43,7 @@ inline auto members(Visit& v) {
   return std::tuple_cat(members(static_cast<Round&>(v)), std::tie(v.day_min, v.sessions, v.not_split));
 }
 inline auto members(StoreyTie& t) { return std::tie(t.a, t.b, t.value, t.apart_m, t.way_m); }
+inline auto members(ScanData& d) { return std::tie(d.points, d.e57_bytes, d.las_bytes); }
 inline auto members(StationMove& m) { return std::tie(m.station, m.to, m.reach_m); }
 inline auto members(Work& w) {
   return std::tie(w.networks, w.rays, w.sampled_networks, w.sampled_voxels, w.sampled_rays, w.planes, w.choice_steps,
@@ -51,7 +52,7 @@ inline auto members(Work& w) {
 inline auto members(Evaluation& e) {
   return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.work, e.field, e.values,
                   e.attainable, e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.through_glass,
-                  e.link_overlap, e.link, e.registration, e.visit, e.storey_ties, e.moves, e.violation);
+                  e.link_overlap, e.link, e.registration, e.data, e.visit, e.storey_ties, e.moves, e.violation);
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {

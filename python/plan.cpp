@@ -150,6 +150,8 @@ void add_entries(py::module_& m) {
           "without_targets_m", [](const Entry& e) { return e.get().without_targets_m; },
           "Root mean square registration error without its targets; None unless targets were looked for.")
       .def_property_readonly(
+          "data", [](const Entry& e) { return data_of(e.get()); }, kData)
+      .def_property_readonly(
           "visit", [](const Entry& e) { return e.get().visit; }, "The round on site; None if it was not computed.")
       .def("__repr__", [](const Entry& e) {
         std::string text;

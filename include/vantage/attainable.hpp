@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vantage/measure.hpp"
@@ -35,6 +36,15 @@ class AttainableCounts {
   std::uint64_t sample_voxels() const noexcept { return sample_voxels_; }        ///< As asked for.
   std::uint64_t from() const noexcept { return from_; }                          ///< As asked for.
   std::uint64_t population() const noexcept { return population_; }              ///< Number of surveyed voxels.
+  /// Elements of the surveyed meshes of a pattern.
+  struct OfMeshes {
+    std::string meshes;
+    std::vector<std::uint8_t> has;  ///< By element, 1 for those of them.
+  };
+  /// Tells the share captured of the surveyed meshes of a pattern too, as `captured()` of vantage/objective.hpp takes
+  /// it. Throws Error invalid_argument if no surveyed mesh has such a name. REQUIRES: the simulator of these counts.
+  void tell_of(const Simulator& simulator, const std::string& meshes);
+  std::span<const OfMeshes> told_of() const noexcept { return told_of_; }  ///< In the order in which they were given.
   /// Point weights of the attainable count of each element, at most goal().
   const std::vector<double>& counts() const noexcept { return counts_; }
   /// Point weights that fill a voxel: the densest goal density times `NetworkCounts::point_weight`.
@@ -54,11 +64,14 @@ class AttainableCounts {
   Estimate captured(std::span<const std::uint32_t> points) const;
   /// The same of so many point weights in each element.
   Estimate captured(std::span<const double> point_weights) const;
+  /// The share, and that of the meshes of each pattern that was told of; 0 where nothing of them is attainable.
+  CapturedShares captured_shares(std::span<const std::uint32_t> points) const;
 
  private:
   double weighted(std::size_t element, std::uint32_t points) const {
     return static_cast<double>(points) * point_weights_[element];
   }
+  Estimate captured(std::span<const double> point_weights, const OfMeshes* of) const;
   template <class Share>
   Estimate ratio(const std::vector<double>& whole, const Share& part) const;
 
@@ -66,14 +79,15 @@ class AttainableCounts {
   std::vector<double> counts_;
   std::uint64_t population_ = 0, sample_voxels_ = 0, from_ = 0;
   double goal_ = 1;
+  std::vector<OfMeshes> told_of_;
 };
 
 /// Traces each active station alone, and takes it in. False if stopped; then some are missing.
 bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::span<const Station> stations,
                       const Progress& progress = {});
 
-/// The share of what is attainable that each network captures, traced on the voxels of `attainable`. Empty if stopped.
-std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
-                                      std::span<const Network> networks, const Progress& progress = {});
+/// The shares of what is attainable that each network captures, traced on the voxels of `attainable`. Empty if stopped.
+std::vector<CapturedShares> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
+                                            std::span<const Network> networks, const Progress& progress = {});
 
 }  // namespace vantage

@@ -69,6 +69,14 @@ struct StoreyTie {
   double way_m = 0;          ///< On foot.
 };
 
+/// What the scans of stations hold, besides those of existing ones.
+struct ScanData {
+  /// Points on all surfaces: counted, or estimated from the coarser scans of `EvaluationSite::surroundings`.
+  double points = 0;
+  double e57_bytes = 0;  ///< As files of `PointCloudWriter` with reflectivity and without colours.
+  double las_bytes = 0;
+};
+
 /// A network and its figures: by every ray, or estimated from a sample of the voxels.
 struct Evaluation {
   std::vector<PlacedStation> stations = {};  ///< Existing ones first, skipped ones included.
@@ -100,6 +108,7 @@ struct Evaluation {
   std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
+  std::optional<ScanData> data = std::nullopt;          ///< Empty: not known, without the surroundings or every ray.
   AccuracyClass accuracy_class = AccuracyClass::loa30;  ///< Judges the registration error.
   std::optional<Visit> visit = std::nullopt;            ///< The round on site without existing stations.
   std::vector<StoreyTie> storey_ties = {};  ///< `storey_ties_of()` this network; empty: none, or not looked for.

@@ -205,6 +205,15 @@ std::vector<ElementShare> element_shares(const Simulator& simulator, const Evalu
 /// CSV: `name,class,global_id,area_m2,voxels,captured,incidence,point_distance_mm,deviation_mm`; degrees, millimetres.
 /// Empty cells: not known.
 void write_elements_csv(const std::filesystem::path& file, std::span<const ElementShare> elements);
+/// BCF 2.1, which programs for building models read: a topic for each of `elements` with a GlobalId of which less than
+/// `most_captured` of the goal points are captured, the largest first, `most_topics` at most. Each tells the captured
+/// share and the reasons in `shares`, of the nodes by name, for the rest; its viewpoint selects the element, and looks
+/// at it from where most of it is in free sight. A camera is left out if the importer moved the model, since it would
+/// look at another place there: several files with map conversions of their own. Returns how many topics there are; no
+/// file is written if there is none. The same bytes for the same elements: all dates are 1980-01-01. Throws Error io.
+std::size_t write_missed_bcf(const std::filesystem::path& file, std::span<const ElementShare> elements,
+                             std::span<const MissedShare> shares, Site& site, double most_captured = 0.1,
+                             std::size_t most_topics = 1000);
 /// Every voxel of `missed` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
 /// count. Binary PLY.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +63,11 @@ double clustering_coefficient(const OverlapMatrix& overlap);
 /// possible for a value in [0, 1], if the sample is too small to tell (one voxel).
 struct Estimate {
   double value = 0, standard_error = 0;
+};
+/// Shares of what is attainable that a network captures (vantage/attainable.hpp).
+struct CapturedShares {
+  Estimate all;                                 ///< Of all surveyed surface.
+  std::map<std::string, Estimate> meshes = {};  ///< Of the meshes of each pattern that was asked for.
 };
 /// Equation 8 from a sample of `population` voxels. The error uses successive differences along the Morton order, as a
 /// systematic sample needs: s/√n would be too wide. With weights it is a ratio estimate, with the jackknife's error

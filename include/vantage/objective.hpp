@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,8 @@ struct MeasuredNetwork {
   /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
   Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
   const Scene* scene = nullptr;  ///< The surveyed scene, for `captured()`.
+  /// The same share of the meshes of each pattern that objectives name (`Objective::meshes`).
+  std::map<std::string, Estimate> captured_of_meshes = {};
 };
 
 /// Inputs of an objective besides the stations. Inputs that no objective needs are not computed.
@@ -66,7 +69,8 @@ constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs
           a.meshes || b.meshes};
 }
 
-/// Share of voxels that reached their goal density, of surveyed meshes whose name matches a shell glob: "facade*", "*".
+/// Share of voxels that reached their goal density, of surveyed meshes whose name matches a pattern: a shell glob as
+/// "facade*" or "*", several with "|" between them, or with "!" before them for all other meshes.
 /// Each voxel counts once, whatever its weight. 0 if a sample holds none of theirs.
 /// Throws Error invalid_argument if no surveyed mesh has such a name, or unless the objective needs `meshes`.
 double captured(const MeasuredNetwork& network, std::string_view meshes);
@@ -109,6 +113,9 @@ struct Objective {
   enum class Kind { other, coverage, link, distance, time };
   Kind kind = Kind::other;
   double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 has at least, for `Kind::coverage`.
+  /// Pattern of the surveyed meshes, as of `captured()`, of which the value is the share of what is attainable; empty:
+  /// it is no share of some meshes. REQUIRES: `needs.attainable` if not empty.
+  std::string meshes = {};
   /// Advice if a requirement on it is not met: "allow more stations".
   std::string advice = "search longer";
   /// Its parameters as text. Results state them, and a run is resumed only under the same ones.
@@ -170,9 +177,10 @@ struct ObjectiveSettings {
 };
 /// Names of the built-in objectives: "coverage", "overlap", "stations", ….
 std::span<const std::string> objective_names();
-/// A built-in objective by its name. Throws Error invalid_argument and lists the names.
+/// A built-in objective by its name, or `capture(MESHES)`: the share of what is attainable that is captured of the
+/// surveyed meshes of a pattern, as of `captured()`. Throws Error invalid_argument and lists the names.
 Objective make_objective(std::string_view name, const ObjectiveSettings& settings = {});
-/// "coverage>=0.9" or "stations <= 8". Throws Error invalid_argument.
+/// "coverage>=0.9", "stations <= 8" or "capture(IfcWall*)>=0.95". Throws Error invalid_argument.
 Requirement make_requirement(std::string_view text, const ObjectiveSettings& settings = {});
 
 }  // namespace vantage

@@ -55,8 +55,8 @@ struct WrittenFolder {
 /// stations.kml if the site has a coordinate system by which stations can be put on WGS 84 (else `SiteOptions::warn` is
 /// told why), targets.csv if it has targets, sessions.csv if its round is split, and waypoints.csv and
 /// waypoints.json if it has one;
-/// - what it captures of each element: elements.csv; what it does not, and why: missed.csv, missed.ply, missed.png, and
-/// rooms.csv if the scene has rooms;
+/// - what it captures of each element: elements.csv; what it does not, and why: missed.csv, missed.ply, missed.png,
+/// missed.bcf if the scene is of IFC, and rooms.csv if it has rooms;
 /// - the pictures front, hypervolume, history (with several objectives) and plan, each as .png and .svg; for several
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan, and registration.ply, .png and .svg;

@@ -43,7 +43,7 @@ class Vantage(ConanFile):
 
     def requirements(self):
         for each in ("boost/[>=1.74 <2]", "cairo/[>=1.16 <2]", "coin-cbc/[>=2.10 <3]", "coin-clp/[>=1.17 <2]", "eigen/[>=3.3 <4]",
-                     "embree/[>=4 <5]", "glm/[>=0.9.9 <2]", "libjpeg-turbo/[>=2 <4]", "libpng/[>=1.6 <2]", "libseccomp/[>=2.5 <3]", "meshoptimizer/[>=0.18 <1]",
+                     "embree/[>=4 <5]", "glm/[>=0.9.9 <2]", "libjpeg-turbo/[>=2 <4]", "libpng/[>=1.6 <2]", "libseccomp/[>=2.5 <3]", "meshoptimizer/[>=0.18 <1]", "minizip/[>=1.2 <2]",
                      "nlohmann_json/[>=3.11 <4]", "onetbb/[>=2021 <2023]", "proj/[>=9 <10]", "spdlog/[>=1.10 <2]", "tinygltf/[>=2.5 <3]",
                      "volk/[>=1.3 <2]", "vulkan-headers/[>=1.3 <2]", "zlib/[>=1.2 <2]"):
             self.requires(each)

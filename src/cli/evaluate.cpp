@@ -233,12 +233,15 @@ StationLinks drawn_links(const EvaluateCommandOptions& options, const Evaluation
 void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& simulator, const Evaluation& found,
                  const std::vector<std::string>& names, const MissedVoxels* judged, Program& program) {
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field, options.ply);
+  std::vector<ElementShare> elements;
+  if (options.elements || (judged && options.missed.with_elements()))
+    elements = element_shares(simulator, found, found.field);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
-                 site, found.stations, options.ply);
+                 site, found.stations, elements, options.ply);
   if (judged && options.rooms)
     write_rooms_csv(*options.rooms, site.scene().rooms(), judged->rooms, found.stations, names);
-  if (options.elements) write_elements_csv(*options.elements, element_shares(simulator, found, found.field));
+  if (options.elements) write_elements_csv(*options.elements, elements);
   if (options.sessions) write_sessions_csv(*options.sessions, found);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);

@@ -21,6 +21,7 @@ struct MissedFiles {
   void add(CLI::App& command);
   // Throws Error invalid_argument for an unknown extension.
   void check() const;
+  bool with_elements() const;  // whether a file is of elements
 };
 
 // Logs what is captured, and why the rest is not.
@@ -29,8 +30,9 @@ void tell_missed(const MissedVoxels& judged);
 // `missed_voxels()` with progress and a line of results. Empty if stopped, or if nothing is surveyed.
 std::optional<MissedVoxels> judge_missed(Site& site, const VoxelField& field, Program& program);
 
-// Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view.
+// Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view, .bcf the
+// topics of `write_missed_bcf()`, for which alone `elements` are needed.
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, Site& site,
-                  std::span<const PlacedStation> stations, PlyCoordinates ply);
+                  std::span<const PlacedStation> stations, std::span<const ElementShare> elements, PlyCoordinates ply);
 
 }  // namespace vantage::cli

@@ -345,7 +345,7 @@ void EditSession::measure(bool quick) {
                     .evaluate({.stations = stations,
                                .surveyed = surveyed_.counts(),
                                .surroundings = &around_.counts(),
-                               .captured = share.value_or(Estimate{})});
+                               .captured = {.all = share.value_or(Estimate{})}});
   evaluation_.exact = false;  // links come from a sample, even if coverage does not
   if (!quick) {
     if (stations.size() <= kQuickStations && !stations.empty()) {

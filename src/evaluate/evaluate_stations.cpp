@@ -100,9 +100,11 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
   const Work before = work();
   CountedNetworks counts = evaluator.count(networks, options.field, share(0, counting));
   AttainableCounts attainable;
-  std::vector<Estimate> captured;
+  std::vector<CapturedShares> captured;
   if (options.attainable) {
     attainable = *options.attainable;
+    for (const Objective& measure : evaluator.measures())
+      if (!measure.meshes.empty()) attainable.tell_of(site.simulator, measure.meshes);
     const Progress raising = share(counting, 0.95), silent{.report = {}, .stop = progress.stop};
     bool whole = true;
     for (const Network& network : networks)
@@ -120,7 +122,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     CountedNetwork network{.stations = stations[k],
                            .surveyed = counts.surveyed[k],
                            .surroundings = counts.surroundings.empty() ? nullptr : &counts.surroundings[k],
-                           .captured = captured.empty() ? Estimate{} : captured[k]};
+                           .captured = captured.empty() ? CapturedShares{} : captured[k]};
     std::optional<Visit> visit;
     if (site.on_site) network.visit = &visit.emplace(evaluator.visit(network, most_minutes(options.requirements)));
     Evaluation& one = made.emplace_back(evaluator.evaluate(network));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/part_of.hpp"
+#include "evaluate/scan_data.hpp"
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
 #include "objective/registered_sample.hpp"
@@ -104,7 +105,7 @@ MeasuredNetwork Evaluator::measured(const CountedNetwork& network, const Require
                        .surroundings_voxels = network.surroundings ? site_.surroundings->voxel_count() : 0,
                        .minutes_on_site = needs.time ? minutes() : 0,
                        .scene = &site_.simulator.scene()};
-  if (needs.attainable) made.captured = network.captured;
+  if (needs.attainable) made.captured = network.captured.all, made.captured_of_meshes = network.captured.meshes;
   return made;
 }
 
@@ -125,6 +126,7 @@ Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
     sighted = sight_targets(site_.simulator, *site_.clash, network.stations, targets, options_.target);
   Evaluation made = evaluation_of(measured, measures_, registration, sighted);
   take_options(made, options_);
+  made.data = scan_data(network, site_.simulator, site_.surroundings);
   made.targets = std::move(targets);
   if (registration && !made.targets.empty())
     made.without_targets_m = registration_error(network.surveyed, measured.voxels, *registration, network.surroundings,

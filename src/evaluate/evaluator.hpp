@@ -26,7 +26,7 @@ struct CountedNetwork {
   std::span<const PlacedStation> stations;
   const NetworkCounts& surveyed;
   const NetworkCounts* surroundings = nullptr;  // null: not counted
-  Estimate captured = {};                       // by the attainable counts, if a measure needs it
+  CapturedShares captured = {};                 // by the attainable counts, if a measure needs them
   const Visit* visit = nullptr;                 // the round, if it is worked out; null: `time` is of the shortest one
 };
 
@@ -35,6 +35,7 @@ class Evaluator {
   // `measures`: all that are measured, each once by name, in place of those of the options. Borrows the site's parts.
   Evaluator(const EvaluationSite& site, EvaluationOptions options, std::vector<Objective> measures);
 
+  const std::vector<Objective>& measures() const { return measures_; }
   const RequiredInputs& needs() const { return needs_; }
   // Counts networks as the options say, and their surroundings if the site has some. A stop leaves the rest cancelled.
   CountedNetworks count(std::span<const Network> networks, bool field, const Progress& progress) const;

@@ -106,6 +106,12 @@ ordered_json matrix_json(const PairMatrix& matrix) {
   return rows;
 }
 
+ordered_json data_json(const ScanData& data) {
+  return {{"points", std::round(data.points)},
+          {"e57_bytes", std::round(data.e57_bytes)},
+          {"las_bytes", std::round(data.las_bytes)}};
+}
+
 ordered_json registration_json(const RegistrationError& error, const Estimate& whole_mm) {
   const auto mm = [](const Vec3& v) { return ordered_json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
   ordered_json stations = ordered_json::array();
@@ -193,6 +199,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     if (entry.registration && entry.registration->absolute_rms_m)
       json["registration_mm"]["in_site_frame"] = 1e3 * *entry.registration->absolute_rms_m;
   }
+  if (entry.data) json["data"] = data_json(*entry.data);
   if (entry.visit) {
     const std::size_t kept = result.problem.existing.size();
     json["on_site"] = round_json(*entry.visit, kept);
@@ -311,6 +318,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
     json["attainable"] = evaluation.attainable->value, json["attainable_se"] = evaluation.attainable->standard_error;
   if (const auto capture = evaluation.values.find("capture"); capture != evaluation.values.end())
     json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
+  if (evaluation.data) json["data"] = data_json(*evaluation.data);
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
   if (evaluation.visit && !evaluation.visit->sessions.empty())
     json["sessions"] = sessions_json(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -263,6 +264,40 @@ std::vector<std::string> stations_advice(const Evaluation& evaluation, const std
   return advice;
 }
 
+// "4.2 GB", "76 MB", "210 million", as few digits as an estimate has.
+std::string amount(double value, const char* millions, const char* billions) {
+  const bool large = value >= 999.5e6;
+  const double shown = value / (large ? 1e9 : 1e6);
+  return fixed(shown, shown < 9.95 ? 1 : 0) + " " + (large ? billions : millions);
+}
+
+// "about 210 million points: 4.2 GB as E57, 7.6 GB as LAS"
+std::string data_text(const ScanData& data) {
+  const std::string points = data.points < 1e6 ? grouped(static_cast<std::uint64_t>(std::llround(data.points)))
+                                               : amount(data.points, "million", "billion");
+  return "about " + points + " points: " + amount(data.e57_bytes, "MB", "GB") + " as E57, " +
+         amount(data.las_bytes, "MB", "GB") + " as LAS";
+}
+
+// "96.3 % ± 0.4 % of what is attainable of IfcWall*, of which at least 95 % were asked for"
+std::string of_meshes_text(const Requirement& requirement, const Estimate& share) {
+  const std::string& meshes = requirement.objective.meshes;
+  return (std::isnan(share.value)
+              ? std::string("a share that is not known")
+              : percent(share.value) + (share.standard_error > 0 ? " ± " + percent(share.standard_error) : "")) +
+         " of what is attainable of " + (meshes.starts_with('!') ? "all but " + meshes.substr(1) : meshes) +
+         ", of which " + (requirement.bound == Requirement::Bound::at_least ? "at least " : "at most ") +
+         number(std::round(1e8 * requirement.limit) / 1e6) + " % were asked for";
+}
+
+std::vector<SummaryLine> of_meshes_lines(const Evaluation& evaluation, std::span<const Requirement> requirements) {
+  std::vector<SummaryLine> lines;
+  for (const Requirement& requirement : requirements)
+    if (!requirement.objective.meshes.empty())
+      lines.push_back({"captured", of_meshes_text(requirement, evaluation.estimate(requirement.objective.name))});
+  return lines;
+}
+
 std::vector<std::string> requirements_advice(const Evaluation& evaluation, std::span<const Requirement> requirements) {
   std::vector<std::string> sentences;
   for (const Requirement& requirement : requirements) {
@@ -290,6 +325,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   const std::optional<StationLinks> links = evaluation.links();
   std::vector<SummaryLine> lines{{"captured", captured_text(evaluation)}};
   const NetworkCounts& counts = evaluation.counts;
+  std::ranges::move(of_meshes_lines(evaluation, requirements), std::back_inserter(lines));
   if (!counts.mixed.empty())
     lines.push_back(
         {"mixed", mixed_text(std::accumulate(counts.mixed.begin(), counts.mixed.end(), MixedPoints{}),
@@ -307,6 +343,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (evaluation.visit)
     lines.push_back({"on site", evaluation.visit->sessions.empty() ? "about " + duration(60 * evaluation.visit->minutes)
                                                                    : sessions_text(*evaluation.visit)});
+  if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
@@ -472,7 +509,8 @@ std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Est
     return in_time ? ", in the time on site that is allowed" : ", as far as links reach";
   }
   for (const Requirement& requirement : problem.requirements) {
-    if (requirement.bound != Requirement::Bound::at_least || !requirement.objective.needs.attainable) continue;
+    if (!requirement.objective.needs.attainable || !requirement.objective.meshes.empty()) continue;
+    if (requirement.bound != Requirement::Bound::at_least) continue;
     const std::string asked = number(std::round(1e8 * requirement.limit) / 1e6) + " %";
     if (captured.value >= requirement.limit) return ", and " + asked + " were asked for";
     if (requirement.missed_by(captured) > 0) return ", but " + asked + " were asked for";
@@ -547,7 +585,10 @@ std::string planned_text(const PlanResult& result) {
 }
 
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {
-  std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
+  const PlanEntry& entry = result.front.at(answer(result));
+  std::vector<SummaryLine> lines = summary_lines(entry);
+  const std::vector<SummaryLine> of_meshes = of_meshes_lines(entry, result.problem.requirements);
+  lines.insert(lines.begin() + 1, of_meshes.begin(), of_meshes.end());
   if (std::string planned = planned_text(result); !planned.empty())
     lines.insert(lines.begin(), {"planned", std::move(planned)});
   if (result.scanners.size() == 1) lines.insert(lines.begin(), {"scanner", scanner_text(result.scanners.front())});

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
+#include "export/csv_cell.hpp"
 #include "export/station_cells.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
@@ -34,8 +35,9 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
     setups |= tells_setups(entry.stations);
   }
   std::string text = "entry,station_count";
-  for (const Objective& measure : result.measures) text += "," + measure.name + "," + measure.name + "_se";
-  for (const Objective& measure : result.measures) text += ",exact_" + measure.name;
+  for (const Objective& measure : result.measures)
+    text += "," + csv_cell(measure.name) + "," + csv_cell(measure.name + "_se");
+  for (const Objective& measure : result.measures) text += "," + csv_cell("exact_" + measure.name);
   text += ",dominated,missed";
   if (alpha) text += ",alpha";
   for (std::size_t i = 0; i < most; ++i) {
@@ -79,7 +81,7 @@ void write_history_csv(const std::filesystem::path& file, const PlanResult& resu
 void write_fronts_csv(const std::filesystem::path& file, const PlanResult& result) {
   const std::vector<Objective>& objectives = result.problem.objectives;
   std::string text = "iteration";
-  for (const Objective& objective : objectives) text += "," + objective.name;
+  for (const Objective& objective : objectives) text += "," + csv_cell(objective.name);
   text += "\n";
   for (const PlanIteration& line : result.history) {
     for (const auto& f : line.front) {

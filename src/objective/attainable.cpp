@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "objective/meshes_named.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_demands.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 constexpr std::size_t kStationsAtOnce = 64;
 // The largest standard error of a share.
 constexpr double kLargestError = 0.5;
+// Voxels whose surfaces are looked at together.
+constexpr std::size_t kPatchesAtOnce = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -37,14 +40,31 @@ AttainableCounts::AttainableCounts(const Simulator& simulator, std::uint64_t vox
 AttainableCounts AttainableCounts::part(const Simulator& simulator, std::uint64_t voxels) const {
   AttainableCounts some(simulator, voxels, from_);
   std::size_t e = 0;
+  std::vector<std::size_t> at;  // the element here of each of its elements
   for (std::size_t k = 0; k < some.voxels_.size(); ++k) {
     while (e < voxels_.size() && voxels_[e] < some.voxels_[k]) ++e;
     if (e == voxels_.size() || voxels_[e] != some.voxels_[k])
       throw Error(Errc::invalid_argument, "attainable counts: " + std::to_string(voxels) +
                                               " voxels are no part of a sample of " + std::to_string(voxels_.size()));
     some.counts_[k] = counts_[e];
+    at.push_back(e);
+  }
+  for (const OfMeshes& of : told_of_) {
+    OfMeshes& own = some.told_of_.emplace_back(OfMeshes{.meshes = of.meshes, .has = {}});
+    for (const std::size_t element : at) own.has.push_back(of.has[element]);
   }
   return some;
+}
+
+void AttainableCounts::tell_of(const Simulator& simulator, const std::string& meshes) {
+  if (std::ranges::count(told_of_, meshes, &OfMeshes::meshes) > 0) return;
+  const std::vector<std::uint8_t> named = meshes_named(simulator.scene(), meshes);
+  OfMeshes& of = told_of_.emplace_back(OfMeshes{.meshes = meshes, .has = {}});
+  of.has.reserve(voxels_.size());
+  for (std::size_t first = 0; first < voxels_.size(); first += kPatchesAtOnce)
+    for (const VoxelPatch& patch :
+         simulator.voxel_patches(std::span(voxels_).subspan(first, std::min(kPatchesAtOnce, voxels_.size() - first))))
+      of.has.push_back(named[patch.mesh]);
 }
 
 void AttainableCounts::raise(std::span<const std::uint32_t> points) {
@@ -91,10 +111,24 @@ Estimate AttainableCounts::captured(std::span<const std::uint32_t> points) const
 }
 
 Estimate AttainableCounts::captured(std::span<const double> point_weights) const {
+  return captured(point_weights, nullptr);
+}
+
+// Elements of other meshes have the weight 0, in a ratio to which they add nothing but their place in the sample.
+Estimate AttainableCounts::captured(std::span<const double> point_weights, const OfMeshes* of) const {
   assert(point_weights.size() == counts_.size());
+  const auto weight = [&](std::size_t e) { return of && of->has[e] == 0 ? 0.0 : static_cast<double>(weights_[e]); };
   std::vector<double> whole(counts_.size());
-  for (std::size_t e = 0; e < whole.size(); ++e) whole[e] = weights_[e] * (counts_[e] / goal_);
-  return ratio(whole, [&](std::size_t e) { return weights_[e] * (std::min(counts_[e], point_weights[e]) / goal_); });
+  for (std::size_t e = 0; e < whole.size(); ++e) whole[e] = weight(e) * (counts_[e] / goal_);
+  return ratio(whole, [&](std::size_t e) { return weight(e) * (std::min(counts_[e], point_weights[e]) / goal_); });
+}
+
+CapturedShares AttainableCounts::captured_shares(std::span<const std::uint32_t> points) const {
+  std::vector<double> point_weights(points.size());
+  for (std::size_t e = 0; e < points.size(); ++e) point_weights[e] = weighted(e, points[e]);
+  CapturedShares shares{.all = captured(point_weights, nullptr)};
+  for (const OfMeshes& of : told_of_) shares.meshes[of.meshes] = captured(point_weights, &of);
+  return shares;
 }
 
 bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::span<const Station> stations,
@@ -130,9 +164,9 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
   return true;
 }
 
-std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
-                                      std::span<const Network> networks, const Progress& progress) {
-  std::vector<Estimate> shares(networks.size());
+std::vector<CapturedShares> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
+                                            std::span<const Network> networks, const Progress& progress) {
+  std::vector<CapturedShares> shares(networks.size());
   std::size_t counted = 0;
   simulator.evaluate_sampled(networks,
                              {.voxels = attainable.sample_voxels(),
@@ -141,7 +175,7 @@ std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCoun
                               .count_to = CountTo::goal,
                               .points =
                                   [&](std::size_t k, std::span<const std::uint32_t> points) {
-                                    shares[k] = attainable.captured(points);
+                                    shares[k] = attainable.captured_shares(points);
                                     ++counted;
                                   },
                               .groups = false},

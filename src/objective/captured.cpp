@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/closest_name.hpp"
+#include "objective/meshes_named.hpp"
 #include "objective/whole_counts.hpp"
 #include "scene/glob.hpp"
 #include "vantage/error.hpp"
@@ -18,7 +19,7 @@ namespace {
   for (const MeshInfo& mesh : scene.meshes())
     if (mesh.role == Role::surveyed && std::ranges::find(names, mesh.name) == names.end()) names.push_back(mesh.name);
   std::string letters(pattern);
-  std::erase_if(letters, [](char c) { return c == '*' || c == '?'; });
+  std::erase_if(letters, [](char c) { return c == '*' || c == '?' || c == '!' || c == '|'; });
   std::string what = "captured: no surveyed mesh is named like \"" + std::string(pattern) + "\"";
   if (const std::string near = did_you_mean(letters, names); !near.empty())
     throw Error(Errc::invalid_argument, what + near);
@@ -30,6 +31,25 @@ namespace {
 
 }  // namespace
 
+bool names_mesh(std::string_view pattern, std::string_view name) {
+  const bool others = pattern.starts_with('!');
+  if (others) pattern.remove_prefix(1);
+  for (;;) {
+    const std::size_t end = pattern.find('|');
+    if (glob_matches(pattern.substr(0, end), name)) return !others;
+    if (end == std::string_view::npos) return others;
+    pattern.remove_prefix(end + 1);
+  }
+}
+
+std::vector<std::uint8_t> meshes_named(const Scene& scene, std::string_view pattern) {
+  std::vector<std::uint8_t> named;
+  for (const MeshInfo& mesh : scene.meshes())
+    named.push_back(mesh.role == Role::surveyed && names_mesh(pattern, mesh.name) ? 1 : 0);
+  if (std::ranges::count(named, 1) == 0) refuse_meshes(scene, pattern);
+  return named;
+}
+
 double captured(const NetworkCounts& counts, const Scene& scene, std::string_view meshes) {
   MeshVoxels all;
   bool any = false;
@@ -37,7 +57,7 @@ double captured(const NetworkCounts& counts, const Scene& scene, std::string_vie
     const MeshVoxels& own = counts.meshes[m];
     const MeshInfo& mesh = scene.meshes()[m];
     // Most meshes of a large scene have no voxel of a sample.
-    if ((any && own.voxels == 0) || mesh.role != Role::surveyed || !glob_matches(meshes, mesh.name)) continue;
+    if ((any && own.voxels == 0) || mesh.role != Role::surveyed || !names_mesh(meshes, mesh.name)) continue;
     any = true;
     all.voxels += own.voxels, all.captured += own.captured;
   }

@@ -130,17 +130,19 @@ std::span<const std::string> objective_names() {
 }
 
 Objective make_objective(std::string_view name, const ObjectiveSettings& settings) {
+  if (constexpr std::string_view kOf = "capture("; name.starts_with(kOf) && name.ends_with(')'))
+    return built_in::capture_of(name.substr(kOf.size(), name.size() - kOf.size() - 1));
   std::string known;
   for (const BuiltIn& one : built_in_objectives()) {
     if (one.name == name) return one.make(settings);
-    known += (known.empty() ? "" : ", ") + one.name;
+    known += (known.empty() ? "" : ", ") + one.name + (one.name == "capture" ? ", capture(MESHES)" : "");
   }
   throw Error(Errc::invalid_argument, "unknown objective \"" + std::string(name) + "\"; known: " + known +
                                           did_you_mean(name, objective_names()));
 }
 
 Requirement make_requirement(std::string_view text, const ObjectiveSettings& settings) {
-  const std::size_t at = text.find_first_of("<>");
+  const std::size_t at = text.find_last_of("<>");  // names of meshes may hold others
   if (at == std::string_view::npos || at + 1 >= text.size() || text[at + 1] != '=')
     refuse_requirement(text, "write OBJECTIVE>=LIMIT or OBJECTIVE<=LIMIT, as coverage>=0.9");
   const std::string_view digits = trimmed(text.substr(at + 2));

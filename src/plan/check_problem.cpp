@@ -7,7 +7,9 @@
 #include "core/site_reach.hpp"
 #include "evaluate/check_day.hpp"
 #include "evaluate/sight_targets.hpp"
+#include "objective/meshes_named.hpp"
 #include "plan/limits.hpp"
+#include "plan/measures.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
 #include "vantage/question.hpp"
@@ -31,6 +33,7 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
   if (problem.heights_m)
     for (const double height : *problem.heights_m)
       check_number(height, "heights", {.low = 0, .high = kSiteReach_m, .low_included = false});
+  for (const std::string& meshes : meshes_asked_for(problem)) meshes_named(site.scene(), meshes);
   for (const Requirement& requirement : problem.requirements)
     check_number(requirement.limit, "the limit of " + requirement.objective.name);
   for (std::size_t k = 0; k < problem.existing.size(); ++k)

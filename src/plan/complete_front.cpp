@@ -26,13 +26,16 @@ void take_in_confirmed(PlanResult& result, PlanContext& context, Simulator& simu
   AttainableCounts raised = context.confirmed;
   for (const Network& network : networks)
     if (!raise_attainable(raised, simulator, network, progress)) return;
-  const std::vector<Estimate> shares = captured_shares(simulator, raised, networks, progress);
+  const std::vector<CapturedShares> shares = captured_shares(simulator, raised, networks, progress);
   if (shares.empty()) return;
   context.confirmed = std::move(raised);
   std::size_t k = 0;
   for (PlanEntry& entry : result.front) {
     if (!entry.exact) continue;
-    entry.values.at("capture") = shares[k++];
+    const CapturedShares& share = shares[k++];
+    for (const Objective& measure : context.measures().all)
+      if (measure.needs.attainable)
+        entry.values.at(measure.name) = measure.meshes.empty() ? share.all : share.meshes.at(measure.meshes);
     entry.attainable = context.confirmed.coverage();
   }
   result.exact_hypervolume = judge_by_every_ray(result.front, result.problem, context.measures());

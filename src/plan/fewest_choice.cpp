@@ -40,6 +40,77 @@ constexpr std::size_t kVisits = 4;
 // Further stations, at both ends of a stair, for each tie past it.
 constexpr std::size_t kForStair = 2;
 
+// Points that stations leave in each element.
+std::vector<double> points_of(const CoverageMatrix& matrix, std::span<const std::size_t> stations) {
+  std::vector<double> points(matrix.elements(), 0.0);
+  for (const std::size_t station : stations)
+    for (const CoverageMatrix::Entry& entry : matrix.column(station)) points[entry.element] += entry.amount;
+  return points;
+}
+
+double share_of(const AskedOfMeshes& asked, std::span<const double> attainable, std::span<const double> points) {
+  double some = 0, all = 0;
+  for (std::size_t e = 0; e < points.size(); ++e)
+    some += asked.weight[e] * std::min(attainable[e], points[e]), all += asked.weight[e] * attainable[e];
+  return all > 0 ? some / all : 1;
+}
+
+bool has_what_is_asked(const FewestChoice& choice, std::span<const std::size_t> stations) {
+  const std::vector<double> points = points_of(choice.table.matrix(), stations);
+  return std::ranges::all_of(choice.of_meshes, [&](const AskedOfMeshes& asked) {
+    return share_of(asked, choice.attainable, points) >= asked.share + asked.margin;
+  });
+}
+
+// What a station would add to a share, up to a factor.
+double gain_of(std::span<const CoverageMatrix::Entry> column, const AskedOfMeshes& asked,
+               std::span<const double> attainable, std::span<const double> points) {
+  double gain = 0;
+  for (const CoverageMatrix::Entry& entry : column) {
+    const std::size_t e = entry.element;
+    if (asked.weight[e] > 0 && points[e] < attainable[e])
+      gain += asked.weight[e] * (std::min(attainable[e], points[e] + entry.amount) - points[e]);
+  }
+  return gain;
+}
+
+// Stations by which the network has what is asked of some meshes: each the one that adds most to the share that lacks
+// most, and linked to those before it if one of such is.
+std::vector<std::size_t> for_meshes(const FewestChoice& choice) {
+  const CoverageMatrix& matrix = choice.table.matrix();
+  const StationGraph& graph = choice.table.graph();
+  std::vector<std::size_t> all = choice.network.chosen, found;
+  std::vector<double> points = points_of(matrix, all);
+  std::vector<const AskedOfMeshes*> open;
+  for (const AskedOfMeshes& asked : choice.of_meshes) open.push_back(&asked);
+  while (!open.empty()) {
+    const auto lacks = [&](const AskedOfMeshes* asked) {
+      return std::min(asked->share + asked->margin, 1.0) - share_of(*asked, choice.attainable, points);
+    };
+    const auto worst = std::ranges::max_element(open, {}, lacks);
+    if (!(lacks(*worst) > 0)) break;
+    std::optional<std::size_t> best;
+    double most = 0;
+    bool best_linked = false;
+    for (std::size_t k = 0; k < matrix.candidates(); ++k) {
+      const double gain = gain_of(matrix.column(k), **worst, choice.attainable, points);
+      const auto barred = [&](std::size_t other) { return other == k || graph.excluded(k, other); };
+      if (!(gain > 0) || (best_linked && gain <= most) || std::ranges::any_of(all, barred)) continue;
+      const bool linked = choice.asked.link <= 0 || std::ranges::any_of(all, [&](std::size_t other) {
+                            return graph.linked(k, other, choice.asked.link);
+                          });
+      if (linked == best_linked ? gain > most : linked) best = k, most = gain, best_linked = linked;
+    }
+    if (!best) {  // nothing can add to it
+      open.erase(worst);
+      continue;
+    }
+    for (const CoverageMatrix::Entry& entry : matrix.column(*best)) points[entry.element] += entry.amount;
+    all.push_back(*best), found.push_back(*best);
+  }
+  return found;
+}
+
 // Finds the most coverage of as many stations as there is time for.
 void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_token& stop) {
   if (!choice.asked.minutes) return;
@@ -135,7 +206,6 @@ bool holds_as_much(const FewestChoice& choice, const CoverSolution& before) {
 }  // namespace
 
 FewestAsked fewest_asked(const SurveyProblem& problem) {
-  const auto at_least = [](const Requirement& r) { return r.bound == Requirement::Bound::at_least && r.limit > 0; };
   const auto least = [&](Objective::Kind kind) {
     return std::max(0.0, limit_of(problem, kind, Requirement::Bound::at_least).value_or(0));
   };
@@ -146,14 +216,27 @@ FewestAsked fewest_asked(const SurveyProblem& problem) {
                     .apart_m = least(Objective::Kind::distance),
                     .minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most)};
   const bool searched = !problem.objectives.empty() && problem.objectives.front().kind == Objective::Kind::coverage;
-  asked.captured = std::ranges::any_of(
-      problem.requirements, [&](const Requirement& r) { return at_least(r) && r.objective.needs.attainable; });
+  asked.captured = std::ranges::any_of(problem.requirements,
+                                       [](const Requirement& r) { return requires_capture(r) && r.limit > 0; });
   const double limit = least(Objective::Kind::coverage);
   asked.most_coverage = limit == 0 && searched && asked.fewest == asked.most;
   if (asked.most_coverage) asked.captured = problem.objectives.front().needs.attainable;
   if (asked.captured) asked.whole = problem.attainable.value_or(1);
   asked.coverage = asked.most_coverage ? 1 : std::min(limit / asked.whole, 1.0);
   return asked;
+}
+
+std::vector<AskedOfMeshes> asked_of_meshes(const SurveyProblem& problem, const AttainableCounts& attainable,
+                                           std::span<const std::uint32_t> weights) {
+  std::vector<AskedOfMeshes> all;
+  for (const Requirement& requirement : problem.requirements) {
+    const Objective& objective = requirement.objective;
+    if (objective.meshes.empty() || requirement.bound != Requirement::Bound::at_least) continue;
+    const auto of = std::ranges::find(attainable.told_of(), objective.meshes, &AttainableCounts::OfMeshes::meshes);
+    AskedOfMeshes& asked = all.emplace_back(AskedOfMeshes{.measure = objective.name, .share = requirement.limit});
+    for (std::size_t e = 0; e < weights.size(); ++e) asked.weight.push_back(of->has[e] != 0 ? weights[e] : 0.0);
+  }
+  return all;
 }
 
 std::vector<PlacedStation> FewestChoice::stations_of(const CoverSolution& solution) const {
@@ -255,6 +338,23 @@ bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const 
   return choice.network.violation < before;
 }
 
+namespace {
+
+// Has these stations stay, and chooses again with them.
+void visit(FewestChoice& choice, std::span<const std::size_t> own, const std::stop_token& stop) {
+  const CoverProblem before = cover_problem(choice);
+  std::vector<std::size_t> network = choice.network.chosen;
+  network.insert(network.begin() + static_cast<std::ptrdiff_t>(before.existing.size()), own.begin(), own.end());
+  choice.visiting.insert(choice.visiting.end(), own.begin(), own.end());
+  choice.one_fewer.reset();
+  const std::size_t most = choice.asked.existing + choice.asked.most;
+  if (network.size() > most) network.resize(most);
+  choose_from(choice, evaluate_cover(cover_problem(choice), std::move(network)), stop);
+  strengthen(choice, stop);
+}
+
+}  // namespace
+
 bool visit_units(FewestChoice& choice, const std::stop_token& stop) {
   if (!choice.to_visit || choice.asked.minutes) return false;
   const auto& [units, least_m2, element_m2] = *choice.to_visit;
@@ -267,17 +367,34 @@ bool visit_units(FewestChoice& choice, const std::stop_token& stop) {
     own.resize(std::min(own.size(), choice.asked.most - choice.visiting.size()));
     if (own.empty()) break;
     any = true;
-    const CoverProblem before = cover_problem(choice);
-    std::vector<std::size_t> network = choice.network.chosen;
-    network.insert(network.begin() + static_cast<std::ptrdiff_t>(before.existing.size()), own.begin(), own.end());
-    choice.visiting.insert(choice.visiting.end(), own.begin(), own.end());
-    choice.one_fewer.reset();
-    const std::size_t most = choice.asked.existing + choice.asked.most;
-    if (network.size() > most) network.resize(most);
-    choose_from(choice, evaluate_cover(cover_problem(choice), std::move(network)), stop);
-    strengthen(choice, stop);
+    visit(choice, own, stop);
   }
   return any;
+}
+
+bool capture_meshes(FewestChoice& choice, const std::stop_token& stop) {
+  std::vector<std::size_t> added;
+  // The choice may give up others that captured some of them, too.
+  for (std::size_t k = 0; k < kVisits && !choice.of_meshes.empty() && !stop.stop_requested(); ++k) {
+    std::vector<std::size_t> own = for_meshes(choice);
+    own.resize(std::min(own.size(), choice.asked.most - choice.visiting.size()));
+    if (own.empty()) break;
+    added.insert(added.end(), own.begin(), own.end());
+    visit(choice, own, stop);
+  }
+  for (const std::size_t station : added) {
+    if (out_of_reach(choice) || choice.placed() <= choice.asked.fewest) break;
+    std::vector<std::size_t> network = choice.network.chosen, visiting = choice.visiting;
+    std::erase(network, station), std::erase(visiting, station);
+    if (!has_what_is_asked(choice, network)) continue;
+    std::swap(choice.visiting, visiting);
+    CoverSolution fewer = evaluate_cover(cover_problem(choice), std::move(network));
+    if (fewer.violation > 0 || leaves_units(choice, choice.stations_of(choice.network), choice.stations_of(fewer)))
+      std::swap(choice.visiting, visiting);
+    else
+      choice.network = std::move(fewer), choice.one_fewer.reset();
+  }
+  return !added.empty();
 }
 
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "plan/candidate_table.hpp"
@@ -41,6 +42,16 @@ struct FewestAsked {
 };
 FewestAsked fewest_asked(const SurveyProblem& problem);
 
+// Meshes of which a least share of what is attainable has to be captured.
+struct AskedOfMeshes {
+  std::string measure;              // its name
+  double share = 0;                 // at least
+  double margin = 0;                // beyond it, as of the limits below
+  std::vector<double> weight = {};  // of each element, 0 for those of other meshes
+};
+std::vector<AskedOfMeshes> asked_of_meshes(const SurveyProblem& problem, const AttainableCounts& attainable,
+                                           std::span<const std::uint32_t> weights);
+
 // Distances from the limits, since a sample favours what it chose: of the choice and the search by coverage, of the
 // search alone by links.
 struct Margins {
@@ -59,9 +70,12 @@ struct FewestChoice {
   CoverSolution network = {};
   std::optional<CoverSolution> one_fewer = {};  // the best network of one station fewer, which is not feasible
   const UnitsToVisit* to_visit = nullptr;       // borrowed
-  std::vector<std::size_t> visiting = {};       // stations of units that had none; they stay, as existing ones do
-  PastStairs past_stairs = {};                  // empty: all links are alike
-  WayBetween way = {};                          // empty: unknown
+  std::vector<std::size_t> visiting = {};       // stations of units that had none, or for some meshes; they stay, as
+                                                // existing ones do
+  std::vector<AskedOfMeshes> of_meshes = {};
+  std::vector<double> attainable = {};  // points of each element that count, for these
+  PastStairs past_stairs = {};          // empty: all links are alike
+  WayBetween way = {};                  // empty: unknown
   // The choice without links past the stair, if they do not count.
   struct AlongStairs {
     CoverSolution before = {};    // the network that has such ties
@@ -108,6 +122,9 @@ bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const 
 // Adds a station to each unit of floor that has none and takes one, and chooses again with these. True if there was
 // one. Not where the time on site ends the choice.
 bool visit_units(FewestChoice& choice, const std::stop_token& stop);
+// Adds stations until the network captures what is asked of some meshes, and chooses again with these. True if there
+// was one to add.
+bool capture_meshes(FewestChoice& choice, const std::stop_token& stop);
 // True if a network has no station in some unit where the one before has one.
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
                   std::span<const PlacedStation> after);

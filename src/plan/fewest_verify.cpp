@@ -346,6 +346,14 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   return choice.network.chosen != before && (known == 0 || choice.network.violation < told);
 }
 
+bool repair_meshes(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
+  if (choice.of_meshes.empty() || verified.entries().empty()) return false;
+  const PlanEntry& last = verified.entries().back();  // the chosen one
+  for (AskedOfMeshes& asked : choice.of_meshes)
+    if (const double lacks = asked.share - last.value(asked.measure); lacks > 0) asked.margin += kBeyond * lacks;
+  return capture_meshes(choice, stop);
+}
+
 bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,
                            const std::stop_token& stop) {
   const PlanEntry& entry = verified.entries().back();

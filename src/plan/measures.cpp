@@ -11,7 +11,9 @@ namespace {
 
 void check(const Objective& objective) {
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-  if (objective.name.empty() || !std::all_of(objective.name.begin(), objective.name.end(), plain))
+  const std::string name =
+      objective.meshes.empty() ? objective.name : objective.name.substr(0, objective.name.find('('));
+  if (name.empty() || !std::ranges::all_of(name, plain))
     refuse("an objective is named by lower-case letters, digits and _, not \"" + objective.name + "\"");
   if (!objective.value) refuse("the objective " + objective.name + " has no value");
   if (!objective.scale.given())
@@ -61,5 +63,15 @@ bool asks_for(const SurveyProblem& problem, bool RequiredInputs::*input) {
 }
 
 bool needs_attainable(const SurveyProblem& problem) { return asks_for(problem, &RequiredInputs::attainable); }
+
+std::vector<std::string> meshes_asked_for(const SurveyProblem& problem) {
+  std::vector<std::string> patterns;
+  const auto add = [&](const Objective& objective) {
+    if (!objective.meshes.empty()) patterns.push_back(objective.meshes);
+  };
+  std::ranges::for_each(problem.objectives, add);
+  std::ranges::for_each(problem.requirements, add, &Requirement::objective);
+  return patterns;
+}
 
 }  // namespace vantage

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vantage/planner.hpp"
@@ -27,6 +28,8 @@ Measures measures_of(const SurveyProblem& problem);
 bool asks_for(const SurveyProblem& problem, bool RequiredInputs::*input);
 // True if one is a share of what is attainable.
 bool needs_attainable(const SurveyProblem& problem);
+// Patterns of meshes of which one is.
+std::vector<std::string> meshes_asked_for(const SurveyProblem& problem);
 
 // Sum of violations; 0 if all requirements are met. `values`: of the measures.
 double missed_by(const SurveyProblem& problem, const Measures& measures, std::span<const double> values);

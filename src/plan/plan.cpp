@@ -82,6 +82,8 @@ void count_attainable(PlanContext& context, Simulator& simulator, const SurveyPr
                       const Candidates& candidates, std::uint64_t searched, const Progress& progress) {
   const Network existing = to_network(existing_stations(context.oracle(), problem.existing, problem.existing_setups));
   context.chosen = candidates.attainable_counts();
+  const std::vector<std::string> meshes = meshes_asked_for(problem);
+  for (const std::string& some : meshes) context.chosen.tell_of(simulator, some);
   raise_attainable(context.chosen, simulator, existing, progress);
   const std::uint64_t sample = context.chosen.sample_voxels();
   context.searched = context.chosen.part(simulator, searched > 0 ? std::min(searched, sample) : sample);
@@ -90,6 +92,7 @@ void count_attainable(PlanContext& context, Simulator& simulator, const SurveyPr
     return;
   }
   context.confirmed = AttainableCounts(simulator, sample, sample);
+  for (const std::string& some : meshes) context.confirmed.tell_of(simulator, some);
   Network all = to_network(candidates.stations());
   all.insert(all.end(), existing.begin(), existing.end());
   // Without the time for it, networks are confirmed on the voxels that they were chosen by.

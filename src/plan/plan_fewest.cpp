@@ -131,8 +131,8 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
     const Network network = to_network(choice.stations_of(choice.network));
     const auto shares =
         captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
-    if (shares.empty() || shares.front().value >= choice.asked.coverage) return;
-    raise_margins(choice, {.coverage = choice.asked.coverage - shares.front().value}, watch.stop);
+    if (shares.empty() || shares.front().all.value >= choice.asked.coverage) return;
+    raise_margins(choice, {.coverage = choice.asked.coverage - shares.front().all.value}, watch.stop);
   }
 }
 
@@ -141,7 +141,7 @@ void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simu
   const Network network = to_network(choice.stations_of(choice.network));
   const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
   if (shares.empty()) return;
-  const double captured = std::min(shares.front().value - shares.front().standard_error, choice.asked.coverage);
+  const double captured = std::min(shares.front().all.value - shares.front().all.standard_error, choice.asked.coverage);
   choice.asked.coverage = context.pays->capture = std::max(context.asked_capture, rounded_down(captured));
   SurveyProblem problem = context.problem();
   for (Requirement& requirement : problem.requirements)
@@ -200,6 +200,8 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   const TableMaker make_table(context, simulator, candidates.coverage());
   FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
   if (context.to_visit) choice.to_visit = &*context.to_visit;
+  choice.of_meshes = asked_of_meshes(problem, context.chosen, choice.table.matrix().weights());
+  if (!choice.of_meshes.empty()) choice.attainable = context.chosen.counts();
   if (choice.asked.link > 0)
     choice.past_stairs = [&context](std::span<const PlacedStation> stations,
                                     std::span<const std::pair<std::size_t, std::size_t>> pairs) {
@@ -249,6 +251,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
+  if (capture_meshes(choice, watch.stop)) check_links(choice, context, simulator, watch);
   return choice;
 }
 
@@ -285,7 +288,8 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
          ++k) {
       if (keep_to_stairs(choice, verified, watch.stop))
         calibrate(choice, context, simulator, watch);
-      else if (least_violation() == 0 || !repair(choice, verified, context.oracle(), watch.stop))
+      else if (least_violation() == 0 ||
+               !(repair_meshes(choice, verified, watch.stop) || repair(choice, verified, context.oracle(), watch.stop)))
         break;
       verify_again();
     }

@@ -63,7 +63,8 @@ const SettingTable<SurveyQuestion>& question_settings() {
               [](const Question& q) { return !q.objectives.empty(); })
           .texts(
               "require", "OBJECTIVE>=LIMIT",
-              "Requirement on the network, such as coverage>=0.9 or stations<=8; may be repeated",
+              "Requirement on the network, such as coverage>=0.9, stations<=8 or capture(IfcWall*)>=0.95 by meshes; "
+              "may be repeated",
               [](Question & q) -> auto& { return q.requirements; })
           .optional("stations", "N|A..B",
                     "Number of stations, or its range A to B (A,B) to search, up to " + std::to_string(max_stations),

@@ -59,7 +59,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     if (in_one) {
       counted.captured.resize(networks.size());
       options.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
-        counted.captured[k] = attainable->captured(points);
+        counted.captured[k] = attainable->captured_shares(points);
       };
     }
     auto counts = count_with(site_.simulator, networks, options, progress);

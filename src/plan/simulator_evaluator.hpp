@@ -37,12 +37,12 @@ class SimulatorEvaluator final : public NetworkEvaluator {
 
  private:
   struct Counted : CountedNetworks {
-    std::vector<Estimate> captured;  // empty where nothing needs them
+    std::vector<CapturedShares> captured;  // empty where nothing needs them
     CountedNetwork network(std::size_t k, const PlacedNetwork& stations) const {
       return {.stations = stations,
               .surveyed = surveyed[k],
               .surroundings = surroundings.empty() ? nullptr : &surroundings[k],
-              .captured = captured.empty() ? Estimate{} : captured[k]};
+              .captured = captured.empty() ? CapturedShares{} : captured[k]};
     }
   };
   // `errors`: whether standard errors are needed.

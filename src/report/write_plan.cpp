@@ -57,11 +57,11 @@ constexpr Part kMap{"map", 0, 0.2}, kDraw{"draw", 0.2, 0.5}, kMissed{"missed", 0
 
 // Removes the files of an earlier plan that this one need not have.
 void remove_earlier_plan(const std::filesystem::path& folder) {
-  remove_earlier(folder, {"overlap.csv",  "coverage.ply", "registration.ply", "registration.png", "registration.svg",
-                          "history.png",  "history.svg",  "targets.csv",      "stations.geojson", "stations.kml",
-                          "plan.svg",     "missed.csv",   "missed.ply",       "missed.png",       "rooms.csv",
-                          "sessions.csv", "elements.csv", "waypoints.csv",    "waypoints.json",   "report.html",
-                          "report.pdf"});
+  remove_earlier(folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
+                          "history.png", "history.svg",  "targets.csv",      "stations.geojson", "stations.kml",
+                          "plan.svg",    "missed.csv",   "missed.ply",       "missed.png",       "missed.bcf",
+                          "rooms.csv",   "sessions.csv", "elements.csv",     "waypoints.csv",    "waypoints.json",
+                          "report.html", "report.pdf"});
   std::vector<std::string> levels;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
@@ -98,7 +98,12 @@ class FolderWriter {
                        if (!known) return;
                        judge(*known);
                        // Looks at the surfaces that judging has just made.
-                       write_elements_csv(folder_ / "elements.csv", element_shares(site_.simulator(), entry_, *known));
+                       const auto elements = element_shares(site_.simulator(), entry_, *known);
+                       write_elements_csv(folder_ / "elements.csv", elements);
+                       if (written_.missed)
+                         write_missed_bcf(folder_ / "missed.bcf", elements, written_.missed->shares, site_);
+                       else if (std::ranges::any_of(elements, [](const auto& one) { return !one.global_id.empty(); }))
+                         leave_out("missed.bcf");
                      });
     if (options_.reports && why_no_report().empty()) report(known);
     std::ranges::sort(written_.left_out);

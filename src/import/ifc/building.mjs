@@ -30,6 +30,7 @@ export class Site {
     this.shapes = new Map();      // mesh and place, by node
     this.extent = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
     this.crs = "";
+    this.place = undefined;       // of the models on the map; null if they have several
   }
 
   toGlb() {
@@ -40,7 +41,7 @@ export class Site {
     return this.glb.bytes({
       asset: {
         version: "2.0", generator: "vantage-import-ifc",
-        extras: { vantage: { unit: "m", up: "y", ...(this.crs ? { crs: this.crs } : {}) }, notes: this.notes },
+        extras: { vantage: { unit: "m", up: "y", ...(this.crs ? { crs: this.crs } : {}), ...(this.place === undefined ? {} : { model_in_site: this.place }) }, notes: this.notes },
       },
       ...(glass ? { extensionsUsed: ["KHR_materials_transmission"] } : {}),
       scene: 0, scenes: [{ nodes: this.roots }], nodes: this.nodes, meshes: this.meshes,

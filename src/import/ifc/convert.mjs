@@ -19,6 +19,8 @@ export function convert(ifc, api, files, unit) {
   });
   const site = new Site(), { notes, crs, of } = places(models);
   site.crs = crs;
+  const placed = models.map(of);
+  if (models.some(({ located }) => located?.place)) site.place = placed.every((one) => one.every((v, i) => v === placed[0][i])) ? placed[0] : null;
   for (const model of models) {
     const opened = model.opened ?? open(ifc, api, fs.readFileSync(model.file), unit), about = one ? "" : `${model.name}: `;
     const found = read(site, opened, of(model));

@@ -75,6 +75,34 @@ TEST(EvaluateStations, HasTheFiguresOfEveryRay) {
   EXPECT_EQ(station_names(found.stations, found.names), (std::vector<std::string>{"K1", "P7", "S2", "S3"}));
 }
 
+// Points as every ray counts them, and as the coarser scans of the surroundings tell them, of stations that are not
+// there yet: on the wall and the floor, and into the open.
+TEST(EvaluateStations, TellsWhatTheScansHold) {
+  Site whole = test::site_of(Simulator(test::wall_and_floor().scene(), test::coarse_scanner(0.1),
+                                       {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+  const std::vector<PlacedStation> stations{{.position = {-2, 0, 1.5}, .existing = true},
+                                            {.position = {1, 1, 0.5}},
+                                            {.position = {2, 0, 1.5}},
+                                            {.position = {0, 0, 1.5}, .status = StationStatus::clash}};
+  const EvaluationSite site{.simulator = whole.simulator(), .surroundings = &whole.surroundings()};
+  const NetworkCounts counts = whole.simulator().evaluate(to_network(stations), {.skip = false});
+  ASSERT_EQ(counts.points.size(), 4u);
+  const auto points = static_cast<double>(counts.points[1] + counts.points[2]);
+  EXPECT_GT(points, 1e6);
+  EXPECT_LT(points, 0.9 * 2 * static_cast<double>(whole.simulator().scanner().rays()));
+  const Evaluation counted = evaluate_stations(site, stations, {.skip = false}),
+                   shared = evaluate_stations(site, stations);
+  ASSERT_TRUE(counted.data && shared.data);
+  EXPECT_EQ(counted.data->points, points);
+  EXPECT_TRUE(shared.counts.points.empty());
+  EXPECT_NEAR(shared.data->points / points, 1, 0.01);
+  EXPECT_EQ(counted.data->las_bytes, 36 * points);
+  EXPECT_FALSE(evaluate_stations({.simulator = whole.simulator()}, stations).data) << "nobody counted them";
+  const auto json = nlohmann::json::parse(evaluation_json(counted));
+  EXPECT_EQ(json["data"]["points"], points);
+  EXPECT_NE(summary_text(counted).find("\ndata       about "), std::string::npos) << summary_text(counted);
+}
+
 std::string message_of(const std::function<void()>& call) {
   try {
     call();

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
@@ -248,6 +249,35 @@ TEST(PointCloudWriter, RefusesWrongUse) {
   EXPECT_THROW(writer.write(chunk_of(scan_position), 0), Error);
   writer.close();
   EXPECT_THROW(writer.write(chunk_of(scan_position | scan_normal), 0), Error);
+}
+
+// What an evaluation tells of the files is what they take, by scanners of short and of long range.
+TEST(PointCloudWriter, FilesAreAsLargeAsAnEvaluationTells) {
+  const test::TemporaryFolder folder;
+  for (const double range_m : {130.0, 800.0}) {
+    Scanner scanner = test::coarse_scanner(0.25);
+    scanner.max_range_m = range_m;
+    Simulator simulator(test::wall_and_floor().scene(), scanner,
+                        {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1});
+    const std::vector<PlacedStation> stations{{.position = {1, 1, 0.5}}, {.position = {2, 0, 1.5}}};
+    const Evaluation found = evaluate_stations({.simulator = simulator}, stations, {.skip = false});
+    ASSERT_TRUE(found.data);
+    for (const auto& [name, bytes] : {std::pair{"a.e57", found.data->e57_bytes}, {"a.las", found.data->las_bytes}}) {
+      const std::uint32_t outputs = scan_position | scan_reflectivity;
+      PointCloudWriter writer(folder / name, simulator.origin(), outputs);
+      std::uint16_t station = 0;
+      for (const PlacedStation& one : stations) {
+        writer.begin_station({.name = "S", .head = one.position, .scanner = scanner});
+        ++station;
+        simulator.scan(to_network({&one, 1}).front(), {.outputs = outputs},
+                       [&](const ScanChunk& chunk) { writer.write(chunk, station); });
+      }
+      writer.close();
+      EXPECT_EQ(static_cast<double>(writer.points()), found.data->points);
+      EXPECT_NEAR(static_cast<double>(std::filesystem::file_size(folder / name)) / bytes, 1, 0.005) << name;
+      std::filesystem::remove(folder / name);
+    }
+  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "unit/export/files.hpp"
 
 namespace vantage {
@@ -97,6 +99,19 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
             "to less than 0.1 mm, as predicted by random errors alone (the scanner states no calibration); LOA50 "
             "(1 mm at 95 %) is within reach, and no prediction promises it: check it on site");
   EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 0);
+}
+
+TEST(Summary, TellsWhatTheScansHoldInAFewDigits) {
+  Evaluation network = seven_stations();
+  for (const auto& [data, text] :
+       {std::pair{ScanData{45'053, 904'000, 1.62e6}, "45\u2009053 points: 0.9 MB as E57, 1.6 MB"},
+        {ScanData{4.71e6, 94.1e6, 169e6}, "4.7 million points: 94 MB as E57, 169 MB"},
+        {ScanData{542.9e6, 10.9e9, 19.54e9}, "543 million points: 11 GB as E57, 20 GB"},
+        {ScanData{1.21e9, 24.2e9, 43.4e9}, "1.2 billion points: 24 GB as E57, 43 GB"}}) {
+    network.data = data;
+    const std::string told = summary_text(network);
+    EXPECT_NE(told.find(std::string("\ndata       about ") + text + " as LAS\n"), std::string::npos) << told;
+  }
 }
 
 TEST(Summary, TellsSessionsAndWhereNoLinkHoldsThem) {

@@ -120,6 +120,28 @@ TEST(Objective, CaptureIsOfWhatIsAttainable) {
   EXPECT_THROW(make_objective("capture", {.attainable = 1.5}), Error);
 }
 
+TEST(Objective, CaptureOfMeshesIsThatOfTheirPattern) {
+  const NetworkCounts counts;
+  MeasuredNetwork measured{.counts = counts, .stations = {}};
+  measured.captured = {0.8, 0.01};
+  measured.captured_of_meshes = {{"IfcWall*", {0.9, 0.02}}, {"!IfcWall*", {0.6, 0.03}}};
+  for (const auto& [pattern, share] : measured.captured_of_meshes) {
+    const Objective capture = make_objective("capture(" + pattern + ")");
+    EXPECT_EQ(capture.meshes, pattern);
+    EXPECT_EQ(estimate(capture, measured).value, share.value);
+    EXPECT_DOUBLE_EQ(estimate(capture, measured).standard_error, share.standard_error);
+    EXPECT_TRUE(capture.kind == Objective::Kind::other) << "it is no limit on all that is captured";
+  }
+  EXPECT_TRUE(std::isnan(make_objective("capture(IfcSlab*)").value(measured))) << "nobody counted it";
+  const Requirement odd = make_requirement("capture(Wall <a>=2 (old))>=0.95");
+  EXPECT_EQ(odd.objective.meshes, "Wall <a>=2 (old)");
+  EXPECT_EQ(odd.limit, 0.95);
+  EXPECT_NE(in_words(make_requirement("capture(!IfcWall*)>=0.8")).find("of all but IfcWall* at least 80 %"),
+            std::string::npos);
+  for (const char* wrong : {"capture()", "capture(!)", "capture(a", "coverage(a)"})
+    EXPECT_THROW(make_objective(wrong), Error) << wrong;
+}
+
 TEST(Objective, ApartIsBetweenTheNearestTwo) {
   const NetworkCounts counts;
   std::vector<PlacedStation> placed(3);

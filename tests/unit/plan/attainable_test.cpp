@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stop_token>
+#include <utility>
 
 #include "support/quad_scene.hpp"
 #include "vantage/candidates.hpp"
+#include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {
@@ -86,12 +88,12 @@ TEST(Attainable, IsTheBestSingleStationOfEachVoxel) {
     EXPECT_DOUBLE_EQ(attainable.coverage().value, expected.attainable) << sample;
     const auto shares = captured_shares(simulator, attainable, {&network, 1});
     ASSERT_EQ(shares.size(), 1u);
-    EXPECT_DOUBLE_EQ(shares[0].value, expected.captured) << sample;
+    EXPECT_DOUBLE_EQ(shares[0].all.value, expected.captured) << sample;
     EXPECT_GT(expected.captured, 0.2);
     EXPECT_LT(expected.captured, 0.95);
     const bool all = sample == simulator.voxel_count();
     EXPECT_EQ(attainable.coverage().standard_error == 0, all);
-    EXPECT_EQ(shares[0].standard_error == 0, all);
+    EXPECT_EQ(shares[0].all.standard_error == 0, all);
   }
 }
 
@@ -102,11 +104,11 @@ TEST(Attainable, IsNoMoreThanTheirCoverageAndEachOfThemCapturesAllOfItsOwn) {
   raise_attainable(attainable, simulator, stations);
   const NetworkCounts all = simulator.evaluate(stations);
   EXPECT_LT(attainable.coverage().value, coverage(all, simulator.goal_density())) << "points add up";
-  EXPECT_DOUBLE_EQ(captured_shares(simulator, attainable, {&stations, 1})[0].value, 1);
+  EXPECT_DOUBLE_EQ(captured_shares(simulator, attainable, {&stations, 1})[0].all.value, 1);
   AttainableCounts own(simulator, simulator.voxel_count());
   const Network one{stations[7]};
   raise_attainable(own, simulator, one);
-  EXPECT_DOUBLE_EQ(captured_shares(simulator, own, {&one, 1})[0].value, 1);
+  EXPECT_DOUBLE_EQ(captured_shares(simulator, own, {&one, 1})[0].all.value, 1);
   EXPECT_DOUBLE_EQ(own.coverage().value, coverage(simulator.evaluate(one), simulator.goal_density()))
       << "of one station, its coverage";
 }
@@ -139,7 +141,7 @@ TEST(Attainable, GoesByTheGoalAndWeightOfEachVoxel) {
       by_definition(simulator, counts, sum_of(counts, std::vector<std::size_t>{0, 2}), attainable.voxels());
   // Point weights are rounded up, by less than 1 in 4096.
   EXPECT_NEAR(attainable.coverage().value, expected.attainable, 1e-3);
-  EXPECT_NEAR(captured_shares(simulator, attainable, {&network, 1})[0].value, expected.captured, 1e-3);
+  EXPECT_NEAR(captured_shares(simulator, attainable, {&network, 1})[0].all.value, expected.captured, 1e-3);
 }
 
 TEST(Attainable, IsWhatTheCoveringProblemGoesBy) {
@@ -154,7 +156,7 @@ TEST(Attainable, IsWhatTheCoveringProblemGoesBy) {
   for (const std::vector<std::size_t>& chosen : {std::vector<std::size_t>{4}, {4, 20}, {1, 9, 13, 24}}) {
     Network network;
     for (const std::size_t k : chosen) network.push_back(to_network(placed)[k]);
-    EXPECT_NEAR(matrix.coverage(chosen), captured_shares(simulator, attainable, {&network, 1})[0].value, 1e-12);
+    EXPECT_NEAR(matrix.coverage(chosen), captured_shares(simulator, attainable, {&network, 1})[0].all.value, 1e-12);
   }
 }
 
@@ -170,7 +172,7 @@ TEST(Attainable, StandardErrorsAreThoseOfTheSamples) {
   for (int s = 0; s < kSamples; ++s) {
     AttainableCounts attainable(simulator, n, static_cast<std::uint64_t>(s) * n);
     raise_attainable(attainable, simulator, stations);
-    const Estimate share = captured_shares(simulator, attainable, {&network, 1})[0];
+    const Estimate share = captured_shares(simulator, attainable, {&network, 1})[0].all;
     sum += share.value, squares += share.value * share.value, variance += share.standard_error * share.standard_error;
   }
   const double mean = sum / kSamples,
@@ -194,7 +196,49 @@ TEST(Attainable, EvaluatedStationsRaiseIt) {
   ASSERT_TRUE(found.attainable);
   EXPECT_EQ(found.attainable->value, all.coverage().value);
   const Network network = to_network(placed);
-  EXPECT_EQ(found.value("capture"), captured_shares(simulator, all, {&network, 1})[0].value);
+  EXPECT_EQ(found.value("capture"), captured_shares(simulator, all, {&network, 1})[0].all.value);
+}
+
+TEST(Attainable, TellsOfMeshesByPattern) {
+  test::QuadScene quads = wall_and_floor();
+  quads.quad({-6, -3, -1.5F}, {0, 6, 0}, {0, 0, 4});
+  quads.quad({-4, 5, -1}, {6, 0, 0}, {0, 0, 2});
+  const char* names[] = {"IfcWall a", "floor", "IfcWall b", "IfcSlab"};
+  for (std::size_t m = 0; m < std::size(names); ++m) quads.data().meshes[m].name = names[m];
+  quads.data().meshes[2].weight = 3;
+  Simulator simulator(quads.scene(), coarse_scanner(), config());
+  const Network stations = heads();
+  const auto counts = counts_of(simulator, stations);
+  const std::vector<std::size_t> chosen{3, 12, 21};
+  Network network;
+  for (const std::size_t k : chosen) network.push_back(stations[k]);
+  const struct {
+    const char* pattern;
+    std::vector<std::uint32_t> meshes;
+  } all[] = {{"IfcWall*", {0, 2}}, {"!IfcWall*", {3}}, {"*b|IfcSlab", {2, 3}}, {"!*b|IfcSlab", {0}}, {"*", {0, 2, 3}}};
+  for (const std::uint64_t sample : {simulator.voxel_count(), simulator.voxel_count() / 3}) {
+    AttainableCounts attainable(simulator, sample);
+    for (const auto& one : all) attainable.tell_of(simulator, one.pattern);
+    ASSERT_TRUE(raise_attainable(attainable, simulator, stations));
+    const AttainableCounts part = attainable.part(simulator, sample / 2);
+    for (const AttainableCounts* of : {&std::as_const(attainable), &part}) {
+      const auto shares = captured_shares(simulator, *of, {&network, 1});
+      const std::vector<VoxelPatch> patches = simulator.voxel_patches(of->voxels());
+      for (const auto& [pattern, meshes] : all) {
+        std::vector<std::uint32_t> voxels;
+        for (std::size_t k = 0; k < patches.size(); ++k)
+          if (std::ranges::count(meshes, patches[k].mesh) > 0) voxels.push_back(of->voxels()[k]);
+        const Expected expected = by_definition(simulator, counts, sum_of(counts, chosen), voxels);
+        EXPECT_NEAR(shares[0].meshes.at(pattern).value, expected.captured, 1e-12) << pattern;
+        EXPECT_EQ(shares[0].meshes.at(pattern).standard_error == 0, of->voxels().size() == simulator.voxel_count());
+      }
+      EXPECT_EQ(shares[0].meshes.at("*").value, shares[0].all.value);
+      EXPECT_EQ(shares[0].meshes.at("*").standard_error, shares[0].all.standard_error);
+    }
+  }
+  AttainableCounts attainable(simulator, 10);
+  for (const char* none : {"floor", "IfcDoor*", "!*"})
+    EXPECT_THROW(attainable.tell_of(simulator, none), Error) << "no surveyed mesh: " << none;
 }
 
 TEST(Attainable, StopsWhereTold) {

@@ -139,6 +139,44 @@ TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(test::apart_m(stations[i].position, stations[j].position), 1);
 }
 
+// What is asked of the cells in one corner, of which the fewest stations capture less.
+TEST(CaptureMeshes, AddsTheStationsThatItTakesAndNoneMore) {
+  FewestChoice choice = chosen(floor_problem(0.5), 12);
+  const std::size_t before = choice.placed();
+  constexpr std::size_t side = 40;
+  const auto in_corner = [](std::size_t cell) { return cell % side < 16 && cell / side < 16; };
+  const auto share = [&] {
+    double some = 0, all = 0;
+    for (std::size_t cell = 0; cell < side * side; ++cell) {
+      if (!in_corner(cell)) continue;
+      const double x = (static_cast<double>(cell % side) + 0.5) / 4, y = (static_cast<double>(cell / side) + 0.5) / 4;
+      all += 1;
+      some += std::ranges::any_of(choice.stations_of(choice.network), [&](const PlacedStation& station) {
+        return std::hypot(x - station.position.x, y - station.position.y) < test::kReach_m;
+      });
+    }
+    return some / all;
+  };
+  AskedOfMeshes asked{.measure = "capture(corner)", .share = 0.98};
+  for (std::size_t cell = 0; cell < side * side; ++cell) asked.weight.push_back(in_corner(cell) ? 1 : 0);
+  choice.of_meshes = {asked}, choice.attainable.assign(side * side, 1);
+  const double lacking = share();
+  ASSERT_LT(lacking, 0.98) << "or there is nothing to add";
+  EXPECT_TRUE(capture_meshes(choice, {}));
+  EXPECT_GE(share(), 0.98);
+  EXPECT_EQ(choice.network.violation, 0) << "linked, and as much of all as before";
+  EXPECT_LE(choice.placed(), before + 2);
+  EXPECT_FALSE(capture_meshes(choice, {})) << "all is there";
+  for (const std::size_t station : choice.visiting)
+    EXPECT_NE(std::ranges::find(choice.network.chosen, station), choice.network.chosen.end());
+  // No more stations than are allowed.
+  FewestChoice few = chosen(floor_problem(0.5), 12);
+  few.of_meshes = {asked}, few.attainable.assign(side * side, 1);
+  few.asked.most = few.placed();
+  capture_meshes(few, {});
+  EXPECT_LE(few.placed(), few.asked.most);
+}
+
 TEST(Choose, TakesAsManyAsThereIsTimeFor) {
   const std::size_t without_limit = chosen(floor_problem(0.8), 12).placed();
   ASSERT_GT(without_limit, 3u);

@@ -6,7 +6,10 @@
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
+#include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
@@ -37,6 +40,41 @@ TEST(Parts, AreSearchedForRequiredAndConfirmed) {
   EXPECT_EQ(best.value("all"), again.value("all"));
   const auto open = static_cast<double>(uncovered(site.simulator(), again).voxels.size());
   EXPECT_NEAR(best.value("all"), 1 - open / static_cast<double>(site.simulator().voxel_count()), 1e-12);
+}
+
+// The fewest stations by what they capture of all see one wall; those that 90 % of the other are asked of see it, too.
+TEST(Parts, AreCapturedByTheFewestStationsThatTheyAreAskedOf) {
+  test::QuadScene quads;
+  quads.quad({5, -3, -1.5F}, {0, 6, 0}, {0, 0, 4});
+  quads.quad({-20, -8, -1.5F}, {28, 0, 0}, {0, 16, 0}, Role::blocking, 0.2);
+  quads.quad({-18, -1, -1.5F}, {0, 2, 0}, {0, 0, 2});
+  quads.data().meshes[0].name = "IfcWall east", quads.data().meshes[2].name = "IfcSlab west";
+  Site site = test::site_of(Simulator(quads.scene(), test::coarse_scanner(0.5),
+                                      {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+  const auto planned = [&](const std::vector<std::string>& requirements) {
+    SurveyQuestion question{.capture = 0.7, .link = 0.0, .requirements = requirements};
+    return plan(site, question, {.sample_voxels = 400, .seed = 7});
+  };
+  const PlanResult plain = planned({"capture(IfcSlab*)>=0"}),
+                   both = planned({"capture(IfcSlab*)>=0.9", "capture(!IfcSlab*)>=0.6"});
+  EXPECT_TRUE(met(plain) && met(both));
+  const PlanEntry &one = plain.front[answer(plain)], &two = both.front[answer(both)];
+  EXPECT_LT(one.value("capture(IfcSlab*)"), 0.9) << "or nothing was to be asked for";
+  EXPECT_GE(two.value("capture(IfcSlab*)"), 0.9);
+  EXPECT_GE(two.value("capture(!IfcSlab*)"), 0.6);
+  // By what was attainable from the candidates and the stations, on every voxel.
+  AttainableCounts attainable(site.simulator(), site.simulator().voxel_count());
+  attainable.tell_of(site.simulator(), "IfcSlab*");
+  raise_attainable(attainable, site.simulator(), to_network(both.candidates->stations()));
+  raise_attainable(attainable, site.simulator(), to_network(two.stations));
+  const Network network = to_network(two.stations);
+  const auto shares = captured_shares(site.simulator(), attainable, {&network, 1});
+  EXPECT_NEAR(shares[0].meshes.at("IfcSlab*").value, two.value("capture(IfcSlab*)"),
+              0.01 + 3 * two.estimate("capture(IfcSlab*)").standard_error);
+  EXPECT_NE(summary_text(both).find("of what is attainable of IfcSlab*, of which at least 90 % were asked for"),
+            std::string::npos)
+      << summary_text(both);
+  EXPECT_THROW(planned({"capture(IfcDoor*)>=0.5"}), Error) << "there is none";
 }
 
 }  // namespace

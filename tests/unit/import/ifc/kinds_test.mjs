@@ -429,12 +429,15 @@ test("map conversions place the site in their coordinate system", () => {
     assert.equal(found.crs, "EPSG:25832");
     told(found, "500000.00 E, 5400000.00 N, 120.00 m", "EPSG:25832");
     spans(found.products.get("thing"), [499_999.8, 5_400_000, 120], [500_000, 5_400_004, 123], 1e-3);
+    // A quarter turn: the model's x, of 4 m, runs north. Lengths are the model's, in metres, of (x, z, −y).
+    [0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 500_000, 120, -5_400_000, 1].forEach((v, i) => near(found.place[i], v, 1e-6));
   }
   const empty = new StepText();
   empty.product("IFCWALL", "thing", empty.shape([empty.representation([empty.box([4, 0.2, 3])])]));
   mapped(empty, [0, 0, 0, null, null, null]);
   const found = readBack(empty.text());
   assert.equal(found.crs, "");
+  assert.equal(found.place, undefined, "the model's coordinates are the site's");
   told(found, "not applied");
   spans(found.products.get("thing"), [0, 0, 0], [4, 0.2, 3]);
   const named = new StepText();

@@ -63,5 +63,5 @@ function measure(glb) {
     }
     products.set(name, all);
   }
-  return { notes, crs: vantage.crs ?? "", products, rooms };
+  return { notes, crs: vantage.crs ?? "", place: vantage.model_in_site, products, rooms };
 }
