@@ -8,6 +8,7 @@
 
 #include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
+#include "cover/swaps.hpp"
 
 namespace vantage {
 namespace {

@@ -21,7 +21,7 @@ constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 struct Context {
   embree::Context rtc;  // first member: Embree passes its address to the filters
   const Planes& planes;
-  const SceneTree& tree;
+  const SceneTree* tree;
   Float3 origin;
   float start;
   float* t;  // by the ray's id; initially the ray's end
@@ -53,14 +53,20 @@ template <unsigned n, bool placed, class Take>
   }
   std::uint32_t primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
-  alignas(32) std::int32_t beside[n]{};
+  alignas(32) std::int32_t beside[n];
+  std::fill_n(beside, n, 1);
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
     const std::uint32_t proposed =
-        context.tree.number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
+        context.tree->number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
     if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = proposed;
+      if (proposed == RayBundle::no_hit) [[unlikely]] {  // it is gone from the scene
+        std::fill_n(beside, n, 1);
+        args->valid[i] = 0;
+        continue;
+      }
       context.planes.distances<n>(context.planes.seen(primitive, origin), primitive, origin, x, y, z, t);
       context.planes.beside<n>(primitive, origin, x, y, z, t, beside);
     }
@@ -136,11 +142,39 @@ void note_all(const RTCFilterFunctionNArguments* args) {
 
 RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of)
     : scene_(std::move(scene)),
+      of_tree_(scene_),
       planes_(std::move(planes)),
       device_(embree::new_device()),
       tree_(device_.get(), *scene_, of == Of::opaque ? 0 : scene_->opaque_count(),
             of == Of::opaque ? scene_->opaque_count() : scene_->triangle_count(),
             {of == Of::opaque ? keep_least : note_all, note}, of == Of::opaque ? "of rays" : "of glass") {}
+
+std::optional<RayCaster::Change> RayCaster::prepare(std::shared_ptr<const SceneData> scene,
+                                                    const SceneDifference& difference) const {
+  // Share of the tree's triangles that may be gone or new: rays walk over both.
+  constexpr std::uint32_t kShare = 4;
+  Change change;
+  change.numbers = of_tree_ == scene_ ? difference.kept : joined(numbers_, difference.kept);
+  const std::uint32_t before = of_tree_->opaque_count(), after = scene->opaque_count();
+  const std::vector<KeptRun> added = not_kept(change.numbers, after);
+  std::uint64_t kept = 0, is_new = 0;
+  for (const KeptRun& run : change.numbers)
+    if (run.first < before) kept += run.count;
+  for (const KeptRun& run : added) is_new += run.count;
+  if ((before - kept + is_new) * kShare > before) return std::nullopt;
+  if (is_new > 0)
+    change.added = std::make_unique<const SceneTree>(device_.get(), *scene, added, SceneTree::Filters{keep_least, note},
+                                                     "of what changed");
+  change.scene = std::move(scene);
+  return change;
+}
+
+void RayCaster::take(Change change) noexcept {
+  scene_ = std::move(change.scene);
+  added_ = std::move(change.added);
+  tree_.renumber(change.numbers);
+  numbers_ = std::move(change.numbers);
+}
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
   constexpr std::size_t stream = 64;
@@ -168,18 +202,28 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
       if (shared) x[i] = rays[i].dir_x, y[i] = rays[i].dir_y, z[i] = rays[i].dir_z;
     }
     hit.fill(RayBundle::no_hit);
-    Context context{{}, *planes_, tree_, origin, start, end.data(), hit.data()};
+    Context context{{}, *planes_, &tree_, origin, start, end.data(), hit.data()};
     if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
+    const auto trace = [&](std::size_t many) {
 #if VANTAGE_EMBREE_MAJOR >= 4
-    rtcInitRayQueryContext(&context.rtc);
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context.rtc;
-    for (std::size_t i = 0; i < n; ++i) rtcOccluded1(tree_.get(), &rays[i], &arguments);
+      rtcInitRayQueryContext(&context.rtc);
+      RTCOccludedArguments arguments;
+      rtcInitOccludedArguments(&arguments);
+      arguments.context = &context.rtc;
+      for (std::size_t i = 0; i < many; ++i) rtcOccluded1(context.tree->get(), &rays[i], &arguments);
 #else
-    rtcInitIntersectContext(&context.rtc);
-    rtcOccluded1M(tree_.get(), &context.rtc, rays.data(), static_cast<unsigned>(n), sizeof(RTCRay));
+      rtcInitIntersectContext(&context.rtc);
+      rtcOccluded1M(context.tree->get(), &context.rtc, rays.data(), static_cast<unsigned>(many), sizeof(RTCRay));
 #endif
+    };
+    trace(n);
+    if (added_) {
+      std::size_t open = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        if (hit[i] == RayBundle::no_hit) rays[open++] = rays[i];
+      context.tree = added_.get();
+      if (open > 0) trace(open);
+    }
     for (std::size_t i = 0; i < n; ++i) probes[first + i].hit = hit[i];
   }
 }
@@ -225,7 +269,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
   std::copy_n(rays.end, used * packet, rays.t);
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context{{}, *planes_, tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
+  Context context{{}, *planes_, &tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
   alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
   if (scene_->shares()) {
     for (std::uint32_t i = 0; i < used * packet; ++i)
@@ -233,22 +277,26 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
     context.x = x, context.y = y, context.z = z;
   }
   context.origins = rays.origins;
+  for (const SceneTree* const tree : {&tree_, added_.get()}) {
+    if (!tree) break;
+    context.tree = tree;
 #if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&context.rtc);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &context.rtc;
-  for (std::uint32_t p = 0; p < used; ++p) {
-    alignas(32) int valid[packet];
-    for (std::uint32_t lane = 0; lane < packet; ++lane) valid[lane] = p * packet + lane < rays.size ? -1 : 0;
-    rtcIntersect8(valid, tree_.get(), &hits[p], &arguments);
-  }
+    rtcInitRayQueryContext(&context.rtc);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.context = &context.rtc;
+    for (std::uint32_t p = 0; p < used; ++p) {
+      alignas(32) int valid[packet];
+      for (std::uint32_t lane = 0; lane < packet; ++lane) valid[lane] = p * packet + lane < rays.size ? -1 : 0;
+      rtcIntersect8(valid, tree->get(), &hits[p], &arguments);
+    }
 #else
-  rtcInitIntersectContext(&context.rtc);
-  context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersectNM(tree_.get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
+    rtcInitIntersectContext(&context.rtc);
+    context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersectNM(tree->get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
 #endif
+  }
   for (std::uint32_t i = 0; i < rays.size; ++i) {
     if (rays.primitive[i] == RayBundle::no_hit) rays.t[i] = std::numeric_limits<float>::infinity();
   }
