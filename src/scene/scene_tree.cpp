@@ -14,7 +14,7 @@
 namespace vantage {
 SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t first, std::uint32_t end,
                      const Filters& filters, const std::string& what)
-    : scene_(scene), first_(first), as_stored_(!scene.shares()), tree_(embree::new_scene(device)) {
+    : scene_(scene), first_(first), tree_(embree::new_scene(device)) {
   if (!scene.shares()) {
     if (end > first) add_triangles(device, tree_.get(), first, end - first, 0, filters);
   } else {
@@ -39,7 +39,7 @@ SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t fir
 
 SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::span<const KeptRun> runs, const Filters& filters,
                      const std::string& what)
-    : scene_(scene), first_(0), as_stored_(false), tree_(embree::new_scene(device)) {
+    : scene_(scene), first_(0), tree_(embree::new_scene(device)) {
   // One geometry with the corners of these triangles alone.
   std::uint32_t low = 0xFFFFFFFFu, high = 0, count = 0;
   for (const KeptRun& run : runs) {
@@ -73,12 +73,9 @@ SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::span<const K
   embree::check(device, "building the tree " + what + " over " + std::to_string(count) + " triangles");
 }
 
-void SceneTree::renumber(std::vector<KeptRun> numbers) noexcept {
-  as_stored_ = false;
-  numbers_ = std::move(numbers);
-}
+void SceneTree::renumber(std::vector<KeptRun> numbers) noexcept { numbers_ = std::move(numbers); }
 
-std::uint32_t SceneTree::renumbered(std::uint32_t primitive) const {
+std::uint32_t SceneTree::number_by_runs(unsigned primitive) const {
   const auto after = std::ranges::upper_bound(numbers_, primitive, {}, &KeptRun::first);
   if (after == numbers_.begin()) return kInNone;
   const KeptRun& run = *(after - 1);

@@ -40,18 +40,17 @@ class SceneTree {
   // The tree of an instance's shared mesh; null if the instance is not in this tree.
   RTCScene mesh(std::size_t instance) const { return meshes_[instance]; }
   static constexpr std::uint32_t kInNone = 0xFFFFFFFFu;
-  // Number in the scene of a triangle that Embree names, or kInNone (`renumber`).
+  // Number in the scene of a triangle that Embree names.
   std::uint32_t number(unsigned instance, unsigned primitive) const {
-    if (as_stored_) [[likely]]
-      return first_ + primitive;
-    if (!scene_.shares()) return renumbered(primitive);
-    return instance == RTC_INVALID_GEOMETRY_ID ? number_of_own(primitive)
-                                               : scene_.instances[instance].first_triangle + primitive;
+    return !scene_.shares()                      ? first_ + primitive
+           : instance == RTC_INVALID_GEOMETRY_ID ? number_of_own(primitive)
+                                                 : scene_.instances[instance].first_triangle + primitive;
   }
+  // The same of a tree over runs, or with the numbers of renumber(); kInNone: it is gone.
+  std::uint32_t number_by_runs(unsigned primitive) const;
 
  private:
   std::uint32_t number_of_own(std::uint32_t primitive) const;
-  std::uint32_t renumbered(std::uint32_t primitive) const;
   void add_triangles(RTCDevice device, RTCScene to, std::uint32_t first, std::uint32_t count, unsigned id,
                      const Filters& filters);
   void add_instances(RTCDevice device, std::uint32_t end, const Filters& filters);
@@ -59,8 +58,7 @@ class SceneTree {
 
   const SceneData& scene_;
   std::uint32_t first_;
-  bool as_stored_;                     // numbers are those of Embree, from first_ on
-  std::vector<KeptRun> numbers_;       // otherwise: by Embree's numbers, unless meshes are shared
+  std::vector<KeptRun> numbers_;       // of number_by_runs(), by Embree's
   std::vector<MeshInstance> own_;      // runs of triangles that are stored where they stand
   std::vector<embree::Scene> shared_;  // of each shared mesh
   std::vector<RTCScene> meshes_;       // one of them for each instance

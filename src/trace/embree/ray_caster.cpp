@@ -30,11 +30,12 @@ struct Context {
   // Directions by the ray's id, as Embree is given them; null: where nothing is shared.
   const float *x = nullptr, *y = nullptr, *z = nullptr;
   const Float3* origins = nullptr;  // by the ray's id; null: all are `origin`
+  bool changed = false;             // the scene is a later one than the tree's
 };
 
 // Calls take(ray, primitive, distance) for rays `first` to first + n from `origin` to which Embree proposes a triangle.
 // A ray goes on if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
-template <unsigned n, bool placed, class Take>
+template <unsigned n, bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
                                          const Context& context, const Float3& origin, const Take& take) {
   const unsigned all = args->N;
@@ -53,20 +54,22 @@ template <unsigned n, bool placed, class Take>
   }
   std::uint32_t primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
-  alignas(32) std::int32_t beside[n];
-  std::fill_n(beside, n, 1);
+  alignas(32) std::int32_t beside[n]{};
+  if constexpr (changed) std::fill_n(beside, n, 1);  // of kInNone, which is no_hit
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    const std::uint32_t proposed =
-        context.tree->number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
+    const unsigned named = RTCHitN_primID(args->hit, all, i);
+    const std::uint32_t proposed = changed ? context.tree->number_by_runs(named)
+                                           : context.tree->number(RTCHitN_instID(args->hit, all, i, 0), named);
     if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = proposed;
-      if (proposed == RayBundle::no_hit) [[unlikely]] {  // it is gone from the scene
-        std::fill_n(beside, n, 1);
-        args->valid[i] = 0;
-        continue;
-      }
+      if constexpr (changed)
+        if (proposed == SceneTree::kInNone) {
+          std::fill_n(beside, n, 1);
+          args->valid[i] = 0;
+          continue;
+        }
       context.planes.distances<n>(context.planes.seen(primitive, origin), primitive, origin, x, y, z, t);
       context.planes.beside<n>(primitive, origin, x, y, z, t, beside);
     }
@@ -78,31 +81,34 @@ template <unsigned n, bool placed, class Take>
   }
 }
 
-template <bool placed, class Take>
+template <bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Context& context,
                                          const Take& take) {
   unsigned first = 0;
-  for (; first + packet <= args->N; first += packet) judge<packet, placed>(args, first, context, context.origin, take);
-  for (; first < args->N; ++first) judge<1, placed>(args, first, context, context.origin, take);
+  for (; first + packet <= args->N; first += packet)
+    judge<packet, placed, changed>(args, first, context, context.origin, take);
+  for (; first < args->N; ++first) judge<1, placed, changed>(args, first, context, context.origin, take);
 }
 
-template <bool placed, class Take>
+template <bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge_each(const RTCFilterFunctionNArguments* args, const Context& context,
                                               const Take& take) {
   for (unsigned k = 0; k < args->N; ++k)
     if (args->valid[k] != 0)
-      judge<1, placed>(args, k, context, context.origins[RTCRayN_id(args->ray, args->N, k)], take);
+      judge<1, placed, changed>(args, k, context, context.origins[RTCRayN_id(args->ray, args->N, k)], take);
 }
 
 template <class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Take& take) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
-  if (context.origins)
-    context.x ? judge_each<true>(args, context, take) : judge_each<false>(args, context, take);
+  if (context.changed) [[unlikely]]  // it shares no meshes
+    context.origins ? judge_each<false, true>(args, context, take) : judge<false, true>(args, context, take);
+  else if (context.origins)
+    context.x ? judge_each<true, false>(args, context, take) : judge_each<false, false>(args, context, take);
   else if (context.x)
-    judge<true>(args, context, take);
+    judge<true, false>(args, context, take);
   else
-    judge<false>(args, context, take);
+    judge<false, false>(args, context, take);
 }
 
 VANTAGE_TARGET_CLONES
@@ -173,6 +179,7 @@ void RayCaster::take(Change change) noexcept {
   scene_ = std::move(change.scene);
   added_ = std::move(change.added);
   tree_.renumber(change.numbers);
+  changed_ = true;
   numbers_ = std::move(change.numbers);
 }
 
@@ -204,6 +211,7 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
     hit.fill(RayBundle::no_hit);
     Context context{{}, *planes_, &tree_, origin, start, end.data(), hit.data()};
     if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
+    context.changed = changed_;
     const auto trace = [&](std::size_t many) {
 #if VANTAGE_EMBREE_MAJOR >= 4
       rtcInitRayQueryContext(&context.rtc);
@@ -277,6 +285,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
     context.x = x, context.y = y, context.z = z;
   }
   context.origins = rays.origins;
+  context.changed = changed_;
   for (const SceneTree* const tree : {&tree_, added_.get()}) {
     if (!tree) break;
     context.tree = tree;

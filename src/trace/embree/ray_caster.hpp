@@ -107,6 +107,7 @@ class RayCaster {
   SceneTree tree_;
   std::vector<KeptRun> numbers_;            // of the tree in scene_, if that is another than of_tree_
   std::unique_ptr<const SceneTree> added_;  // what of_tree_ lacks; null: nothing
+  bool changed_ = false;                    // triangles have the numbers of number_by_runs()
 };
 
 }  // namespace vantage
