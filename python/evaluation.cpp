@@ -259,6 +259,9 @@ void add_evaluations(py::module_& m) {
       .def_property_readonly(
           "stations", [](const Evaluation& e) { return e.counts.stations; }, "Number of stations.")
       .def_property_readonly(
+          "heads", [](const Evaluation& e) { return heads_of(e.stations); },
+          "Their heads, survey frame: (n, 3), metres.")
+      .def_property_readonly(
           "rays", [](const Evaluation& e) { return e.counts.rays; }, "Rays that were traced.")
       .def_property_readonly(
           "trace_seconds", [](const Evaluation& e) { return e.counts.trace_seconds; }, "Time spent tracing.")

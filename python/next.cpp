@@ -26,7 +26,7 @@ std::optional<Next> next_of(GuardedSite& self, const std::filesystem::path& scan
   Next next{nullptr, Day{.config = config_of(given)}};
   const auto lock = self.taken();
   Day& day = next.day;
-  if (!planned.is_none()) day.planned = placed_on(self.site, planned);
+  if (!planned.is_none()) day.planned = placed_on(self.site, stations_of(planned));
   if (!names.empty() && names.size() != day.planned.size())
     throw Error(Errc::invalid_argument, "planned_names: one for each planned station is wanted, " +
                                             std::to_string(names.size()) + " for " +

@@ -107,8 +107,8 @@ void add_visits(py::module_& m) {
 void add_on_site(py::module_& m) {
   py::class_<OnSite>(m, "OnSite", "Paths over a site, and the time of a round.")
       .def(py::init([](GuardedSite& site, const OnSiteOptions& how) {
-             const auto lock = site.taken();
              const py::gil_scoped_release unlocked;
+             const auto lock = site.beside();
              return site.site.on_site(how);
            }),
            py::arg("site"), py::arg("options") = OnSiteOptions{},

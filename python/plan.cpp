@@ -71,7 +71,11 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
   const auto lock = guarded->taken();
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    return plan(guarded->site, own ? *own : survey_problem(guarded->site, question), config,
+    const SurveyProblem asked_for = [&] {
+      const std::unique_lock settling(guarded->settled);
+      return own ? *own : survey_problem(guarded->site, question);
+    }();
+    return plan(guarded->site, asked_for, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),
                  .abort = call.abort()});
@@ -258,6 +262,8 @@ void add_results(py::module_& m) {
           "stop_reason", [](const Plan& plan) { return to_string(plan.result.stop_reason); }, "Why the search ended.")
       .def_property_readonly(
           "seconds", [](const Plan& plan) { return plan.result.seconds; }, "Time of the call.")
+      .def_property_readonly(
+          "site", [](const Plan& plan) { return plan.site; }, "The site that it was planned on.")
       .def_property_readonly(
           "summary", [](const Plan& plan) { return summary_text(plan.result); },
           "Summary of the answer in plain words.")

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -85,6 +89,111 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
                                               : flat;
 }
 
+// A structured array in the making: rows of packed fields.
+class Rows {
+ public:
+  // `format`: of numpy. `write(to, chunk, k)` writes the value of ray number k of a chunk.
+  using Write = std::function<void(std::byte* to, const ScanChunk& chunk, std::uint64_t k)>;
+  void add(const std::string& name, const char* format, std::size_t size, Write write) {
+    for (const std::string& known : names_)
+      if (known == name) return;
+    names_.push_back(name), formats_.emplace_back(format);
+    writers_.push_back({row_bytes_, std::move(write)});
+    row_bytes_ += size;
+  }
+  template <class Value>
+  void add(const std::string& name, const char* format, std::vector<Value> ScanChunk::*member) {
+    add(name, format, sizeof(Value), [member](std::byte* to, const ScanChunk& chunk, std::uint64_t k) {
+      std::memcpy(to, &(chunk.*member)[k], sizeof(Value));
+    });
+  }
+
+  // Takes the rays of a chunk that hit something.
+  void take(const ScanChunk& chunk) {
+    constexpr std::size_t kBlock = std::size_t{1} << 22;  // bytes
+    for (std::uint64_t k = 0; k < chunk.ray_count; ++k) {
+      if (!std::isfinite(chunk.range_m[k])) continue;
+      if (blocks_.empty() || blocks_.back().size() + row_bytes_ > kBlock) {
+        blocks_.emplace_back();
+        blocks_.back().reserve(kBlock);
+      }
+      std::vector<std::byte>& block = blocks_.back();
+      block.resize(block.size() + row_bytes_);
+      std::byte* const row = block.data() + block.size() - row_bytes_;
+      for (const auto& [offset, write] : writers_) write(row + offset, chunk, k);
+      ++rows_;
+    }
+  }
+
+  // Frees each block once it is copied, so that the points are in memory about once.
+  py::array array() {
+    py::list names, formats, offsets;
+    for (std::size_t f = 0; f < names_.size(); ++f)
+      names.append(names_[f]), formats.append(formats_[f]), offsets.append(writers_[f].first);
+    const py::dtype row(names, formats, offsets, static_cast<py::ssize_t>(row_bytes_));
+    py::array made(row, Shape{static_cast<py::ssize_t>(rows_)});
+    auto* to = static_cast<std::byte*>(made.mutable_data());
+    for (std::vector<std::byte>& block : blocks_) {
+      to = std::ranges::copy(block, to).out;
+      block = {};
+    }
+    return made;
+  }
+
+ private:
+  std::vector<std::string> names_, formats_;
+  std::vector<std::pair<std::size_t, Write>> writers_;
+  std::size_t row_bytes_ = 0, rows_ = 0;
+  std::vector<std::vector<std::byte>> blocks_;
+};
+
+// Fields of outputs by their names, in that order.
+Rows rows_of(const std::vector<std::string>& outputs, bool float32, const Vec3& origin, std::uint64_t columns) {
+  Rows rows;
+  const auto axis = [&](const char* name, std::size_t at, double from) {
+    if (float32)
+      rows.add(name, "<f4", 4, [at](std::byte* to, const ScanChunk& chunk, std::uint64_t k) {
+        std::memcpy(to, &chunk.position[k][at], 4);
+      });
+    else
+      rows.add(name, "<f8", 8, [at, from](std::byte* to, const ScanChunk& chunk, std::uint64_t k) {
+        const double value = from + static_cast<double>(chunk.position[k][at]);
+        std::memcpy(to, &value, 8);
+      });
+  };
+  const auto place = [&](const char* name, bool row) {
+    rows.add(name, "<u4", 4, [=](std::byte* to, const ScanChunk& chunk, std::uint64_t k) {
+      const std::uint64_t ray = chunk.first_ray + k;
+      const auto value = static_cast<std::uint32_t>(row ? ray / columns : ray % columns);
+      std::memcpy(to, &value, 4);
+    });
+  };
+  for (const std::string& output : outputs) {
+    if (output == "position") axis("x", 0, origin.x), axis("y", 1, origin.y), axis("z", 2, origin.z);
+    if (output == "normal")
+      for (std::size_t at = 0; at < 3; ++at)
+        rows.add(std::string("n") + "xyz"[at], "<f4", 4, [at](std::byte* to, const ScanChunk& chunk, std::uint64_t k) {
+          std::memcpy(to, &chunk.normal[k][at], 4);
+        });
+    if (output == "reflectivity") rows.add(output, "<f4", &ScanChunk::reflectivity);
+    if (output == "mesh") rows.add(output, "<i4", &ScanChunk::mesh);
+    if (output == "primitive") rows.add(output, "<u4", &ScanChunk::primitive);
+    if (output == "colour") rows.add(output, "<u4", &ScanChunk::colour);
+    if (output == "voxel") rows.add(output, "<u4", &ScanChunk::voxel);
+    if (output == "ghost") rows.add(output, "|u1", &ScanChunk::ghost);
+    if (output == "returns") {
+      rows.add(output, "|u1", &ScanChunk::returns);
+      rows.add("return_number", "|u1", 1, [](std::byte* to, const ScanChunk& chunk, std::uint64_t) {
+        *to = static_cast<std::byte>(chunk.return_number);
+      });
+    }
+    if (output == "range_m") rows.add(output, "<f4", &ScanChunk::range_m);
+    if (output == "row") place("row", true);
+    if (output == "column") place("column", false);
+  }
+  return rows;
+}
+
 std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
                                 const std::vector<std::string>& outputs, const std::string& crs,
                                 const std::optional<BeamOptions>& beam,
@@ -136,6 +245,30 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
   const Scanner& scanner = simulator.scanners()[setup.scanner];  // exists, since something was scanned
   made.rows = scanner.rows(), made.columns = scanner.columns();
   return made;
+}
+
+py::array scan_array(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, bool float32,
+                     const StationSetup& setup, std::uint32_t place, const std::optional<BeamOptions>& beam,
+                     const std::optional<InstrumentErrors>& instrument, py::object progress) {
+  std::vector<std::string> others;
+  for (const std::string& output : outputs)
+    if (output != "row" && output != "column" && output != "range_m") others.push_back(output);
+  const std::uint32_t bits = bits_of(others, scan_range);
+  if (outputs.empty()) throw Error(Errc::invalid_argument, "scan_array: outputs: name one at least");
+  Simulator& simulator = self.simulator;
+  if (setup.scanner >= simulator.scanners().size())
+    throw Error(Errc::invalid_argument, "scan_array: the setup's scanner " + std::to_string(setup.scanner) +
+                                            ", counted from 0, is not there; the simulator has " +
+                                            std::to_string(simulator.scanners().size()));
+  Rows rows = rows_of(outputs, float32, simulator.origin(), simulator.scanners()[setup.scanner].columns());
+  LongCall call(std::move(progress));
+  call.run([&] {
+    return simulator.scan(
+        {.position = position, .setup = setup},
+        {.outputs = bits, .place = place, .beam = beam, .instrument = instrument},
+        [&](const ScanChunk& chunk) { rows.take(chunk); }, call.progress());
+  });
+  return rows.array();
 }
 
 void add_scans(py::module_& m) {

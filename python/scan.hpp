@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "arrays.hpp"
 #include "simulator.hpp"
 
 namespace vantage::python {
@@ -19,6 +20,11 @@ void add_clouds(py::module_& m);
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
           bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam,
           const std::optional<InstrumentErrors>& instrument, py::object progress);
+
+/// The points of a station as a structured array.
+py::array scan_array(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, bool float32,
+                     const StationSetup& setup, std::uint32_t place, const std::optional<BeamOptions>& beam,
+                     const std::optional<InstrumentErrors>& instrument, py::object progress);
 
 /// Points of a station; with `grid` one element for each ray.
 struct Scan : ScanPoints {

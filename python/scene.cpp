@@ -118,8 +118,45 @@ void add_room(py::module_& m) {
   add_pickle(type);
 }
 
+// A translation, or a pair of a translation and a rotation.
+Pose pose_of(const py::handle& given) {
+  try {
+    if (py::isinstance<py::sequence>(given) && py::len(given) == 2) {
+      const auto [translation, rotation] = given.cast<std::pair<Vec3, std::array<double, 4>>>();
+      return {translation, rotation};
+    }
+    return {given.cast<Vec3>()};
+  } catch (const py::cast_error&) {
+    throw py::type_error(
+        "with_changes: move: a mesh goes by a translation (x, y, z), or by a pair of that and a rotation (x, y, z, w); "
+        "not " +
+        py::repr(given).cast<std::string>());
+  }
+}
+
+Scene changed(const Scene& scene, const Options<SceneMesh>& options, const py::dict& move, const Globs& remove,
+              const py::sequence& add) {
+  SceneChange change;
+  for (const auto& [pattern, pose] : move) change.move.emplace_back(pattern.cast<std::string>(), pose_of(pose));
+  change.remove = remove;
+  for (const auto& mesh : add) {
+    py::dict rest;
+    rest.attr("update")(mesh);
+    for (const char* const needed : {"positions", "triangles"})
+      if (!rest.contains(needed))
+        throw py::type_error(std::string("with_changes: add: a mesh is a dict with 'positions' and 'triangles'; ") +
+                             needed + " is missing");
+    const auto positions = rest.attr("pop")("positions").cast<Doubles>();
+    const auto triangles = py::array(rest.attr("pop")("triangles"));
+    change.add.push_back(mesh_of(options, positions, triangles, py::reinterpret_borrow<py::kwargs>(rest)));
+  }
+  const py::gil_scoped_release unlocked;
+  return with_changes(scene, change);
+}
+
 void add_scene(py::module_& m) {
   const auto options = scene_options();
+  const auto added = mesh_options("Scene.with_changes");
   py::class_<Scene>(m, "Scene",
                     "The 3D model of a site: surveyed and blocking surfaces, and the search area. Immutable.\nThe "
                     "survey frame is right-handed with Z up, in metres.")
@@ -144,6 +181,19 @@ void add_scene(py::module_& m) {
           py::arg("positions"), py::arg("triangles"), py::arg("diffuse") = 0.5,
           "One surveyed mesh: positions (n, 3), metres, survey frame; triangles (m, 3), indices of positions.\n"
           "Raises Error: invalid_argument, malformed_file (no triangle with area).")
+      .def(
+          "with_changes",
+          [added](const Scene& scene, const py::dict& move, const Globs& remove, const py::sequence& add) {
+            return changed(scene, added, move, remove, add);
+          },
+          py::kw_only(), py::arg("move") = py::dict(), py::arg("remove") = Globs{}, py::arg("add") = py::tuple(),
+          "A scene with some meshes changed; `Simulator.set_scene` takes it. Patterns (`*`, `?`) are on the names of "
+          "`meshes`.\nmove: {pattern: translation (x, y, z), metres, or (translation, rotation (x, y, z, w))}, from "
+          "where the meshes stand,\nrotated about the origin of the survey frame, then moved; the first pattern that "
+          "matches a mesh counts. remove: patterns.\nadd: dicts with the arguments of `SceneBuilder.add`, roles "
+          "'surveyed' (None, too) or 'blocking'. Positions are rounded to\nfloat each time: change the first scene "
+          "again rather than the last.\nRaises Error: invalid_argument, malformed_file (nothing is surveyed then), "
+          "out_of_memory.")
       .def_property_readonly(
           "bounds",
           [](const Scene& scene) {

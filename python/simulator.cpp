@@ -199,6 +199,9 @@ void add_simulators(py::module_& m) {
       .def_property_readonly(
           "scene", [](const Simulators& self) { return self.simulator.scene(); }, "Its scene.")
       .def_property_readonly(
+          "origin", [](const Simulators& self) { return self.simulator.origin(); },
+          "Local origin, survey frame, metres: floats about it are fine enough for any point of the scene.")
+      .def_property_readonly(
           "voxel_count", [](const Simulators& self) { return self.simulator.voxel_count(); },
           "Surveyed voxels, N_v of equation 8.")
       .def_property_readonly(
@@ -207,6 +210,11 @@ void add_simulators(py::module_& m) {
       .def_property_readonly(
           "goal_density", [](const Simulators& self) { return self.simulator.goal_density(); },
           "Points wanted in a voxel; the densest goal if goals differ.")
+      .def("set_scene", &Simulators::set_scene, py::arg("scene"), py::call_guard<py::gil_scoped_release>(),
+           "Takes another scene, mostly the same one with some meshes changed (`Scene.with_changes`). Results are then "
+           "those of a\nnew Simulator of that scene, bit for bit. On 'embree' only what differs is made anew; other "
+           "engines rebuild. Returns\nwhether the rest was kept. No other call may run meanwhile.\nRaises Error as "
+           "`Simulator` does, and stays as it was; invalid_argument for the simulator of a site.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
       .def("voxel_weights", &voxel_weights, "Weight of each voxel in coverage: (N_v,).")
       .def("goal_densities", &goal_densities, "Points wanted in each voxel: (N_v,).")
@@ -221,6 +229,17 @@ void add_simulators(py::module_& m) {
            "noise. beam: BeamOptions; gives the beam\na width. instrument: InstrumentErrors; moves ranges and "
            "positions by them.\nRaises Error invalid_argument: a position that is not "
            "finite, an unknown output, a beam that is not known.")
+      .def(
+          "scan_array", &scan_array, py::arg("position"),
+          py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
+          py::arg("float32") = false, py::arg("setup") = StationSetup{}, py::arg("place") = 0,
+          py::arg("beam") = py::none(), py::arg("instrument") = py::none(), py::arg("progress") = py::none(),
+          "Scans one station as `scan` does, into a structured array with a row for each point: (n,). Fields: 'x', "
+          "'y', "
+          "'z' of\n'position', 'nx', 'ny', 'nz' of 'normal', 'returns' and 'return_number' of 'returns', and the other "
+          "outputs by their names;\n'row', 'column' and 'range_m' are outputs, too. float32: coordinates are floats "
+          "about `origin`, 4 bytes each; otherwise doubles\nin the survey frame. What a stopped call returns has the "
+          "first points.\nRaises Error invalid_argument, as `scan`.")
       .def("evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
            py::arg("field") = false, py::arg("surroundings") = false, py::arg("registration") = py::none(),
            py::arg("beam") = py::none(), py::arg("progress") = py::none(),

@@ -17,13 +17,22 @@ struct Simulators {
 
   std::optional<Simulator> owned;
   Simulator& simulator;
-  std::once_flag made = {};
+  std::mutex making = {};
   std::optional<Simulator> of_all_surfaces = std::nullopt;
 
   /// Made at first use.
   Simulator& surroundings() {
-    std::call_once(made, [&] { of_all_surfaces = surroundings_of(simulator); });
+    const std::lock_guard lock(making);
+    if (!of_all_surfaces) of_all_surfaces = surroundings_of(simulator);
     return *of_all_surfaces;
+  }
+  bool set_scene(const Scene& scene) {
+    if (!owned)
+      throw Error(Errc::invalid_argument,
+                  "the simulator of a site keeps the site's scene; make a Simulator of the scene, or another Site");
+    const bool kept = simulator.set_scene(scene);
+    of_all_surfaces.reset();
+    return kept;
   }
 };
 

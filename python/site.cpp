@@ -33,10 +33,12 @@ std::shared_ptr<GuardedSite> guarded(Site site) {
 
 Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const EvaluationOptions& options,
                     py::object progress) {
-  const auto lock = guarded.taken();
-  const std::vector<PlacedStation> placed = placed_on(guarded.site, stations);
+  std::vector<PlacedStation> given = stations_of(stations);
   LongCall call(std::move(progress));
-  return call.run([&] { return guarded.site.evaluate(placed, options, {}, call.progress()); });
+  return call.run([&] {
+    const auto lock = guarded.beside();
+    return guarded.site.evaluate(placed_on(guarded.site, std::move(given)), options, {}, call.progress());
+  });
 }
 
 void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, const Evaluation& evaluation,
@@ -55,16 +57,15 @@ void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, 
 
 }  // namespace
 
-std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
-  std::vector<PlacedStation> placed = stations_of(stations);
-  for (PlacedStation& station : placed) {
+std::vector<PlacedStation> placed_on(Site& site, std::vector<PlacedStation> stations) {
+  for (PlacedStation& station : stations) {
     if (station.ground != station.position || station.status == StationStatus::hole) continue;
     if (!active(station)) continue;  // it may be out of reach, as a hole is
     const StationSetup setup = station.setup;
     station = site.place_head(station.position).station;
     station.setup = setup;
   }
-  return placed;
+  return stations;
 }
 
 void add_sites(py::module_& m) {
@@ -78,7 +79,8 @@ void add_sites(py::module_& m) {
   py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(
       m, "Site",
       "Scene, scanner, ground, clash checks and simulator, with "
-      "all defaults of the program. `Site.plan` plans a\nsurvey of it.");
+      "all defaults of the program. `Site.plan` plans a\nsurvey of it. While a plan or another long call runs in one "
+      "thread, others get answers of `evaluate`, `nearest_place` and\n`place_heads`; calls that trace take turns.");
   const SettingTable<SiteOptions> of_a_scene = settings_of_a_scene();
   type.def(py::init([of_a_scene](const Scene& scene, std::vector<Scanner> scanners, std::string name,
                                  const py::kwargs& given) {
@@ -117,24 +119,25 @@ void add_sites(py::module_& m) {
       .def_property_readonly(
           "area",
           [](GuardedSite& self) -> const SearchArea& {
-            const auto lock = self.taken();
             const py::gil_scoped_release unlocked;
+            const auto lock = self.beside();
             return self.site.area();
           },
           py::return_value_policy::reference_internal, "Its SearchArea. Raises Error invalid_argument if it has none.")
       .def_property_readonly(
           "clash",
           [](GuardedSite& self) -> const ClashChecker& {
-            const auto lock = self.taken();
             const py::gil_scoped_release unlocked;
+            const auto lock = self.beside();
             return self.site.clash();
           },
           py::return_value_policy::reference_internal, "Its ClashChecker.")
       .def_property_readonly(
           "simulator",
           [](GuardedSite& self) -> Simulators& {
-            const auto lock = self.taken();
             const py::gil_scoped_release unlocked;
+            const auto lock = self.beside();
+            const std::lock_guard one(self.making);
             if (!self.simulators) self.simulators.emplace(self.site);
             return *self.simulators;
           },
@@ -171,8 +174,8 @@ void add_sites(py::module_& m) {
       .def(
           "nearest_place",
           [](GuardedSite& self, const Vec3& head, double reach_m) {
-            const auto lock = self.taken();
             const py::gil_scoped_release unlocked;
+            const auto lock = self.beside();
             return self.site.nearest_place(head, reach_m);
           },
           py::arg("head"), py::arg("reach_m") = nearest_place_reach_m,
@@ -190,9 +193,11 @@ void add_sites(py::module_& m) {
   m.def(
       "place_heads",
       [](GuardedSite& site, const py::object& stations) {
-        const auto lock = site.taken();
+        const Network network = network_of(stations);
+        const py::gil_scoped_release unlocked;
+        const auto lock = site.beside();
         std::vector<PlacedStation> placed;
-        for (const Station& station : network_of(stations)) {
+        for (const Station& station : network) {
           placed.push_back(site.site.place_head(station.position).station);
           placed.back().setup = station.setup;
         }

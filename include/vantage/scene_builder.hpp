@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Scenes from code: meshes from arrays, glTF from memory, and meshes that move.
+/// Scenes from code: meshes from arrays, glTF from memory, and meshes that move, in any scene.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/scene.hpp"
@@ -45,7 +46,7 @@ struct SceneMesh {
 /// build; `rebuilt_all` says whether it made all of them. A full build is needed if roles change, search meshes change,
 /// or the bounds need another local origin; also if, near the changed mesh, triangles are dropped, repeat each other or
 /// lie in one plane with those of another role.
-/// A `Simulator` serves one scene; make another for the next scene.
+/// `Simulator::set_scene` takes the next scene.
 class SceneBuilder {
  public:
   SceneBuilder();
@@ -69,6 +70,27 @@ class SceneBuilder {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What changes in a scene. Patterns are shell globs (`*`, `?`) on the names of `Scene::meshes()`, which are those of
+/// nodes.
+struct SceneChange {
+  /// Patterns of meshes to move, with their new pose: from where they stand in the scene, rotated about the origin of
+  /// the survey frame, then moved. The first pattern that matches a mesh counts.
+  std::vector<std::pair<std::string, Pose>> move = {};
+  std::vector<std::string> remove = {};  ///< Patterns of meshes to leave out.
+  /// Meshes to add behind the others, but before those of glass. `Role` must be `surveyed`, `blocking` or empty:
+  /// surveyed.
+  std::vector<SceneMesh> add = {};
+};
+
+/// Returns a scene with some of its meshes changed. Any scene will do, a loaded one too, with its normals, colours,
+/// glass and rooms. The search area stays, and so does the local origin; meshes that nodes share are stored where they
+/// stand. Triangles without area are left out. Others are taken as they are: what lies in one plane with triangles of
+/// another role is not cut, and does not hide these for certain. Positions are rounded to float each time, so change
+/// the first scene again rather than the last. Throws Error: invalid_argument (a pattern that matches nothing, a pose
+/// or an added mesh with a value out of range, a mesh that goes beyond 1000 km), malformed_file (nothing is surveyed
+/// then), out_of_memory.
+Scene with_changes(const Scene& scene, const SceneChange& change);
 
 /// Loads a scene from the bytes of a .glb or .gltf file, as `Scene::load` does. Data URIs are read, other files are
 /// not. Messages begin with `name`. Throws Error as `Scene::load`, and malformed_file if it refers to another file.

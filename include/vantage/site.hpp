@@ -95,8 +95,10 @@ struct SiteChoice {
   std::string why;
 };
 
-/// Owns scene, scanners, ground, clash checks and simulator, each made once. Moved, not copied. Only one call at a
-/// time.
+/// Owns scene, scanners, ground, clash checks and simulator, each made once. Moved, not copied. Several threads may
+/// call it at once, while a plan of it runs too: calls that trace take turns, each waiting for what the other traces at
+/// the moment. `place_of`, `detect_every_echo`, `share`, moving and destroying must run alone, and so must
+/// `survey_problem` and the like, which call them.
 class Site {
  public:
   /// Reads the scene and chooses what the options leave open. Throws Error as `Scene::load`, and invalid_argument for a

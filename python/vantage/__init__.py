@@ -8,5 +8,6 @@ tour.
 
 from ._core import *
 from ._core import __version__
+from . import _notebook as _
 
 __all__ = [name for name in dir() if not name.startswith("_")] + ["__version__"]

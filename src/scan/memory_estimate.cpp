@@ -269,8 +269,23 @@ MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size
   return {.voxels = memory.voxels, .bytes = memory.bytes};
 }
 
-void require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config) {
-  if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return;  // the grid's builder rejects it
+std::uint64_t bytes_of_meshes(const SceneData& scene, std::span<const MeshRange> meshes, double voxel_size_m) {
+  double triangles = 0, voxels = 0;
+  for (const MeshRange& mesh : meshes) {
+    triangles += mesh.triangle_count;
+    for (std::uint32_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t) {
+      const auto [a, b, c] = corners_of(scene, t);
+      const glm::dvec3 normal = cross(b - a, c - a), edge = abs(b - a) + abs(c - a);  // a sliver is as long as it is
+      voxels += 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z)) / (voxel_size_m * voxel_size_m) +
+                (edge.x + edge.y + edge.z) / voxel_size_m + 1;
+    }
+  }
+  return whole(triangles * (kTriangle + kTree) +
+               voxels * (kVoxel + kMaskWord * static_cast<double>(mask_words(mask_bits)) + kBrickBytes));
+}
+
+SimulatorMemory require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config) {
+  if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return {};  // the grid's builder rejects it
   const std::vector<ChosenDevice> devices = devices_of(config);
   const std::uint64_t given = config.max_memory_bytes;
   const std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
@@ -282,7 +297,7 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
     return wanted.bytes <= host && wanted.device_bytes <= device;
   };
   const SimulatorMemory wanted = estimate(config.user_size_m, devices);
-  if (fits(wanted)) return;
+  if (fits(wanted)) return wanted;
   const bool of_host = wanted.bytes > host;
   std::string what = "this takes about " + bytes_text(of_host ? wanted.bytes : wanted.device_bytes) + " of " +
                      (of_host ? "" : "the device's ") + "memory, for " + number(scene.data().triangle_count()) +

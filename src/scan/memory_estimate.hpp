@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "scene/scene_data.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage {
@@ -20,7 +21,10 @@ SimulatorMemory simulator_memory(const Scene& scene, std::span<const Scanner> sc
 
 // Throws Error out_of_memory, with the numbers and the user size that would fit, if the estimate exceeds
 // `config.max_memory_bytes`. Without such a limit, it may take half of the host's free memory and all free memory of a
-// device.
-void require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config);
+// device. Returns the estimate.
+SimulatorMemory require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config);
+
+// Upper bound on what some meshes take beside the rest of a scene, on the CPU engine.
+std::uint64_t bytes_of_meshes(const SceneData& scene, std::span<const MeshRange> meshes, double voxel_size_m);
 
 }  // namespace vantage

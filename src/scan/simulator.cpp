@@ -15,6 +15,7 @@
 
 #include "core/add_saturating.hpp"
 #include "core/first_numbers.hpp"
+#include "core/free_memory.hpp"
 #include "core/lru_cache.hpp"
 #include "core/parallel.hpp"
 #include "core/parse.hpp"
@@ -32,6 +33,7 @@
 #include "scan/sides_of.hpp"
 #include "scan/voxel_sample.hpp"
 #include "scan/wide_beam.hpp"
+#include "scene/scene_difference.hpp"
 #include "trace/field_counts.hpp"
 #include "trace/one_sided.hpp"
 #include "trace/passes.hpp"
@@ -86,14 +88,18 @@ std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& c
   throw Error(Errc::invalid_argument, what.str());
 }
 
+// Makes the voxels of a user size, without point weights. None if stopped.
+using MakeGrid = std::function<std::optional<VoxelGrid>(double user_size_m)>;
+
 // Null if stopped.
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
-                                            std::span<const double> spacings_m, const Progress& progress) {
+                                            std::span<const double> spacings_m, const MakeGrid& make,
+                                            const Progress& progress) {
   check_number(config.point_spacing_m, "the point spacing in metres", measurable);
   // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a size that works.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
-  auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
+  auto grid = make(too_small ? finest : config.user_size_m);
   if (!grid) return nullptr;
   if (too_small || grid->voxel_size() < finest) refuse_goal_density(*grid, config, finest);
   auto weights_of_points = point_weights(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
@@ -158,6 +164,7 @@ class KnownPatches {
     if (voxels.empty() || !std::ranges::equal(voxels, voxels_)) return std::nullopt;
     return patches_;
   }
+  void forget() { voxels_.clear(), patches_.clear(); }
   void keep(std::span<const std::uint32_t> voxels, const std::vector<VoxelPatch>& patches) {
     constexpr std::size_t kMost = 1 << 17;  // 11 MB
     if (voxels.size() > kMost) return;
@@ -183,44 +190,119 @@ struct Simulator::Impl {
     if (config.max_incidence)
       check_number(whole_degrees(*config.max_incidence), "the largest incidence in degrees",
                    {.low = 0, .high = 90, .low_included = false});
-    require_memory(scene, scanners, config);
+    needed_bytes = require_memory(scene, scanners, config).bytes;
     const std::vector<double> spacings = spacings_of(data(), config);
-    grid = build_grid(data(), config, spacings, progress);
+    grid = build_grid(
+        data(), config, spacings, [&](double user_size_m) { return VoxelGrid::build(data(), user_size_m, progress); },
+        progress);
     if (!grid) return;
-    const double wide = grid->voxel_size() / finest_spacing(data(), spacings);
-    goal = wide * wide;
-    const bool some_echo_is_lost =
-        std::ranges::any_of(scanners, [](const Scanner& scanner) { return scanner.detection_range_m > 0; });
-    for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner, some_echo_is_lost));
+    goal = goal_of(*grid, data(), spacings);
+    traced = trace_scanners(data());
     registered = scanners;
-    // Shares ownership of the scene's storage for as long as the engine needs it.
-    const std::shared_ptr<const SceneData> shared_scene = share_scene();
-    const TraceScene shared{.scene = shared_scene,
-                            .grid = grid,
-                            .scanners = traced,
-                            .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                            .validation = config.validation,
-                            .sample_triangles = std::make_shared<SampleTriangles>(shared_scene, grid)};
-    surfaces.emplace(shared_scene, grid, shared.sample_triangles);
-    tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
-                                    : make_tracer(config.devices, shared, config.warn);
+    const TraceScene shared = trace_scene(share(scene), grid, traced);
+    surfaces.emplace(shared.scene, grid, shared.sample_triangles);
+    tracer = make_own_tracer(shared);
     if (config.shared) tracer = config.shared->make(std::move(tracer), shared, scene.fingerprint());
     tracer->set_goal_density(goal);
   }
 
-  TraceScanner trace_scanner(const Scanner& scanner, bool some_echo_is_lost) const {
+  // As Simulator::set_scene().
+  bool set_scene(const Scene& later) {
+    if (planes)
+      throw Error(Errc::invalid_argument,
+                  "a simulator of surroundings takes no other scene; make one of the simulator that has taken it");
+    if (config.shared)
+      throw Error(Errc::invalid_argument,
+                  "a simulator that works over other processes takes no other scene; make another simulator");
+    const SceneData& data_then = later.data();
+    const std::vector<double> spacings = spacings_of(data_then, config);
+    const std::optional<SceneDifference> differs = difference(data(), data_then);
+    bool kept = differs.has_value();
+    // Few changed meshes are added to the estimate; otherwise, or if the sum does not fit, all are looked at.
+    std::uint64_t needed_then = differs ? needed_bytes + bytes_of_new(data_then, *differs) : 0;
+    if (!differs || !config.devices.empty() || tracer->info().engine != Engine::embree ||
+        needed_then > memory_limit(config.max_memory_bytes))
+      needed_then = require_memory(later, scanners, config).bytes;
+    const std::shared_ptr<const VoxelGrid> grid_then =
+        build_grid(data_then, config, spacings,
+                   [&](double user_size_m) -> std::optional<VoxelGrid> {
+                     // The grid before was made for this user size, unless it was refused.
+                     if (differs && user_size_m == config.user_size_m) {
+                       if (auto changed = grid->changed(data(), data_then, *differs, user_size_m)) return changed;
+                     }
+                     kept = false;
+                     needed_then = require_memory(later, scanners, config).bytes;
+                     return VoxelGrid::build(data_then, user_size_m, {});
+                   },
+                   {});
+    const double goal_then = goal_of(*grid_then, data_then, spacings);
+    std::vector<TraceScanner> traced_then = trace_scanners(data_then);
+    const TraceScene shared = trace_scene(share(later), grid_then, traced_then);
+    SurfaceFinder surfaces_then(shared.scene, grid_then, shared.sample_triangles);
+    std::unique_ptr<Tracer> tracer_then;
+    if (!differs || !tracer->take(shared, *differs)) {
+      kept = false;
+      tracer_then = make_own_tracer(shared);
+    }
+    // No error from here on.
+    if (tracer_then) tracer = std::move(tracer_then);
+    tracer->set_goal_density(goal_then);
+    surfaces.emplace(std::move(surfaces_then));
+    scene = later, grid = grid_then, goal = goal_then, traced = std::move(traced_then), needed_bytes = needed_then;
+    samples = {}, patches = {}, voxel_meshes = {};
+    known_patches.forget();
+    mirrors.reset(), wide_beam.reset();
+    return kept;
+  }
+
+  std::uint64_t bytes_of_new(const SceneData& later, const SceneDifference& differs) const {
+    std::vector<MeshRange> meshes;
+    for (std::size_t m = 0; m < later.ranges.size(); ++m)
+      if (differs.mesh_before[m] == SceneDifference::kNew) meshes.push_back(later.ranges[m]);
+    return bytes_of_meshes(later, meshes, grid->voxel_size());
+  }
+  static double goal_of(const VoxelGrid& grid, const SceneData& data, std::span<const double> spacings) {
+    const double wide = grid.voxel_size() / finest_spacing(data, spacings);
+    return wide * wide;
+  }
+  std::vector<TraceScanner> trace_scanners(const SceneData& data) const {
+    const bool some_echo_is_lost =
+        std::ranges::any_of(scanners, [](const Scanner& scanner) { return scanner.detection_range_m > 0; });
+    std::vector<TraceScanner> all;
+    for (const Scanner& scanner : scanners) all.push_back(trace_scanner(data, scanner, some_echo_is_lost));
+    return all;
+  }
+  TraceScene trace_scene(std::shared_ptr<const SceneData> shared_scene, std::shared_ptr<const VoxelGrid> shared_grid,
+                         std::vector<TraceScanner> of_scanners) const {
+    auto triangles = std::make_shared<SampleTriangles>(shared_scene, shared_grid);
+    return {.scene = std::move(shared_scene),
+            .grid = std::move(shared_grid),
+            .scanners = std::move(of_scanners),
+            .max_rays_per_dispatch = config.max_rays_per_dispatch,
+            .validation = config.validation,
+            .sample_triangles = std::move(triangles)};
+  }
+  // On this process's devices.
+  std::unique_ptr<Tracer> make_own_tracer(const TraceScene& shared) const {
+    return config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
+                                  : make_tracer(config.devices, shared, config.warn);
+  }
+
+  TraceScanner trace_scanner(const SceneData& data, const Scanner& scanner, bool some_echo_is_lost) const {
     const auto noise =
         config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
     return {.pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
             .noise = std::make_shared<const NoiseModel>(noise),
-            .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config, some_echo_is_lost))};
+            .limits = std::make_shared<const LimitModel>(make_limit_model(data, scanner, config, some_echo_is_lost))};
   }
 
   // Either all scanners have point limits or none.
   bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }
-  std::shared_ptr<const SceneData> share_scene() const {
+  std::shared_ptr<const SceneData> share_scene() const { return share(scene); }
+  // Shares ownership of the scene's storage.
+  static std::shared_ptr<const SceneData> share(const Scene& scene) {
     const auto kept = std::make_shared<const Scene>(scene);
     return {kept, &kept->data()};
   }
@@ -452,6 +534,7 @@ struct Simulator::Impl {
   SimulatorConfig config;
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
+  std::uint64_t needed_bytes = 0;    // upper bound on memory
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
   std::optional<SurfaceFinder> surfaces;
@@ -497,6 +580,10 @@ std::optional<Simulator> Simulator::build(const Scene& scene, std::span<const Sc
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;
+
+bool Simulator::set_scene(const Scene& scene) {
+  return impl_->alone([&] { return impl_->set_scene(scene); });
+}
 
 Work Simulator::work() const {
   Work work = impl_->done;

@@ -7,6 +7,7 @@
 
 #include "core/glm.hpp"
 #include "scene/raw_scene.hpp"
+#include "scene/scene_mesh.hpp"
 #include "scene/splice_mesh.hpp"
 #include "vantage/error.hpp"
 
@@ -17,6 +18,14 @@ constexpr std::uint32_t kMostWeight = 255;  // a byte per voxel
 constexpr std::size_t kMostSpliced = 8;     // with more changed meshes, everything is built
 
 Error refused(const std::string& what) { return Error(Errc::invalid_argument, what); }
+
+Box bounds_of(const std::vector<glm::dvec3>& points) {
+  Box box;
+  for (const glm::dvec3& p : points) box.extend(to_vec3(p));
+  return box;
+}
+
+}  // namespace
 
 void check(const Pose& pose, const std::string& who) {
   const auto& q = pose.rotation;
@@ -48,7 +57,6 @@ void check(const SceneMesh& mesh, std::size_t number) {
   check(mesh.pose, who);
 }
 
-// Removes positions that no triangle uses; the others keep their order.
 void compact(SceneMesh& mesh) {
   std::vector<std::uint32_t> place(mesh.positions.size(), 0);
   for (const auto& t : mesh.triangles)
@@ -61,10 +69,14 @@ void compact(SceneMesh& mesh) {
     for (std::uint32_t& v : t) v = place[v];
 }
 
-std::vector<glm::dvec3> placed(const SceneMesh& mesh) {
-  const auto& q = mesh.pose.rotation;
+glm::dmat3 turn_of(const Pose& pose) {
+  const auto& q = pose.rotation;
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q[3] / length, q[0] / length, q[1] / length, q[2] / length));
+  return glm::mat3_cast(glm::dquat(q[3] / length, q[0] / length, q[1] / length, q[2] / length));
+}
+
+std::vector<glm::dvec3> placed(const SceneMesh& mesh) {
+  const glm::dmat3 turn = turn_of(mesh.pose);
   const glm::dvec3 shift = to_glm(mesh.pose.translation);
   std::vector<glm::dvec3> points;
   points.reserve(mesh.positions.size());
@@ -72,13 +84,23 @@ std::vector<glm::dvec3> placed(const SceneMesh& mesh) {
   return points;
 }
 
-Box bounds_of(const std::vector<glm::dvec3>& points) {
-  Box box;
-  for (const glm::dvec3& p : points) box.extend(to_vec3(p));
-  return box;
+MeshInfo info_of(const SceneMesh& mesh, Role role) {
+  return {.name = mesh.name,
+          .role = role,
+          .diffuse = mesh.diffuse,
+          .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()),
+          .weight = mesh.weight,
+          .door = mesh.door,
+          .station_area = mesh.station_area,
+          .detail_m = mesh.detail_m,
+          .accuracy_m = mesh.accuracy_m};
 }
 
-}  // namespace
+Material material_of(const SceneMesh& mesh) {
+  Material out;
+  out.base_colour = mesh.colour;
+  return out;
+}
 
 struct SceneBuilder::Impl {
   std::vector<SceneMesh> meshes;
@@ -105,27 +127,10 @@ struct SceneBuilder::Impl {
     return out;
   }
   static bool in_scene(Role role) { return role == Role::surveyed || role == Role::blocking; }
-  static MeshInfo info(const SceneMesh& mesh, Role role) {
-    return {.name = mesh.name,
-            .role = role,
-            .diffuse = mesh.diffuse,
-            .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()),
-            .weight = mesh.weight,
-            .door = mesh.door,
-            .station_area = mesh.station_area,
-            .detail_m = mesh.detail_m,
-            .accuracy_m = mesh.accuracy_m};
-  }
-  static Material material(const SceneMesh& mesh) {
-    Material out;
-    out.base_colour = mesh.colour;
-    return out;
-  }
-
   std::shared_ptr<const SceneData> from_everything(const std::vector<Role>& roles) {
     RawScene raw;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-      raw.materials.push_back(material(meshes[m]));  // as in a file, used or not
+      raw.materials.push_back(material_of(meshes[m]));  // as in a file, used or not
       if (roles[m] == Role::ignore) continue;
       const bool search = roles[m] == Role::search;
       auto& positions = search ? raw.search_positions : raw.positions;
@@ -137,7 +142,7 @@ struct SceneBuilder::Impl {
       if (!search) {
         raw.ranges.push_back({static_cast<std::uint32_t>(triangles.size()),
                               static_cast<std::uint32_t>(meshes[m].triangles.size()), static_cast<std::uint32_t>(m)});
-        raw.meshes.push_back(info(meshes[m], roles[m]));
+        raw.meshes.push_back(info_of(meshes[m], roles[m]));
       }
       positions.insert(positions.end(), points.begin(), points.end());
       for (const auto& t : meshes[m].triangles) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -166,8 +171,8 @@ struct SceneBuilder::Impl {
       data = splice_mesh(*data, static_cast<std::size_t>(before),
                          {placed(meshes[m]),
                           {meshes[m].triangles.begin(), meshes[m].triangles.end()},
-                          info(meshes[m], roles[m]),
-                          material(meshes[m])},
+                          info_of(meshes[m], roles[m]),
+                          material_of(meshes[m])},
                          bounds);
       if (!data) return nullptr;
     }

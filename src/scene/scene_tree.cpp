@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "scene/local_from_mesh.hpp"
 
@@ -34,6 +35,51 @@ SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t fir
   }
   rtcCommitScene(tree_.get());
   embree::check(device, "building the tree " + what + " over " + std::to_string(end - first) + " triangles");
+}
+
+SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::span<const KeptRun> runs, const Filters& filters,
+                     const std::string& what)
+    : scene_(scene), first_(0), tree_(embree::new_scene(device)) {
+  // One geometry with the corners of these triangles alone.
+  std::uint32_t low = 0xFFFFFFFFu, high = 0, count = 0;
+  for (const KeptRun& run : runs) {
+    const auto [first, last] = corner_range(std::span(scene.triangles).subspan(run.first, run.count));
+    low = std::min(low, first), high = std::max(high, last);
+    numbers_.push_back({count, run.count, run.first});
+    count += run.count;
+  }
+  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  std::vector<std::uint32_t> place(std::size_t{high} - low + 1, 0);
+  for (const KeptRun& run : runs)
+    for (const Triangle& t : std::span(scene.triangles).subspan(run.first, run.count))
+      for (const std::uint32_t v : t) place[v - low] = 1;
+  std::uint32_t corners = 0;
+  for (std::uint32_t& p : place) p = p ? corners++ : kInNone;
+  auto* const vertices = static_cast<Float3*>(
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), corners));
+  auto* triangle = static_cast<Triangle*>(
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), count));
+  embree::check(device, "taking the triangles of meshes that changed");
+  for (std::size_t v = 0; v < place.size(); ++v)
+    if (place[v] != kInNone) vertices[place[v]] = scene.positions[v + low];
+  for (const KeptRun& run : runs)
+    for (const Triangle& t : std::span(scene.triangles).subspan(run.first, run.count))
+      *triangle++ = {place[t[0] - low], place[t[1] - low], place[t[2] - low]};
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), filters.intersect);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), filters.occluded);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(tree_.get(), geometry.get(), 0);
+  rtcCommitScene(tree_.get());
+  embree::check(device, "building the tree " + what + " over " + std::to_string(count) + " triangles");
+}
+
+void SceneTree::renumber(std::vector<KeptRun> numbers) noexcept { numbers_ = std::move(numbers); }
+
+std::uint32_t SceneTree::number_by_runs(unsigned primitive) const {
+  const auto after = std::ranges::upper_bound(numbers_, primitive, {}, &KeptRun::first);
+  if (after == numbers_.begin()) return kInNone;
+  const KeptRun& run = *(after - 1);
+  return primitive - run.first < run.count ? run.other + (primitive - run.first) : kInNone;
 }
 
 std::uint32_t SceneTree::number_of_own(std::uint32_t primitive) const {

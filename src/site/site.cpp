@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/site.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "core/read_json.hpp"
@@ -168,6 +171,14 @@ struct Site::Impl {
   bool no_ground = false;  // found out once
   std::optional<ClashChecker> clash;
   std::optional<Simulator> simulator, surroundings;
+  std::recursive_mutex making;
+  // Makes a part, or waits until another thread has made it; one part may make another. The isolation keeps oneTBB from
+  // giving this thread a task meanwhile that asks for the part.
+  template <class Make>
+  auto alone(const Make& make) {
+    const std::lock_guard lock(making);
+    return tbb::this_task_arena::isolate(make);
+  }
 
   explicit Impl(Scene s) : scene(std::move(s)) {}
 
@@ -265,21 +276,25 @@ struct Site::Impl {
   }
 
   const SearchArea& search_area() {
-    if (!area) {
-      area = SearchArea::build(scene, walkable);
-      if (options.log) log_area(*area, scene, options.log);
-    }
-    return *area;
+    return *alone([&] {
+      if (!area) {
+        area = SearchArea::build(scene, walkable);
+        if (options.log) log_area(*area, scene, options.log);
+      }
+      return &*area;
+    });
   }
 
   bool has_area() {
-    if (scene.has_search_area() || area) return true;
-    try {
-      if (!no_ground) search_area();
-    } catch (const NoGround&) {
-      no_ground = true;
-    }
-    return !no_ground;
+    return alone([&] {
+      if (scene.has_search_area() || area) return true;
+      try {
+        if (!no_ground) search_area();
+      } catch (const NoGround&) {
+        no_ground = true;
+      }
+      return !no_ground;
+    });
   }
 
   // Raises the weight of everything except the ground, so that ground has a third of coverage at most.
@@ -388,8 +403,10 @@ Settings Site::settings() const {
 bool Site::has_area() { return impl_->has_area(); }
 const SearchArea& Site::area() { return impl_->search_area(); }
 const ClashChecker& Site::clash() {
-  if (!impl_->clash) impl_->clash.emplace(impl_->scene, impl_->security);
-  return *impl_->clash;
+  return *impl_->alone([&] {
+    if (!impl_->clash) impl_->clash.emplace(impl_->scene, impl_->security);
+    return &*impl_->clash;
+  });
 }
 
 void Site::share(std::shared_ptr<TracerMaker> others) {
@@ -398,22 +415,27 @@ void Site::share(std::shared_ptr<TracerMaker> others) {
   impl_->config.shared = std::move(others);
 }
 bool Site::build(const Progress& progress) {
-  if (!impl_->simulator) impl_->simulator = Simulator::build(impl_->scene, impl_->scanners, impl_->config, progress);
-  return impl_->simulator.has_value();
+  return impl_->alone([&] {
+    if (!impl_->simulator) impl_->simulator = Simulator::build(impl_->scene, impl_->scanners, impl_->config, progress);
+    return impl_->simulator.has_value();
+  });
 }
 Simulator& Site::simulator() {
   build();
   return *impl_->simulator;
 }
 Work Site::work() const {
+  const std::lock_guard lock(impl_->making);
   Work sum;
   for (const std::optional<Simulator>* made : {&impl_->simulator, &impl_->surroundings})
     if (*made) sum = sum + (*made)->work();
   return sum;
 }
 Simulator& Site::surroundings() {
-  if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
-  return *impl_->surroundings;
+  return *impl_->alone([&] {
+    if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
+    return &*impl_->surroundings;
+  });
 }
 
 PlacedHead Site::place_head(const Vec3& head, std::optional<Uv> uv) {

@@ -76,6 +76,7 @@ struct TraceScanner {
 };
 
 struct RegistrationJob;  // trace/registration_sums.hpp
+struct SceneDifference;  // scene/scene_difference.hpp
 
 // How the CPU engine finds the hits of whole scans. Results are the same.
 enum class WholeScans : std::uint8_t {
@@ -192,6 +193,9 @@ class Tracer {
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                                    const Progress& progress) = 0;
+  // Takes a changed scene in place of its own, remaking what differs. Returns false, and changes nothing, if the engine
+  // cannot, or if a new one is as fast. An error changes nothing either.
+  virtual bool take(const TraceScene&, const SceneDifference&) { return false; }
   // Bytes copied to the device's own memory since it was set up.
   virtual std::uint64_t uploaded_bytes() const { return 0; }
   // Goal density: a voxel with count >= goal is saturated. Set once after construction.

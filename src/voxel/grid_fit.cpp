@@ -23,12 +23,6 @@ constexpr double margin_share = 0.001;  // on either side: the cube's side is 1.
 constexpr double max_tilt =
     1.0 / 128;  // off the axis; thickness is the criterion, this only excludes small facets of curves
 
-// A surveyed triangle nearly perpendicular to an axis: its extent along that axis, relative to the grid's min.
-struct Slab {
-  double low, high;
-  std::uint64_t weight;  // area, as an integer so that sums do not depend on the order
-};
-
 // Slabs at the same heights weigh together.
 void merge(std::vector<Slab>& slabs) {
   std::ranges::sort(slabs, {}, [](const Slab& s) { return std::pair(s.low, s.high); });
@@ -41,10 +35,11 @@ void merge(std::vector<Slab>& slabs) {
   slabs.resize(out);
 }
 
-// Those of each axis.
-using AxisSlabs = std::array<std::vector<Slab>, 3>;
-AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, const std::array<float, 3>& min,
-                   double thickest, double area_unit) {
+constexpr std::size_t kMostSlabs = std::size_t{1} << 20;  // that are kept, 24 MB
+
+AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, const GridCube& cube) {
+  const std::array<float, 3>& min = cube.fit.min;
+  const double thickest = 4 * cube.clearance, area_unit = cube.extent * cube.extent * 0x1p-30;
   constexpr std::size_t least_merged = std::size_t{1} << 18;
   struct Slabs {
     std::vector<Slab> slabs;
@@ -163,21 +158,14 @@ double face_clearance(double reach_m, double voxel_size_m) {
   return std::min(std::max(16 * 0x1p-24 * reach_m, 1e-3 * voxel_size_m), voxel_size_m / 8);
 }
 
-GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m) {
-  if (!(user_size_m > 0) || !std::isfinite(user_size_m)) {
-    std::ostringstream what;
-    what << "the user size of voxels must be positive and finite, in metres; it is " << user_size_m;
-    throw Error(Errc::invalid_argument, what.str());
-  }
-  GridFit fit;
-  Box bounds;
-  for (const MeshRange& mesh : surveyed) bounds = united(bounds, bounds_of(scene, mesh));
-  if (bounds.empty()) {
-    fit.inverse_size = static_cast<float>(1 / user_size_m);
-    return fit;
-  }
-  const std::array<double, 3> low{bounds.min.x, bounds.min.y, bounds.min.z},
-      high{bounds.max.x, bounds.max.y, bounds.max.z};
+namespace {
+
+// REQUIRES: bounds that are not empty.
+GridCube cube_around(const Box& bounds, const Box& local_bounds, double user_size_m) {
+  GridCube cube;
+  GridFit& fit = cube.fit;
+  cube.low = {bounds.min.x, bounds.min.y, bounds.min.z}, cube.high = {bounds.max.x, bounds.max.y, bounds.max.z};
+  const auto &low = cube.low, &high = cube.high;
   const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   double reach = 0;
   for (int axis = 0; axis < 3; ++axis) reach = std::max({reach, std::abs(low[axis]), std::abs(high[axis])});
@@ -198,20 +186,27 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
   fit.inverse_size = static_cast<float>(1 / size);
   if (1.0 / fit.inverse_size > user_size_m) fit.inverse_size = std::nextafter(fit.inverse_size, HUGE_VALF);
   const double voxel = 1.0 / fit.inverse_size;
-  const double cube = std::ldexp(voxel, fit.depth);
+  const double edge = std::ldexp(voxel, fit.depth);
 
-  if (!scene.local_bounds.empty())
-    for (const double c : {scene.local_bounds.min.x, scene.local_bounds.min.y, scene.local_bounds.min.z,
-                           scene.local_bounds.max.x, scene.local_bounds.max.y, scene.local_bounds.max.z})
+  if (!local_bounds.empty())
+    for (const double c : {local_bounds.min.x, local_bounds.min.y, local_bounds.min.z, local_bounds.max.x,
+                           local_bounds.max.y, local_bounds.max.z})
       reach = std::max(reach, std::abs(c));
-  const double clearance = face_clearance(std::max(reach, cube), voxel);
-  for (int axis = 0; axis < 3; ++axis) fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * cube);
-  const AxisSlabs slabs_along = slabs_of(scene, surveyed, fit.min, 4 * clearance, extent * extent * 0x1p-30);
+  cube.extent = extent, cube.margin = margin;
+  cube.clearance = face_clearance(std::max(reach, edge), voxel);
+  for (int axis = 0; axis < 3; ++axis) fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * edge);
+  return cube;
+}
+
+// The cube, moved off the planes.
+GridFit moved_off(const AxisSlabs& slabs_along, const GridCube& cube) {
+  GridFit fit = cube.fit;
+  const double voxel = 1.0 / fit.inverse_size, edge = std::ldexp(voxel, fit.depth), clearance = cube.clearance;
   for (int axis = 0; axis < 3; ++axis) {
     const double min = fit.min[axis];
     const std::vector<Slab>& slabs = slabs_along[axis];
     if (weight_near_faces(slabs, voxel, clearance) == 0) continue;
-    const double slack = std::min(low[axis] - min, min + cube - high[axis]) - 0.25 * margin;
+    const double slack = std::min(cube.low[axis] - min, min + edge - cube.high[axis]) - 0.25 * cube.margin;
     const double most = std::min(slack, voxel / 2);
     if (most <= 0) continue;
     const double shift = best_shift(slabs, voxel, 1.125 * clearance, most);
@@ -225,6 +220,85 @@ GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, do
       fit.min[axis] = moved;
   }
   return fit;
+}
+
+std::size_t count(const AxisSlabs& slabs) { return slabs[0].size() + slabs[1].size() + slabs[2].size(); }
+
+void check_user_size(double user_size_m) {
+  if (user_size_m > 0 && std::isfinite(user_size_m)) return;
+  std::ostringstream what;
+  what << "the user size of voxels must be positive and finite, in metres; it is " << user_size_m;
+  throw Error(Errc::invalid_argument, what.str());
+}
+
+}  // namespace
+
+GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m, FitBasis* basis) {
+  check_user_size(user_size_m);
+  std::vector<Box> bounds;
+  for (const MeshRange& mesh : surveyed) bounds.push_back(bounds_of(scene, mesh));
+  Box all;
+  for (const Box& box : bounds) all = united(all, box);
+  if (all.empty()) {
+    GridFit fit;
+    fit.inverse_size = static_cast<float>(1 / user_size_m);
+    return fit;
+  }
+  const GridCube cube = cube_around(all, scene.local_bounds, user_size_m);
+  AxisSlabs slabs = slabs_of(scene, surveyed, cube);
+  const GridFit fit = moved_off(slabs, cube);
+  if (basis) {
+    *basis = {.bounds = std::move(bounds), .cube = cube, .has_slabs = count(slabs) <= kMostSlabs, .slabs = {}};
+    if (basis->has_slabs) basis->slabs = std::move(slabs);
+    for (std::vector<Slab>& of_axis : basis->slabs) of_axis.shrink_to_fit();
+  }
+  return fit;
+}
+
+std::optional<GridFit> refit_grid(const FitBasis& before, const SceneData& scene_before, const SceneData& scene,
+                                  std::span<const MeshRange> surveyed, const SceneDifference& difference,
+                                  double user_size_m, FitBasis& basis) {
+  check_user_size(user_size_m);
+  if (!before.has_slabs) return std::nullopt;
+  // Numbers among surveyed meshes with triangles.
+  const auto is_surveyed = [](const SceneData& of, std::size_t m) {
+    return of.meshes[m].role == Role::surveyed && of.ranges[m].triangle_count > 0;
+  };
+  std::vector<std::size_t> number(scene_before.meshes.size());
+  for (std::size_t m = 0, next = 0; m < number.size(); ++m) number[m] = is_surveyed(scene_before, m) ? next++ : 0;
+  std::vector<MeshRange> is_new, gone;
+  basis.bounds.clear();
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!is_surveyed(scene, m)) continue;
+    const std::uint32_t same = difference.mesh_before[m];
+    if (same == SceneDifference::kNew) is_new.push_back(scene.ranges[m]);
+    basis.bounds.push_back(same == SceneDifference::kNew ? bounds_of(scene, scene.ranges[m])
+                                                         : before.bounds[number[same]]);
+  }
+  for (const std::uint32_t m : difference.gone)
+    if (is_surveyed(scene_before, m)) gone.push_back(scene_before.ranges[m]);
+  Box all;
+  for (const Box& box : basis.bounds) all = united(all, box);
+  if (all.empty() || surveyed.size() != basis.bounds.size()) return std::nullopt;
+  basis.cube = cube_around(all, scene.local_bounds, user_size_m);
+  if (!(basis.cube == before.cube)) return std::nullopt;
+  const AxisSlabs added = slabs_of(scene, is_new, basis.cube), taken = slabs_of(scene_before, gone, basis.cube);
+  basis.slabs = before.slabs;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<Slab>& slabs = basis.slabs[axis];
+    if (added[axis].empty() && taken[axis].empty()) continue;
+    slabs.insert(slabs.end(), added[axis].begin(), added[axis].end());
+    merge(slabs);
+    for (const Slab& slab : taken[axis]) {  // each is there: it was counted before
+      const auto at = std::ranges::lower_bound(slabs, std::pair(slab.low, slab.high), {},
+                                               [](const Slab& s) { return std::pair(s.low, s.high); });
+      at->weight -= slab.weight;
+    }
+    std::erase_if(slabs, [](const Slab& s) { return s.weight == 0; });
+  }
+  basis.has_slabs = count(basis.slabs) <= kMostSlabs;
+  if (!basis.has_slabs) basis.slabs = {};
+  return basis.has_slabs ? std::optional(moved_off(basis.slabs, basis.cube)) : std::nullopt;
 }
 
 }  // namespace vantage

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "scene/scene_data.hpp"
+#include "scene/scene_difference.hpp"
 
 namespace vantage {
 
@@ -13,6 +17,32 @@ struct GridFit {
   int depth = 0;
   float inverse_size = 1;  // the voxel size is its exact reciprocal
   std::array<float, 3> min{};
+};
+
+// A surveyed triangle nearly perpendicular to an axis: its extent along that axis, relative to the grid's min.
+struct Slab {
+  double low, high;
+  std::uint64_t weight;  // area, as an integer so that sums do not depend on the order
+};
+// Those of each axis, ascending; those at the same heights weigh together.
+using AxisSlabs = std::array<std::vector<Slab>, 3>;
+
+// The cube around the surveyed meshes before it is moved, and what decides how it moves.
+struct GridCube {
+  GridFit fit;
+  std::array<double, 3> low{}, high{};  // of the surveyed meshes
+  double extent = 0, margin = 0, clearance = 0;
+  friend bool operator==(const GridCube& a, const GridCube& b) {
+    return a.fit.depth == b.fit.depth && a.fit.inverse_size == b.fit.inverse_size && a.fit.min == b.fit.min &&
+           a.low == b.low && a.high == b.high && a.clearance == b.clearance;
+  }
+};
+
+struct FitBasis {
+  std::vector<Box> bounds;  // of each surveyed mesh with triangles
+  GridCube cube;
+  bool has_slabs = false;  // not if there are too many to keep
+  AxisSlabs slabs;
 };
 
 // The cube of `VoxelGrid::build`.
@@ -25,7 +55,16 @@ struct GridFit {
 // A plane on a face would mark the voxels on both sides of it, while rounding scatters its points between them. The
 // cube is therefore moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
 // `face_clearance` of a face. If there are too many planes for that, their area within it is minimised.
-GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m);
+//
+// `basis`: receives what the grid was fitted to, if given.
+GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m,
+                 FitBasis* basis = nullptr);
+
+// The same for a changed scene, from the basis of the scene before. Empty if the cube is another one before it is
+// moved, or if no basis was kept of that many planes. Both spans are the scenes' surveyed_ranges().
+std::optional<GridFit> refit_grid(const FitBasis& before, const SceneData& scene_before, const SceneData& scene,
+                                  std::span<const MeshRange> surveyed, const SceneDifference& difference,
+                                  double user_size_m, FitBasis& basis);
 
 // Distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's side, at least a
 // thousandth and at most an eighth of a voxel. A hit's position carries the roundings of t, t·d and o + t·d, its cell

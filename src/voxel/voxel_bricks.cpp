@@ -68,33 +68,19 @@ std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& tri
   return all;
 }
 
-// Sets the bits of the voxels that a triangle touches.
-class MarkVoxels {
- public:
-  explicit MarkVoxels(VoxelBricks& bricks) : bricks_(bricks) {}
-  void operator()(const TriangleCells::Cell& cell) {
-    constexpr int shift = static_cast<int>(brick_bits);
-    const std::array<std::uint32_t, 3> c{static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
-                                         static_cast<std::uint32_t>(cell[2])};
-    const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
-    if (b != at_) {
-      const std::uint32_t index = find_brick(bricks_.slots, b[0], b[1], b[2]);
-      // Rounding may mark a voxel 2^-50 beyond the triangle as touched, but not its brick.
-      brick_ = index == no_brick ? nullptr : &bricks_.bricks[index];
-      at_ = b;
-    }
-    if (!brick_) return;
-    const std::uint32_t bit = brick_bit(c[0], c[1], c[2]);
-    const std::atomic_ref<std::uint32_t> word(brick_->mask[bit / 32]);
-    const std::uint32_t flag = std::uint32_t{1} << (bit % 32);
-    if (!(word.load(std::memory_order_relaxed) & flag)) word.fetch_or(flag, std::memory_order_relaxed);
-  }
+}  // namespace
 
- private:
-  VoxelBricks& bricks_;
-  std::array<std::uint32_t, 3> at_{no_voxel, 0, 0};
-  VoxelBrick* brick_ = nullptr;
-};
+void number_bricks(VoxelBricks& marked) {
+  marked.voxels = 0;
+  for (VoxelBrick& brick : marked.bricks) {
+    brick.first = static_cast<std::uint32_t>(marked.voxels);
+    for (const std::uint32_t word : brick.mask) marked.voxels += static_cast<std::uint64_t>(std::popcount(word));
+    if (marked.voxels >= no_voxel)
+      throw Error(
+          Errc::invalid_argument,
+          "the surveyed meshes fill more than the 4294967294 voxels that can be numbered; use a larger user size");
+  }
+}
 
 std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks) {
   const std::size_t count = std::bit_ceil(std::max<std::size_t>(2 * bricks.size(), 2));
@@ -107,8 +93,6 @@ std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks) {
   }
   return slots;
 }
-
-}  // namespace
 
 std::array<std::array<double, 3>, 3> GridTransform::corners(const std::array<Float3, 3>& triangle) const {
   std::array<std::array<double, 3>, 3> result;
@@ -159,14 +143,7 @@ std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const M
     return std::nullopt;
 
   // A brick may be empty if rounding drops its every voxel; it stays, since indices skip it.
-  for (VoxelBrick& brick : result.bricks) {
-    brick.first = static_cast<std::uint32_t>(result.voxels);
-    for (const std::uint32_t word : brick.mask) result.voxels += static_cast<std::uint64_t>(std::popcount(word));
-    if (result.voxels >= no_voxel)
-      throw Error(
-          Errc::invalid_argument,
-          "the surveyed meshes fill more than the 4294967294 voxels that can be numbered; use a larger user size");
-  }
+  number_bricks(result);
   return result;
 }
 

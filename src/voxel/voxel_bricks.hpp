@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "scene/scene_data.hpp"
 #include "shared/voxel_types.h"
 #include "vantage/progress.hpp"
+#include "voxel/triangle_cells.hpp"
 
 namespace vantage {
 
@@ -39,8 +41,41 @@ struct VoxelBricks {
 std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const MeshRange> triangles,
                                        const GridTransform& grid, int depth, const Progress& progress = {});
 
+// Hash table over bricks.
+std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks);
+// Counts the voxels, and fills `first` of the bricks. Throws as mark_bricks().
+void number_bricks(VoxelBricks& marked);
+
 // Index of the brick with these brick coordinates, or no_brick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);
+
+// Sets the bits of the voxels that a triangle touches, in the bricks that there are. Several may work at once.
+class MarkVoxels {
+ public:
+  explicit MarkVoxels(VoxelBricks& bricks) : bricks_(bricks) {}
+  void operator()(const TriangleCells::Cell& cell) {
+    constexpr int shift = static_cast<int>(brick_bits);
+    const std::array<std::uint32_t, 3> c{static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
+                                         static_cast<std::uint32_t>(cell[2])};
+    const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
+    if (b != at_) {
+      const std::uint32_t index = find_brick(bricks_.slots, b[0], b[1], b[2]);
+      // Rounding may mark a voxel 2^-50 beyond the triangle as touched, but not its brick.
+      brick_ = index == no_brick ? nullptr : &bricks_.bricks[index];
+      at_ = b;
+    }
+    if (!brick_) return;
+    const std::uint32_t bit = brick_bit(c[0], c[1], c[2]);
+    const std::atomic_ref<std::uint32_t> word(brick_->mask[bit / 32]);
+    const std::uint32_t flag = std::uint32_t{1} << (bit % 32);
+    if (!(word.load(std::memory_order_relaxed) & flag)) word.fetch_or(flag, std::memory_order_relaxed);
+  }
+
+ private:
+  VoxelBricks& bricks_;
+  std::array<std::uint32_t, 3> at_{0xFFFFFFFFu, 0, 0};
+  VoxelBrick* brick_ = nullptr;
+};
 
 // Surveyed meshes.
 std::vector<MeshRange> surveyed_ranges(const SceneData& scene);

@@ -38,8 +38,10 @@ VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
 
 std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_size_m, const Progress& progress) {
   const std::vector<MeshRange> surveyed = surveyed_ranges(scene);
-  const GridFit fit = fit_grid(scene, surveyed, user_size_m);
+  auto basis = std::make_shared<FitBasis>();
+  const GridFit fit = fit_grid(scene, surveyed, user_size_m, basis.get());
   VoxelGrid grid;
+  grid.basis_ = std::move(basis);
   grid.depth_ = fit.depth;
   grid.inverse_size_ = fit.inverse_size;
   grid.voxel_size_ = 1.0 / fit.inverse_size;
@@ -47,16 +49,20 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
   std::optional<VoxelBricks> marked =
       mark_bricks(scene, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth, progress);
   if (!marked) return std::nullopt;
-  grid.size_ = marked->voxels;
-  grid.bricks_ = std::move(marked->bricks);
-  grid.slots_ = std::move(marked->slots);
-  grid.brick_at_ = bricks_at_steps(grid.bricks_, grid.size_);
+  grid.take(std::move(*marked));
   auto weights = voxel_weights(scene, grid, {.report = {}, .stop = progress.stop});
   if (!weights) return std::nullopt;
   grid.total_weight_ =
       weights->empty() ? grid.size_ : std::accumulate(weights->begin(), weights->end(), std::uint64_t{0});
   grid.demands_.weights = std::move(*weights);
   return grid;
+}
+
+void VoxelGrid::take(VoxelBricks&& marked) {
+  size_ = marked.voxels;
+  bricks_ = std::move(marked.bricks);
+  slots_ = std::move(marked.slots);
+  brick_at_ = bricks_at_steps(bricks_, size_);
 }
 
 VANTAGE_TARGET_CLONES

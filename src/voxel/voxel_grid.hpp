@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +17,10 @@
 #include "voxel/voxel_demands.hpp"
 
 namespace vantage {
+
+struct FitBasis;         // voxel/grid_fit.hpp
+struct VoxelBricks;      // voxel/voxel_bricks.hpp
+struct SceneDifference;  // scene/scene_difference.hpp
 
 inline constexpr std::uint32_t no_voxel = 0xFFFFFFFFu;
 inline constexpr int max_voxel_depth = 18;  // 2^18 cells per side; 54-bit Morton keys
@@ -32,6 +37,12 @@ class VoxelGrid {
   static VoxelGrid build(const SceneData& scene, double user_size_m);
   // The same, with progress; empty if stopped.
   static std::optional<VoxelGrid> build(const SceneData& scene, double user_size_m, const Progress& progress);
+
+  // The grid of a changed scene, as build() would make it, without point weights: voxels are sought only where meshes
+  // differ. Empty if that takes build(): the grid lies elsewhere, or meshes have several weights. REQUIRES: this grid
+  // is of scene `before`, built with this user size.
+  std::optional<VoxelGrid> changed(const SceneData& before, const SceneData& after, const SceneDifference& difference,
+                                   double user_size_m) const;
 
   int depth() const { return depth_; }
   double voxel_size() const { return voxel_size_; }
@@ -57,6 +68,8 @@ class VoxelGrid {
   }
 
  private:
+  void take(VoxelBricks&& marked);
+
   int depth_ = 0;
   double voxel_size_ = 0;
   float inverse_size_ = 0;
@@ -67,6 +80,7 @@ class VoxelGrid {
   std::vector<std::uint32_t> brick_at_;  // of every kStep-th voxel: where key() begins
   VoxelDemands demands_;
   std::uint64_t total_weight_ = 0;
+  std::shared_ptr<const FitBasis> basis_;  // what the grid was fitted to
 };
 
 // Conservative voxelization: all cells of the grid whose closed box a triangle of `triangles` (local frame) touches, as

@@ -28,10 +28,8 @@ std::string processor_name() {
 
 class EmbreeTracer final : public Tracer {
  public:
-  explicit EmbreeTracer(const TraceScene& scene) : info_(embree_engine_info()) {
-    const auto shared = std::make_shared<const EmbreeScene>(scene);
-    for (const TraceScanner& scanner : scene.scanners) scanners_.emplace_back(shared, scanner);
-  }
+  explicit EmbreeTracer(const TraceScene& scene)
+      : scene_(std::make_shared<EmbreeScene>(scene)), scanners_(rays_of(scene)), info_(embree_engine_info()) {}
 
   const EngineInfo& info() const override { return info_; }
 
@@ -64,7 +62,21 @@ class EmbreeTracer final : public Tracer {
     return sample_networks(scanners_, networks, station_counts, goal_density_, job, samples_, progress);
   }
 
+  bool take(const TraceScene& scene, const SceneDifference& difference) override {
+    if (!scene_->take(scene, difference)) return false;
+    scan_ = {}, field_ = {}, samples_ = {};
+    scanners_ = rays_of(scene);
+    return true;
+  }
+
  private:
+  std::vector<StationRays> rays_of(const TraceScene& scene) const {
+    std::vector<StationRays> rays;
+    for (const TraceScanner& scanner : scene.scanners) rays.emplace_back(scene_, scanner);
+    return rays;
+  }
+
+  std::shared_ptr<EmbreeScene> scene_;
   std::vector<StationRays> scanners_;
   EngineInfo info_;
   ChunkedScan scan_;
@@ -73,6 +85,28 @@ class EmbreeTracer final : public Tracer {
 };
 
 }  // namespace
+
+bool EmbreeScene::take(const TraceScene& traced, const SceneDifference& difference) {
+  if (scene->shares() || traced.scene->shares()) return false;
+  std::optional<RayCaster::Change> change = caster.prepare(traced.scene, difference);
+  if (!change) return false;
+  std::vector<std::uint32_t> neighbours = patches->neighbours_after(*traced.scene, difference);
+  BrickPrefixes later_prefixes(*traced.grid);
+  Surface later_surface(traced.scene, planes);  // which asks the planes for hits alone
+  auto later_triangles =
+      traced.sample_triangles ? traced.sample_triangles : std::make_shared<SampleTriangles>(traced.scene, traced.grid);
+  std::unique_ptr<const GlassPanes> later_glass =
+      weakens_through_glass(traced) ? std::make_unique<const GlassPanes>(traced.scene, planes) : nullptr;
+  planes->take(traced.scene, difference);
+  caster.take(std::move(*change));
+  surface = std::move(later_surface);
+  prefixes = std::move(later_prefixes);
+  patches.emplace(*traced.scene, std::move(neighbours));
+  glass = std::move(later_glass);
+  sample_triangles = std::move(later_triangles);
+  scene = traced.scene, grid = traced.grid;
+  return true;
+}
 
 EngineInfo embree_engine_info() {
   EngineInfo info;

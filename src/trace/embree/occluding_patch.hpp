@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "scene/scene_difference.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -16,7 +18,11 @@ namespace vantage {
 class OccludingPatches {
  public:
   // Borrows the scene. Neighbours are found when they are first asked for.
-  explicit OccludingPatches(const SceneData& scene) : scene_(scene) {}
+  explicit OccludingPatches(const SceneData& scene, std::vector<std::uint32_t> neighbours = {})
+      : scene_(scene), neighbours_(std::move(neighbours)) {}
+  // Neighbours in a changed scene: those of triangles that stay, and those within each run of new ones. Empty if they
+  // were not asked for yet. A neighbour across an edge that others meet at too is as good.
+  std::vector<std::uint32_t> neighbours_after(const SceneData& scene, const SceneDifference& difference) const;
 
   // True if a ray passes within `radius` of a point, as seen from the head.
   using AnyRayNear = std::function<bool(const Vec3& point, double radius)>;

@@ -13,12 +13,35 @@ namespace vantage {
 
 Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)), shared_(scene_->shares()) {
   if (shared_) return;
-  const SceneData& s = *scene_;
-  planes_.resize(s.triangles.size());
-  balls_.resize(s.triangles.size());
-  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, s.triangle_count(), 4096), [&](const auto& range) {
+  planes_.resize(scene_->triangles.size());
+  balls_.resize(scene_->triangles.size());
+  fill(0, scene_->triangle_count());
+}
+
+void Planes::take(std::shared_ptr<const SceneData> scene, const SceneDifference& difference) {
+  const std::size_t triangles = scene->triangles.size();
+  if (difference.shifted() || triangles != planes_.size()) {
+    std::vector<Plane> planes(triangles);
+    std::vector<Ball> balls(triangles);
+    for (const KeptRun& run : difference.kept)
+      parallel::for_all(tbb::blocked_range<std::uint32_t>(0, run.count, 1 << 16), [&](const auto& range) {
+        std::copy_n(planes_.begin() + run.first + range.begin(), range.size(),
+                    planes.begin() + run.other + range.begin());
+        std::copy_n(balls_.begin() + run.first + range.begin(), range.size(),
+                    balls.begin() + run.other + range.begin());
+      });
+    planes_ = std::move(planes);
+    balls_ = std::move(balls);
+  }
+  scene_ = std::move(scene);
+  for (const KeptRun& run : not_kept(difference.kept, static_cast<std::uint32_t>(triangles)))
+    fill(run.first, run.count);
+}
+
+void Planes::fill(std::uint32_t first, std::uint32_t count) {
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(first, first + count, 4096), [&](const auto& range) {
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      const auto corners = s.corners(i);
+      const auto corners = scene_->corners(i);
       planes_[i] = plane_of(corners);
       balls_[i] = ball_of(corners);
     }

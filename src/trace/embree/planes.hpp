@@ -10,16 +10,19 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "scene/scene_difference.hpp"
 #include "trace/embree/vectors.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
 
 // Planes of a scene's triangles: a table, or made on demand where triangles are shared, since the table of all their
-// places may not fit. Immutable; safe to use from any thread.
+// places may not fit. Safe to use from any thread.
 class Planes {
  public:
   explicit Planes(std::shared_ptr<const SceneData> scene);
+  // Takes a changed scene, alone. An error changes nothing.
+  void take(std::shared_ptr<const SceneData> scene, const SceneDifference& difference);
 
   // A plane as a head sees it.
   struct Seen {
@@ -103,6 +106,8 @@ class Planes {
     float x, y, z, square;  // middle of the corners; 1.5 times their largest distance from it, and a rounding, squared
   };
   static constexpr float ball_doubt = 0x1p-34f;  // of a squared distance, for all roundings
+
+  void fill(std::uint32_t first, std::uint32_t count);  // those triangles' planes
 
   static Plane plane_of(const std::array<Float3, 3>& corners);
   static Ball ball_of(const std::array<Float3, 3>& corners);

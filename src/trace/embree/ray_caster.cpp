@@ -21,7 +21,7 @@ constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 struct Context {
   embree::Context rtc;  // first member: Embree passes its address to the filters
   const Planes& planes;
-  const SceneTree& tree;
+  const SceneTree* tree;
   Float3 origin;
   float start;
   float* t;  // by the ray's id; initially the ray's end
@@ -30,11 +30,12 @@ struct Context {
   // Directions by the ray's id, as Embree is given them; null: where nothing is shared.
   const float *x = nullptr, *y = nullptr, *z = nullptr;
   const Float3* origins = nullptr;  // by the ray's id; null: all are `origin`
+  bool changed = false;             // the scene is a later one than the tree's
 };
 
 // Calls take(ray, primitive, distance) for rays `first` to first + n from `origin` to which Embree proposes a triangle.
 // A ray goes on if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
-template <unsigned n, bool placed, class Take>
+template <unsigned n, bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
                                          const Context& context, const Float3& origin, const Take& take) {
   const unsigned all = args->N;
@@ -54,13 +55,21 @@ template <unsigned n, bool placed, class Take>
   std::uint32_t primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
   alignas(32) std::int32_t beside[n]{};
+  if constexpr (changed) std::fill_n(beside, n, 1);  // of kInNone, which is no_hit
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    const std::uint32_t proposed =
-        context.tree.number(RTCHitN_instID(args->hit, all, i, 0), RTCHitN_primID(args->hit, all, i));
+    const unsigned named = RTCHitN_primID(args->hit, all, i);
+    const std::uint32_t proposed = changed ? context.tree->number_by_runs(named)
+                                           : context.tree->number(RTCHitN_instID(args->hit, all, i, 0), named);
     if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = proposed;
+      if constexpr (changed)
+        if (proposed == SceneTree::kInNone) {
+          std::fill_n(beside, n, 1);
+          args->valid[i] = 0;
+          continue;
+        }
       context.planes.distances<n>(context.planes.seen(primitive, origin), primitive, origin, x, y, z, t);
       context.planes.beside<n>(primitive, origin, x, y, z, t, beside);
     }
@@ -72,31 +81,34 @@ template <unsigned n, bool placed, class Take>
   }
 }
 
-template <bool placed, class Take>
+template <bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Context& context,
                                          const Take& take) {
   unsigned first = 0;
-  for (; first + packet <= args->N; first += packet) judge<packet, placed>(args, first, context, context.origin, take);
-  for (; first < args->N; ++first) judge<1, placed>(args, first, context, context.origin, take);
+  for (; first + packet <= args->N; first += packet)
+    judge<packet, placed, changed>(args, first, context, context.origin, take);
+  for (; first < args->N; ++first) judge<1, placed, changed>(args, first, context, context.origin, take);
 }
 
-template <bool placed, class Take>
+template <bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge_each(const RTCFilterFunctionNArguments* args, const Context& context,
                                               const Take& take) {
   for (unsigned k = 0; k < args->N; ++k)
     if (args->valid[k] != 0)
-      judge<1, placed>(args, k, context, context.origins[RTCRayN_id(args->ray, args->N, k)], take);
+      judge<1, placed, changed>(args, k, context, context.origins[RTCRayN_id(args->ray, args->N, k)], take);
 }
 
 template <class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Take& take) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
-  if (context.origins)
-    context.x ? judge_each<true>(args, context, take) : judge_each<false>(args, context, take);
+  if (context.changed) [[unlikely]]  // it shares no meshes
+    context.origins ? judge_each<false, true>(args, context, take) : judge<false, true>(args, context, take);
+  else if (context.origins)
+    context.x ? judge_each<true, false>(args, context, take) : judge_each<false, false>(args, context, take);
   else if (context.x)
-    judge<true>(args, context, take);
+    judge<true, false>(args, context, take);
   else
-    judge<false>(args, context, take);
+    judge<false, false>(args, context, take);
 }
 
 VANTAGE_TARGET_CLONES
@@ -136,11 +148,40 @@ void note_all(const RTCFilterFunctionNArguments* args) {
 
 RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of)
     : scene_(std::move(scene)),
+      of_tree_(scene_),
       planes_(std::move(planes)),
       device_(embree::new_device()),
       tree_(device_.get(), *scene_, of == Of::opaque ? 0 : scene_->opaque_count(),
             of == Of::opaque ? scene_->opaque_count() : scene_->triangle_count(),
             {of == Of::opaque ? keep_least : note_all, note}, of == Of::opaque ? "of rays" : "of glass") {}
+
+std::optional<RayCaster::Change> RayCaster::prepare(std::shared_ptr<const SceneData> scene,
+                                                    const SceneDifference& difference) const {
+  // Share of the tree's triangles that may be gone or new: rays walk over both.
+  constexpr std::uint32_t kShare = 4;
+  Change change;
+  change.numbers = of_tree_ == scene_ ? difference.kept : joined(numbers_, difference.kept);
+  const std::uint32_t before = of_tree_->opaque_count(), after = scene->opaque_count();
+  const std::vector<KeptRun> added = not_kept(change.numbers, after);
+  std::uint64_t kept = 0, is_new = 0;
+  for (const KeptRun& run : change.numbers)
+    if (run.first < before) kept += run.count;
+  for (const KeptRun& run : added) is_new += run.count;
+  if ((before - kept + is_new) * kShare > before) return std::nullopt;
+  if (is_new > 0)
+    change.added = std::make_unique<const SceneTree>(device_.get(), *scene, added, SceneTree::Filters{keep_least, note},
+                                                     "of what changed");
+  change.scene = std::move(scene);
+  return change;
+}
+
+void RayCaster::take(Change change) noexcept {
+  scene_ = std::move(change.scene);
+  added_ = std::move(change.added);
+  tree_.renumber(change.numbers);
+  changed_ = true;
+  numbers_ = std::move(change.numbers);
+}
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
   constexpr std::size_t stream = 64;
@@ -168,18 +209,29 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
       if (shared) x[i] = rays[i].dir_x, y[i] = rays[i].dir_y, z[i] = rays[i].dir_z;
     }
     hit.fill(RayBundle::no_hit);
-    Context context{{}, *planes_, tree_, origin, start, end.data(), hit.data()};
+    Context context{{}, *planes_, &tree_, origin, start, end.data(), hit.data()};
     if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
+    context.changed = changed_;
+    const auto trace = [&](std::size_t many) {
 #if VANTAGE_EMBREE_MAJOR >= 4
-    rtcInitRayQueryContext(&context.rtc);
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context.rtc;
-    for (std::size_t i = 0; i < n; ++i) rtcOccluded1(tree_.get(), &rays[i], &arguments);
+      rtcInitRayQueryContext(&context.rtc);
+      RTCOccludedArguments arguments;
+      rtcInitOccludedArguments(&arguments);
+      arguments.context = &context.rtc;
+      for (std::size_t i = 0; i < many; ++i) rtcOccluded1(context.tree->get(), &rays[i], &arguments);
 #else
-    rtcInitIntersectContext(&context.rtc);
-    rtcOccluded1M(tree_.get(), &context.rtc, rays.data(), static_cast<unsigned>(n), sizeof(RTCRay));
+      rtcInitIntersectContext(&context.rtc);
+      rtcOccluded1M(context.tree->get(), &context.rtc, rays.data(), static_cast<unsigned>(many), sizeof(RTCRay));
 #endif
+    };
+    trace(n);
+    if (added_) {
+      std::size_t open = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        if (hit[i] == RayBundle::no_hit) rays[open++] = rays[i];
+      context.tree = added_.get();
+      if (open > 0) trace(open);
+    }
     for (std::size_t i = 0; i < n; ++i) probes[first + i].hit = hit[i];
   }
 }
@@ -225,7 +277,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
   std::copy_n(rays.end, used * packet, rays.t);
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context{{}, *planes_, tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
+  Context context{{}, *planes_, &tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
   alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
   if (scene_->shares()) {
     for (std::uint32_t i = 0; i < used * packet; ++i)
@@ -233,22 +285,27 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
     context.x = x, context.y = y, context.z = z;
   }
   context.origins = rays.origins;
+  context.changed = changed_;
+  for (const SceneTree* const tree : {&tree_, added_.get()}) {
+    if (!tree) break;
+    context.tree = tree;
 #if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&context.rtc);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &context.rtc;
-  for (std::uint32_t p = 0; p < used; ++p) {
-    alignas(32) int valid[packet];
-    for (std::uint32_t lane = 0; lane < packet; ++lane) valid[lane] = p * packet + lane < rays.size ? -1 : 0;
-    rtcIntersect8(valid, tree_.get(), &hits[p], &arguments);
-  }
+    rtcInitRayQueryContext(&context.rtc);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.context = &context.rtc;
+    for (std::uint32_t p = 0; p < used; ++p) {
+      alignas(32) int valid[packet];
+      for (std::uint32_t lane = 0; lane < packet; ++lane) valid[lane] = p * packet + lane < rays.size ? -1 : 0;
+      rtcIntersect8(valid, tree->get(), &hits[p], &arguments);
+    }
 #else
-  rtcInitIntersectContext(&context.rtc);
-  context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersectNM(tree_.get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
+    rtcInitIntersectContext(&context.rtc);
+    context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersectNM(tree->get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
 #endif
+  }
   for (std::uint32_t i = 0; i < rays.size; ++i) {
     if (rays.primitive[i] == RayBundle::no_hit) rays.t[i] = std::numeric_limits<float>::infinity();
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,13 +85,29 @@ class RayCaster {
   // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;
 
+  // What a changed scene needs: the tree's numbers in it, and a tree of what is new there.
+  struct Change {
+    std::shared_ptr<const SceneData> scene;
+    std::vector<KeptRun> numbers;
+    std::unique_ptr<const SceneTree> added;  // null: nothing is new
+  };
+  // Empty if so much differs from the scene of the tree that another tree would be better. REQUIRES: Of::opaque.
+  std::optional<Change> prepare(std::shared_ptr<const SceneData> scene, const SceneDifference& difference) const;
+  // Casts in the changed scene from then on. What is gone from the tree stays in it, and stops no ray. Hits are those
+  // of a new tree, since they do not depend on it. REQUIRES: the planes take the scene, too.
+  void take(Change change) noexcept;
+
  private:
   void cast(RayBundle& rays, std::vector<Crossing>* all) const;
 
   std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const SceneData> of_tree_;  // its scene, which may be an earlier one
   std::shared_ptr<const Planes> planes_;
   embree::Device device_;
   SceneTree tree_;
+  std::vector<KeptRun> numbers_;            // of the tree in scene_, if that is another than of_tree_
+  std::unique_ptr<const SceneTree> added_;  // what of_tree_ lacks; null: nothing
+  bool changed_ = false;                    // triangles have the numbers of number_by_runs()
 };
 
 }  // namespace vantage

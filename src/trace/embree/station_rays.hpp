@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "trace/embree/glass_panes.hpp"
 #include "trace/embree/hits.hpp"
@@ -38,18 +40,21 @@ struct EmbreeScene {
         caster(scene, planes),
         surface(scene, planes),
         prefixes(*grid),
-        patches(*scene),
+        patches(std::in_place, *scene),
         glass(weakens_through_glass(traced) ? std::make_unique<const GlassPanes>(scene, planes) : nullptr),
         whole_scans(traced.whole_scans) {}
+
+  // Takes a changed scene, as Tracer::take().
+  bool take(const TraceScene& traced, const SceneDifference& difference);
 
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
   std::shared_ptr<SampleTriangles> sample_triangles;
-  std::shared_ptr<const Planes> planes;
+  std::shared_ptr<Planes> planes;
   RayCaster caster;
   Surface surface;
   BrickPrefixes prefixes;
-  OccludingPatches patches;
+  std::optional<OccludingPatches> patches;
   std::unique_ptr<const GlassPanes> glass;  // null: glass weakens no echo
   WholeScans whole_scans;
 };
@@ -83,7 +88,7 @@ class StationRays {
   const Planes& planes() const { return *scene_->planes; }
   const RayCaster& caster() const { return scene_->caster; }
   const Surface& surface() const { return scene_->surface; }
-  const OccludingPatches& patches() const { return scene_->patches; }
+  const OccludingPatches& patches() const { return *scene_->patches; }
   WholeScans whole_scans() const { return scene_->whole_scans; }
   VoxelLookup voxels() const { return {grid(), scene_->prefixes}; }
 

@@ -264,6 +264,98 @@ TEST(SceneBuilder, RefusesWhatIsOutOfRange) {
   EXPECT_NE(refusal([&] { builder.replace(0, {}); }).find("no mesh 0"), std::string::npos);
 }
 
+// Corners of every mesh, triangle by triangle, survey frame.
+std::vector<std::vector<Vec3>> corners_of_meshes(const Scene& scene) {
+  std::vector<std::vector<Vec3>> all;
+  for (const MeshRange& range : scene.data().ranges) {
+    std::vector<Vec3>& corners = all.emplace_back();
+    for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
+      for (const Float3& p : scene.data().corners(t)) corners.push_back(widen(p) + scene.data().origin);
+  }
+  return all;
+}
+
+TEST(WithChanges, GivesTheSceneOfABuilderWhoseMeshesStandThere) {
+  std::vector<SceneMesh> meshes = room();
+  const Scene before = built(meshes);
+  const double s = std::sqrt(0.5);
+  const SceneMesh lamp = box("lamp", {-2, -3, 0.5}, {0.5, 0.5, 1}, Role::blocking);
+  const Scene after =
+      with_changes(before, {.move = {{"cr*", {{0.25, -1, 0.5}, {0, 0, s, s}}}}, .remove = {"shelf"}, .add = {lamp}});
+  meshes[1].pose = {{0.25, -1, 0.5}, {0, 0, s, s}};  // a quarter turn about the frame's origin, then moved
+  meshes[0].role = meshes[1].role = Role::surveyed;
+  const Scene expected = built({meshes[0], meshes[1], lamp});
+  ASSERT_EQ(after.meshes().size(), 3U);
+  const auto got = corners_of_meshes(after), wanted = corners_of_meshes(expected);
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_EQ(after.meshes()[m].name, expected.meshes()[m].name);
+    EXPECT_EQ(after.meshes()[m].role, expected.meshes()[m].role);
+    EXPECT_EQ(after.meshes()[m].diffuse, expected.meshes()[m].diffuse);
+    EXPECT_EQ(after.meshes()[m].weight, expected.meshes()[m].weight);
+    ASSERT_EQ(got[m].size(), wanted[m].size());
+    for (std::size_t k = 0; k < got[m].size(); ++k) {
+      EXPECT_NEAR(got[m][k].x, wanted[m][k].x, 1e-6);
+      EXPECT_NEAR(got[m][k].y, wanted[m][k].y, 1e-6);
+      EXPECT_NEAR(got[m][k].z, wanted[m][k].z, 1e-6);
+    }
+  }
+  for (const auto& [one, other] :
+       {std::pair(after.bounds().min, expected.bounds().min), std::pair(after.bounds().max, expected.bounds().max)}) {
+    EXPECT_NEAR(one.x, other.x, 1e-6);
+    EXPECT_NEAR(one.y, other.y, 1e-6);
+    EXPECT_NEAR(one.z, other.z, 1e-6);
+  }
+  EXPECT_EQ(before.fingerprint(), built(room()).fingerprint()) << "the first scene stays";
+  EXPECT_EQ(corners_of_meshes(with_changes(before, {.move = {{"*", {}}}})), corners_of_meshes(before));
+}
+
+// A file whose panes are of glass, with normals: these turn, and glass stays last.
+TEST(WithChanges, TurnsNormalsAndKeepsGlassLast) {
+  test::GlbBuilder glb = as_gltf(room());
+  for (auto& node : glb.json["nodes"])
+    if (node["name"] == "shelf") node["extras"]["vantage"]["glass"] = true;
+  const std::vector<float> up{0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0};
+  const int normals = glb.accessor(up, 5126, "VEC3");
+  for (auto& mesh : glb.json["meshes"]) mesh["primitives"][0]["attributes"]["NORMAL"] = normals;
+  const Scene scene = load_gltf(bytes_of(glb));
+  ASSERT_TRUE(scene.meshes().back().glass);
+  const double s = std::sqrt(0.5);
+  const SceneMesh lamp = box("lamp", {-2, -3, 0.5}, {0.5, 0.5, 1});
+  const Scene after = with_changes(scene, {.move = {{"crate", {{}, {s, 0, 0, s}}}}, .add = {lamp}});  // z to −y
+  ASSERT_EQ(after.meshes().size(), 4U);
+  EXPECT_EQ(after.meshes()[2].name, "lamp");
+  EXPECT_TRUE(after.meshes()[3].glass);
+  EXPECT_EQ(after.data().opaque_count(), after.data().triangle_count() - 12);
+  const auto normal_of = [&](std::size_t m) {
+    return after.data().corner_normals(after.data().ranges[m].first_triangle)[0];
+  };
+  EXPECT_NEAR(normal_of(0).z, 1, 1e-6);
+  EXPECT_NEAR(normal_of(1).y, -1, 1e-6);
+  EXPECT_EQ(normal_of(2), Float3());  // it has none
+}
+
+TEST(WithChanges, RefusesWhatItCannotDo) {
+  const Scene scene = built(room());
+  EXPECT_NE(refusal([&] {
+              with_changes(scene, {.move = {{"crane", {}}}});
+            }).find("no mesh to move matches \"crane\"; meshes are \"floor\", \"crate\", \"shelf\""),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { with_changes(scene, {.remove = {"crane*"}}); }).find("remove"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              with_changes(scene, {.move = {{"crate", {{NAN, 0, 0}}}}});
+            }).find("not finite"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              with_changes(scene, {.move = {{"crate", {{2e6, 0, 0}}}}});
+            }).find("\"crate\""),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              with_changes(scene, {.add = {box("area", {}, {1, 1, 1}, Role::search)}});
+            }).find("neither surveyed nor blocking"),
+            std::string::npos);
+  refusal([&] { with_changes(scene, {.remove = {"*"}}); }, Errc::malformed_file);
+}
+
 TEST(LoadGltf, IsAsFromAFile) {
   const test::TemporaryFolder folder;
   const test::GlbBuilder glb = as_gltf(room());
