@@ -141,7 +141,7 @@ struct LocalServer::Impl {
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
   asio::steady_timer pause{context};
-  std::list<std::weak_ptr<Connection>> connections;  // oldest first
+  std::list<std::weak_ptr<Connection>> connections = {};  // oldest first
 
   void accept(asio::thread_pool& workers, const Answer& answer) {
     acceptor.async_accept([&](ErrorCode error, tcp::socket socket) {
