@@ -54,7 +54,7 @@ std::map<std::string, std::string> unzipped(const std::string& bytes) {
 }
 
 // A wall that a station sees, a small one behind it, and a floor in two nodes below a deck that hides it.
-Scene walls(const std::string& defaults = "{}") {
+Scene bcf_walls(const std::string& defaults = "{}") {
   test::QuadScene scene = test::wall_and_floor();
   scene.quad({8, 0, 0}, {0, 1, 0}, {0, 0, 1});
   scene.quad({-3, -1, -2.5F}, {2, 0, 0}, {0, 2, 0});
@@ -107,7 +107,7 @@ Vec3 vector_in(const std::string& text, const std::string& name) {
 }
 
 TEST(MissedBcf, HasATopicForEachElementThatIsNotCaptured) {
-  const auto files = written(walls());
+  const auto files = written(bcf_walls());
   EXPECT_EQ(files.size(), 5u) << "the version and two files for each topic, but none for the wall that is seen";
   EXPECT_NE(files.at("bcf.version").find("<Version VersionId=\"2.1\">"), std::string::npos);
   for (const auto& [path, text] : files) EXPECT_EQ(text.find(kSeen), std::string::npos) << path;
@@ -131,11 +131,11 @@ TEST(MissedBcf, HasATopicForEachElementThatIsNotCaptured) {
   EXPECT_EQ(files.count(topic.str(1) + "/viewpoint.bcfv"), 1u);
   EXPECT_NE(view.find("<VisualizationInfo Guid=\"" + viewpoint.str(1)), std::string::npos);
   EXPECT_NE(topic.str(1), viewpoint.str(1));
-  EXPECT_EQ(written(walls(), 1).size(), 3u) << "the largest alone";
+  EXPECT_EQ(written(bcf_walls(), 1).size(), 3u) << "the largest alone";
 }
 
 TEST(MissedBcf, CamerasLookAtTheElementFromWhereItIsInSight) {
-  const Scene scene = walls();
+  const Scene scene = bcf_walls();
   const auto files = written(scene);
   const RayTracer tracer(scene);
   for (const auto& [global_id, middle] : {std::pair{kBehind, Vec3{8, 0.5, 0.5}}, {kBelow, Vec3{-1, 0, -2.5}}}) {
@@ -157,15 +157,15 @@ TEST(MissedBcf, CamerasLookAtTheElementFromWhereItIsInSight) {
 TEST(MissedBcf, CamerasAreInTheCoordinatesOfTheModel) {
   const double c = 0.9996 * std::cos(M_PI / 6), s = 0.9996 * std::sin(M_PI / 6);
   const auto text = [](double value) { return std::to_string(value); };
-  const auto plain = written(walls());
-  const auto moved = written(walls("{\"model_in_site\": [" + text(c) + ",0," + text(-s) + ",0, 0,1,0,0, " + text(s) +
-                                   ",0," + text(c) + ",0, 500,20,-7000,1]}"));
+  const auto plain = written(bcf_walls());
+  const auto moved = written(bcf_walls("{\"model_in_site\": [" + text(c) + ",0," + text(-s) + ",0, 0,1,0,0, " +
+                                       text(s) + ",0," + text(c) + ",0, 500,20,-7000,1]}"));
   const Vec3 site = vector_in(of(plain, kBehind, "viewpoint.bcfv"), "CameraViewPoint"),
              model = vector_in(of(moved, kBehind, "viewpoint.bcfv"), "CameraViewPoint");
   EXPECT_NEAR(c * model.x - s * model.y + 500, site.x, 0.01);
   EXPECT_NEAR(s * model.x + c * model.y + 7000, site.y, 0.01);
   EXPECT_NEAR(model.z + 20, site.z, 1e-3);
-  const auto several = written(walls(R"({"model_in_site": null})"));
+  const auto several = written(bcf_walls(R"({"model_in_site": null})"));
   EXPECT_EQ(of(several, kBehind, "viewpoint.bcfv").find("Camera"), std::string::npos) << "it is not known where";
 }
 
