@@ -25,7 +25,7 @@ namespace {
 // Measured on processes (docs/evidence/reliability.md). Per voxel: its count, its share of a brick, and the words of
 // its mask. Per triangle: vertices and temporary data; the tree and planes of the CPU engine; per place of one that
 // nodes share, a bit.
-constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
+constexpr double kMebibyte = 1048576, kProgram = 24 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
                  kPlaced = 1.0 / 8, kVoxel = 6, kMaskWord = 8;
 constexpr double kVertex = 12;                      // the CPU engine's tree of glass has a copy of all
 constexpr double kSoftwareDriver = 86 * kMebibyte;  // lavapipe with its compiler

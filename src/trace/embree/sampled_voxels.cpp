@@ -62,6 +62,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
       crossing_(voxel_indices.size()) {
   const VoxelTriangles lists = triangles.touching(voxel_indices, margin);
   const std::size_t n = voxel_indices.size();
+  around_.resize(n);
   pieces_.resize(lists.triangle.size());
   std::vector<Plane> planes(lists.triangle.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -102,10 +103,12 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     if (own.size() > most_planes) own.clear();
 
     for (std::size_t axis = 0; axis < 3; ++axis) cells_[axis][i] = static_cast<std::int32_t>(cell[axis]);
+    Box around;
     std::uint32_t piece = first, plane = first;
     for (const bool now : {true, false}) {
       for (std::size_t k = 0; k < own.size(); ++k) {
         if (crosses(own[k], wide) != now) continue;
+        if (now) around.extend(own[k].box.min), around.extend(own[k].box.max);
         const std::uint32_t from = piece;
         for (const auto& [place, triangle] : of) {
           if (place == k) pieces_[piece++] = piece_of(corners_of(triangle));
@@ -115,14 +118,14 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
                            std::nextafter(static_cast<float>(own[k].slenderness), HUGE_VALF),
                            static_cast<float>(own[k].diffuse),
                            static_cast<float>(own[k].tilt),
-                           narrow(own[k].box.min - Vec3{beside, beside, beside}),
-                           narrow(own[k].box.max + Vec3{beside, beside, beside}),
                            from,
                            piece};
       }
       if (now) crossing_[i] = plane - first;
     }
     offset_[i + 1] = plane - first;
+    const Vec3 margins{beside, beside, beside};
+    if (!around.empty()) around_[i] = {narrow(around.min - margins), narrow(around.max + margins)};
   });
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t count = offset_[i + 1];

@@ -33,10 +33,14 @@ class SampledVoxels {
     float diffuse;      // the least of a triangle
     // No hit has a normal farther from that of the plane, as vectors of unit length; 1 or above: nothing is known.
     float tilt;
-    Float3 low, high;  // corners of a box around the triangles, and all hits on them, from the middle of the cube
     std::uint32_t first, end;
   };
   using Cell = std::array<std::vector<std::int32_t>, 3>;  // by axis and voxel
+  // Corners of a box around the triangles of a voxel's planes that pass its cube, and all hits on them, from its
+  // middle.
+  struct Around {
+    Float3 low, high;
+  };
 
   // Neighbouring voxels, by their number: `size` of them from a multiple of it on lie in these cells.
   struct Cells {
@@ -62,6 +66,7 @@ class SampledVoxels {
   std::uint32_t crossing(std::size_t i) const { return crossing_[i]; }
   const Piece& piece(std::size_t k) const { return pieces_[k]; }
   const Cell& cells() const { return cells_; }
+  const Around& around(std::size_t i) const { return around_[i]; }
   // Number k of the groups of group_sizes[level] voxels.
   const Cells& group(std::size_t level, std::size_t k) const { return groups_[level][k]; }
 
@@ -72,6 +77,7 @@ class SampledVoxels {
   std::vector<Plane> planes_;
   std::vector<Piece> pieces_;
   Cell cells_;
+  std::vector<Around> around_;
   std::array<std::vector<Cells>, group_sizes.size()> groups_;
 };
 

@@ -348,6 +348,7 @@ Box SampledVoxelCounter::hits_of(const Look& look) const {
   const Vec3 centre{x_[i], y_[i], z_[i]};
   const auto half = static_cast<double>(look.cube.half);
   const Vec3 pad{2 * pad_, 2 * pad_, 2 * pad_};
+  const SampledVoxels::Around& around = voxels_.around(first_ + i);
   Box hits;
   if (!look.sure) {
     hits.extend(centre - Vec3{half, half, half} - pad);
@@ -368,8 +369,8 @@ Box SampledVoxelCounter::hits_of(const Look& look) const {
       }
       return std::pair(from, to);
     };
-    const auto x = along(n.x, all.x, plane.low.x, plane.high.x), y = along(n.y, all.y, plane.low.y, plane.high.y),
-               z = along(n.z, all.z, plane.low.z, plane.high.z);
+    const auto x = along(n.x, all.x, around.low.x, around.high.x), y = along(n.y, all.y, around.low.y, around.high.y),
+               z = along(n.z, all.z, around.low.z, around.high.z);
     const Vec3 low = Vec3{x.first, y.first, z.first} - pad, high = Vec3{x.second, y.second, z.second} + pad;
     if (low.x > high.x || low.y > high.y || low.z > high.z) continue;
     hits.extend(centre + low);
