@@ -60,6 +60,8 @@ struct SurveyProblem {
   /// stations that links need stay as far as they pay, too. Where `stations_max` or a limit on the time on site ends it
   /// before, it requires no more than its answer has.
   std::optional<double> pays_m2 = {};
+  /// The same as a share of what the stations before it capture on average, each; the larger of both counts.
+  double pays_share = 0;
   /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
   /// `capture` is asked for. A plan finds it anew, whatever is given.
   std::optional<double> attainable = std::nullopt;
@@ -171,7 +173,7 @@ struct PlanIteration {
 
 /// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
 struct StationsThatPay {
-  double least_m2 = 0;       ///< What each has to capture besides the others.
+  double least_m2 = 0;       ///< What a further one would have to capture besides the others.
   std::size_t stations = 0;  ///< Further stations that do, and those in `parts`.
   std::size_t parts = 0;     ///< Rooms and other parts of the floor that have one of their own besides.
   double capture = 0;        ///< Share of what is attainable that so many can have: what the plan then requires.

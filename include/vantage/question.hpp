@@ -14,15 +14,16 @@
 
 namespace vantage {
 
-/// Defaults: new surface that a further station has to capture, in m², and least distance between two stations. Both
-/// are of sites of usual size (`Site::length_scale()`).
-inline constexpr double default_pays_m2 = 25, default_apart_m = 1;
+/// Defaults: new surface that a further station has to capture, in m² and as a share of what those before it capture on
+/// average, and least distance between two stations. Lengths are of sites of usual size (`Site::length_scale()`).
+inline constexpr double default_pays_m2 = 25, default_pays_share = 0.1, default_apart_m = 1;
 
-/// A question. By default it asks for the connected stations that pay: as many as capture `default_pays_m2` each.
+/// A question. By default it asks for the connected stations that pay: as many as capture `default_pays_m2` each, and
+/// `default_pays_share`.
 struct SurveyQuestion {
   std::optional<std::string> problem = {};     ///< "survey", or one of `problem_names()`.
   std::optional<double> capture = {};          ///< Least share of attainable coverage, whatever it takes.
-  std::optional<double> pays_m2 = {};          ///< Instead: as `SurveyProblem::pays_m2`.
+  std::optional<double> pays_m2 = {};          ///< Instead: as `SurveyProblem::pays_m2` alone.
   std::optional<double> link = {};             ///< Least scan overlap of the links that connect all stations.
   std::optional<double> apart_m = {};          ///< Least distance between two stations.
   std::optional<double> minutes_on_site = {};  ///< Upper limit.

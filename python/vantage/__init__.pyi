@@ -1279,6 +1279,7 @@ class SurveyProblem:
         existing_targets: Iterable[Target] = (),
         fewest: bool = False,
         pays_m2: Optional[float] = None,
+        pays_share: float = 0,
         attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
         requirements: Iterable[Union[str, Requirement]] = (),
@@ -1298,6 +1299,7 @@ class SurveyProblem:
     existing_targets: Tuple[Target, ...]
     fewest: bool
     pays_m2: Optional[float]
+    pays_share: float
     attainable: Optional[float]
     @property
     def objectives(self) -> Tuple[Objective, ...]: ...

@@ -580,7 +580,10 @@ std::string planned_text(const PlanResult& result) {
   const auto [m2, minutes] = *result.further;
   if (m2 < kLeastTold_m2) return text + "; a further one would add nothing";
   text += "; a further one would add some " + surface_text(m2) + " in " + duration(60 * std::max(minutes, 1.0));
-  if (result.pays && m2 < result.pays->least_m2) text += ", and has to add " + surface_text(result.pays->least_m2);
+  if (!result.pays || m2 >= result.pays->least_m2) return text;
+  text += ", and has to add " + surface_text(result.pays->least_m2);
+  if (result.pays->least_m2 > result.problem.pays_m2.value_or(0))
+    text += ", " + fixed(100 * result.problem.pays_share, 0) + " % of what each of these captures on average";
   return text;
 }
 

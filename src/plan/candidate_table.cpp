@@ -13,6 +13,11 @@
 namespace vantage {
 namespace {
 
+double apart_m(const PlacedStation& a, const PlacedStation& b) {
+  const Vec3 way = a.position - b.position;
+  return std::sqrt(dot(way, way));
+}
+
 constexpr double kStep_m = 0.1;  // along a way
 // Further positions by each side of a place where nobody may stand, within so much.
 constexpr std::size_t kBySide = 8;
@@ -185,20 +190,18 @@ double CandidateTable::overlap_error(std::span<const std::size_t> network, doubl
   return fewest > 0 ? std::sqrt(unsampled_ * share * (1 - share) / static_cast<double>(fewest)) : 0;
 }
 
+std::size_t CandidateTable::nearest(const PlacedStation& station) const {
+  const auto found =
+      std::ranges::min_element(stations_, {}, [&](const PlacedStation& known) { return apart_m(known, station); });
+  return static_cast<std::size_t>(found - stations_.begin());
+}
+
 bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {
-  const auto apart = [](const PlacedStation& a, const PlacedStation& b) {
-    const Vec3 way = a.position - b.position;
-    return std::sqrt(dot(way, way));
-  };
   std::vector<double> least(stations.size(), 0);
-  for (std::size_t i = 0; i < stations.size() && spacing_.least_m; ++i) {
-    const auto nearest =
-        std::ranges::min_element(stations_, {}, [&](const PlacedStation& known) { return apart(known, stations[i]); });
-    least[i] = least_m_[static_cast<std::size_t>(nearest - stations_.begin())];
-  }
+  for (std::size_t i = 0; i < stations.size() && spacing_.least_m; ++i) least[i] = least_m_[nearest(stations[i])];
   for (std::size_t i = 0; i < stations.size(); ++i)
     for (std::size_t j = i + 1; j < stations.size(); ++j) {
-      const double metres = apart(stations[i], stations[j]);
+      const double metres = apart_m(stations[i], stations[j]);
       if (metres < spacing_.nearest_m) return false;
       if (metres < std::min(least[i], least[j]) && spacing_.sees(stations[i].position, stations[j].position))
         return false;

@@ -74,6 +74,8 @@ class CandidateTable {
   void count_all_links();  // as before
   // Standard error of a sampled overlap of that share, for the station of a network that sees least of the sample.
   double overlap_error(std::span<const std::size_t> network, double share) const;
+  // The station of the table that stands nearest. REQUIRES: a table that has some.
+  std::size_t nearest(const PlacedStation& station) const;
   // Whether no two of these stations stand too near, each taken for the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
   // Extended by each addition.

@@ -25,6 +25,7 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
   check_number(problem.link_overlap, "link-overlap", any_share);
   if (problem.pays_m2) {
     check_number(*problem.pays_m2, "pays", positive);
+    check_number(problem.pays_share, "pays_share", any_share);
     if (!problem.fewest || std::ranges::none_of(problem.requirements, requires_capture))
       throw Error(Errc::invalid_argument,
                   "pays: decides what the fewest stations have to capture; require some capture");

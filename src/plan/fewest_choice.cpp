@@ -14,6 +14,7 @@
 #include "core/graph.hpp"
 #include "core/seconds_since.hpp"
 #include "cover/connected_growth.hpp"
+#include "cover/network.hpp"
 #include "cover/partial_cover.hpp"
 #include "evaluate/storey_ties.hpp"
 #include "plan/limits.hpp"
@@ -34,6 +35,10 @@ constexpr std::size_t kLooks = 4, kPartsAtOnce = 8, kNearest = 12;
 // Further candidates at each end where no way is known, within such a share of the distance.
 constexpr std::size_t kAtEnds = 24;
 constexpr double kEndsRadius = 0.25;
+
+// Distance within which another place is looked for where a station is in the way, and further candidates there.
+constexpr double kAside_m = 3;
+constexpr std::size_t kAsideAround = 12;
 
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
@@ -395,6 +400,69 @@ bool capture_meshes(FewestChoice& choice, const std::stop_token& stop) {
       choice.network = std::move(fewer), choice.one_fewer.reset();
   }
   return !added.empty();
+}
+
+namespace {
+
+// The network with another candidate in place of the station at `at`.
+CoverSolution with_other(const FewestChoice& choice, std::size_t at, std::size_t other) {
+  std::vector<std::size_t> network = choice.network.chosen;
+  CoverProblem problem = cover_problem(choice);
+  std::ranges::replace(problem.existing, network[at], other);
+  network[at] = other;
+  return evaluate_cover(problem, std::move(network));
+}
+
+// The network with a candidate that is not in the way in place of the station at `at`: of those that serve as well, the
+// one that adds most to the others, whose points are `rest`.
+std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::size_t at, const PartialCover& rest,
+                                            const PlacementOracle& oracle) {
+  const std::vector<PlacedStation>& stations = choice.table.stations();
+  const std::vector<std::size_t>& chosen = choice.network.chosen;
+  const auto barred = [&](std::size_t k) {
+    for (std::size_t other = 0; other < chosen.size(); ++other)
+      if (chosen[other] == k || (other != at && choice.table.graph().excluded(chosen[other], k))) return true;
+    return false;
+  };
+  std::vector<std::pair<double, std::size_t>> near;  // by gain, negative
+  for (std::size_t k = choice.asked.existing; k < stations.size(); ++k)
+    if (const Vec3 apart = stations[k].ground - stations[chosen[at]].ground;
+        dot(apart, apart) <= kAside_m * kAside_m && !barred(k))
+      near.emplace_back(-rest.gain(k), k);
+  std::ranges::sort(near);
+  for (const auto& [gain, k] : near) {
+    if (oracle.in_the_way(stations[k].ground)) continue;
+    CoverSolution network = with_other(choice, at, k);
+    if (network.violation <= choice.network.violation &&
+        !leaves_units(choice, choice.stations_of(choice.network), choice.stations_of(network)))
+      return network;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool stand_aside(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop) {
+  if (!oracle.in_the_way || choice.asked.most_coverage) return false;
+  bool any = false;
+  for (std::size_t at = choice.asked.existing; at < choice.network.chosen.size() && !stop.stop_requested(); ++at) {
+    const std::size_t station = choice.network.chosen[at];
+    const PlacedStation placed = choice.table.stations()[station];
+    if (!oracle.in_the_way(placed.ground)) continue;
+    const std::vector<std::size_t> rest = without(choice.network.chosen, at);
+    std::optional<CoverSolution> aside = with_one_aside(choice, at, PartialCover(choice.table.matrix(), rest), oracle);
+    if (!aside) {
+      std::vector<PlacedStation> around = positions_around(oracle, std::span(&placed, 1), kAsideAround, kAside_m);
+      std::erase_if(around, [&](const PlacedStation& one) { return oracle.in_the_way(one.ground); });
+      if (around.empty() || !choice.table.add(around, {.report = {}, .stop = stop})) continue;
+      aside = with_one_aside(choice, at, PartialCover(choice.table.matrix(), rest), oracle);
+    }
+    if (!aside) continue;
+    std::ranges::replace(choice.visiting, station, aside->chosen[at]);
+    choice.network = std::move(*aside);
+    any = true;
+  }
+  return any;
 }
 
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,

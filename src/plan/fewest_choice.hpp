@@ -125,6 +125,9 @@ bool visit_units(FewestChoice& choice, const std::stop_token& stop);
 // Adds stations until the network captures what is asked of some meshes, and chooses again with these. True if there
 // was one to add.
 bool capture_meshes(FewestChoice& choice, const std::stop_token& stop);
+// Swaps each station that bars a door or a stair for the best one nearby that does not, if what is asked holds no worse
+// with it. True if there was one to swap. Not where stations are chosen for the most coverage alone.
+bool stand_aside(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop);
 // True if a network has no station in some unit where the one before has one.
 bool leaves_units(const FewestChoice& choice, std::span<const PlacedStation> before,
                   std::span<const PlacedStation> after);

@@ -20,6 +20,7 @@ struct PlacementOracle {
   std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // whether one head sees the other
+  std::function<bool(const Vec3&)> in_the_way = {};       // whether a tripod on a ground point bars a door or a stair
   double height_m = 0;                                    // of the scanner's head
   double range_m = 0;                                     // of a scanner
 };

@@ -168,8 +168,8 @@ void require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
                    .element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(matrix.elements())});
   const CoverProblem asked{
       .matrix = matrix, .existing = first_numbers(kept), .fewest = problem.stations_min, .most = problem.stations_max};
-  StationsThatPay pays =
-      stations_that_pay(asked, context.to_visit->element_m2, least_m2, context.to_visit->units.stations_in(stations));
+  StationsThatPay pays = stations_that_pay(asked, context.to_visit->element_m2, {least_m2, problem.pays_share},
+                                           context.to_visit->units.stations_in(stations));
   pays.capture = rounded_down(pays.capture);
   for (Requirement& requirement : problem.requirements)
     if (requires_capture(requirement)) {
@@ -177,27 +177,6 @@ void require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
       requirement.limit = std::max(requirement.limit, pays.capture);
     }
   context.pays = pays;
-}
-
-// Finds what a further station would add to the answer; empty if stopped.
-std::optional<FurtherStation> further_station(const PlanResult& result, PlanContext& context, Site& site,
-                                              const Progress& progress) {
-  if (result.front.empty() || !result.candidates || !result.problem.fewest || !needs_attainable(result.problem))
-    return std::nullopt;
-  const PlanEntry& entry = result.front[answer(result)];
-  const std::size_t count = entry.stations.size(), kept = std::min(result.problem.existing.size(), count);
-  const CoverageMatrix matrix = columns_with(entry.stations, context, site.simulator(), *result.candidates, progress);
-  if (matrix.candidates() < count + result.candidates->coverage().size()) return std::nullopt;
-  const double element_m2 = surveyed_area_m2(site.scene()) / static_cast<double>(matrix.elements());
-  const FurtherStations more =
-      further_stations({.matrix = matrix, .existing = first_numbers(count)}, count - kept, element_m2);
-  std::vector<PlacedStation> placed(entry.stations.begin() + static_cast<std::ptrdiff_t>(kept), entry.stations.end());
-  FurtherStation further{.m2 = more.each_m2};
-  if (more.candidates.empty()) return further;
-  const double minutes = context.on_site().visit(placed).minutes;
-  for (const std::size_t k : more.candidates) placed.push_back(result.candidates->stations()[k - count]);
-  further.minutes = (context.on_site().visit(placed).minutes - minutes) / static_cast<double>(more.candidates.size());
-  return further;
 }
 
 // Share of what is attainable that pays and is left out without a question, where nothing links it.
@@ -287,7 +266,6 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   result.pays = context.pays;
   complete_front(result, context, site, {.report = {}, .stop = watch.abort});
   require_no_more_than_answer(result, asked);
-  result.further = further_station(result, context, site, {.report = {}, .stop = watch.abort});
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;
 }

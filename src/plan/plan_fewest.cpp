@@ -12,12 +12,14 @@
 #include <utility>
 
 #include "core/seconds_since.hpp"
+#include "cover/network.hpp"
 #include "evaluate/storey_ties.hpp"
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
 #include "plan/limits.hpp"
 #include "plan/spread_positions.hpp"
 #include "plan/trade_off.hpp"
+#include "plan/what_pays.hpp"
 
 namespace vantage {
 namespace {
@@ -252,6 +254,8 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
   if (capture_meshes(choice, watch.stop)) check_links(choice, context, simulator, watch);
+  if (context.pays && add_what_pays(choice, *context.pays, watch.stop)) check_links(choice, context, simulator, watch);
+  if (stand_aside(choice, context.oracle(), watch.stop)) check_links(choice, context, simulator, watch);
   return choice;
 }
 
@@ -279,6 +283,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   const auto affordable = [&](std::size_t stations) { return traced + choice.network.chosen.size() <= stations; };
   const auto verify_again = [&] {
     visit_units(choice, watch.stop);
+    stand_aside(choice, context.oracle(), watch.stop);
     check_links(choice, context, simulator, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
@@ -363,6 +368,29 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
   return points;
 }
 
+// Finds what a further station would add to the answer, linked to it, where links can connect the answer.
+std::optional<FurtherStation> further_station(const PlanResult& result, const FewestChoice& choice,
+                                              PlanContext& context, const Simulator& simulator) {
+  const bool chosen = choice.table.stations().size() > choice.asked.existing;
+  if (!choice.asked.captured || !chosen || result.front.empty()) return std::nullopt;
+  const std::vector<PlacedStation>& stations = result.front[answer(result)].stations;
+  const CoverProblem asked = cover_problem(choice);
+  CoverProblem problem{.matrix = asked.matrix};
+  for (const PlacedStation& station : stations) problem.existing.push_back(choice.table.nearest(station));
+  if (components_of(asked, problem.existing, asked.link).count <= 1)
+    problem.graph = asked.graph, problem.link = asked.link;
+  const std::span placed = std::span(stations).subspan(choice.asked.existing);
+  const double element_m2 = surveyed_area_m2(simulator.scene()) / static_cast<double>(asked.matrix.elements());
+  const FurtherStations more = further_stations(problem, placed.size(), element_m2);
+  FurtherStation further{.m2 = more.each_m2};
+  if (more.candidates.empty()) return further;
+  std::vector<PlacedStation> with(placed.begin(), placed.end());
+  for (const std::size_t k : more.candidates) with.push_back(choice.table.stations()[k]);
+  further.minutes = (context.on_site().visit(with).minutes - context.on_site().visit(placed).minutes) /
+                    static_cast<double>(more.candidates.size());
+  return further;
+}
+
 // Time ran out before anything was traced: an allowed position, of which nothing is known.
 std::vector<PlanEntry> any_position(PlanContext& context, const Candidates& candidates, VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();
@@ -400,6 +428,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result.trade_off = std::move(points);
   }
   result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
+  result.further = further_station(result, choice, context, simulator);
   return result;
 }
 

@@ -2,13 +2,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "evaluate/sight_targets.hpp"
 #include "objective/registered_sample.hpp"
 #include "objective/registration_adjustment.hpp"
+#include "placement/in_the_way.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
@@ -27,40 +27,11 @@ constexpr std::uint64_t kSampleVoxels = 100'000;
 constexpr double kLeastGain = 0.2;
 constexpr double kTargetClearance_m = 0.15;  // free space around a target's stand
 constexpr double kFromStations_m = 1.0;      // a scanner's tripod and its operator
-constexpr double kPassage_m = 0.65;          // a place with walls within this on both sides is a way through
-constexpr double kSwing_m = 1.0;             // from a way through, as far as the leaf of a door reaches
 constexpr double kUnderGround_m = 0.1;       // what lies so deep carries a stand
 // Least height of a triangle of targets that one scan measures, as a share of its longest side.
 constexpr double kLeastHeight = 0.05;
 // Sightings that a place is judged by, the most accurate ones: beyond them another scan adds little.
 constexpr std::size_t kJudgedSightings = 12;
-
-Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
-
-bool in_passage(const ClashChecker& clash, const Vec3& centre) {
-  constexpr int kWays = 16;  // the jambs of a thin wall show along it only
-  for (int k = 0; k < kWays; ++k) {
-    const Vec3 step = level_way(std::numbers::pi * k / kWays) * kPassage_m;
-    if (!clash.sees(centre, centre + step) && !clash.sees(centre, centre - step)) return true;
-  }
-  return false;
-}
-
-// Where the leaf of a door may swing: a passage in free view is as near as a leaf is wide. The points looked at lie
-// close enough to meet a passage through a wall of 10 cm.
-bool in_swing(const ClashChecker& clash, const Vec3& centre) {
-  constexpr int kRings = 11;
-  for (int ring = kRings; ring > 0; --ring) {
-    const double radius = kSwing_m * ring / kRings;
-    const int ways = 6 * ring;
-    for (int k = 0; k < ways; ++k) {
-      const Vec3 there = centre + level_way(2 * std::numbers::pi * k / ways) * radius;
-      if (clash.distance(there, kPassage_m) < kPassage_m && clash.sees(centre, there) && in_passage(clash, there))
-        return true;
-    }
-  }
-  return false;
-}
 
 // A pane of glass with nothing solid under it.
 bool on_glass(const ClashChecker& clash, const Vec3& centre, const Vec3& ground) {

@@ -185,8 +185,10 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)
                         : question.objectives.empty() ? by_name(question, stations)
                                                       : of_objectives(question, stations, least);
-  if (asks_what_pays(question))
+  if (asks_what_pays(question)) {
     asked.pays_m2 = question.pays_m2.value_or(default_pays_m2 * site.length_scale() * site.length_scale());
+    asked.pays_share = question.pays_m2 ? 0 : default_pays_share;
+  }
   asked.existing = question.existing, asked.existing_setups = question.existing_setups;
   asked.existing_names = question.existing_names;
   asked.heights_m = question.heights_m;

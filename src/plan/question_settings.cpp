@@ -37,7 +37,8 @@ const SettingTable<SurveyQuestion>& question_settings() {
           .number("pays", "M2",
                   otherwise("Surface that the others do not capture, in square metres, which a station has to add: the "
                             "survey has as many stations as do, and one in every room and part of the floor",
-                            default_pays_m2),
+                            default_pays_m2) +
+                      ", or a tenth of what a station captures on average if that is more",
                   &Question::pays_m2, positive)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "

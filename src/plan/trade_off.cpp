@@ -131,6 +131,24 @@ bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double as
   return true;
 }
 
+bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std::stop_token& stop) {
+  if (!choice.to_visit || choice.asked.minutes || out_of_reach(choice)) return false;
+  bool any = false;
+  while (choice.placed() < choice.asked.most && !stop.stop_requested()) {
+    CoverProblem problem = cover_problem(choice);
+    problem.existing = choice.network.chosen;
+    const FurtherStations more = further_stations(problem, choice.placed(), choice.to_visit->element_m2);
+    if (more.candidates.empty() || more.each_m2 < pays.least_m2) break;
+    std::vector<std::size_t> network = choice.network.chosen;
+    network.push_back(more.candidates.front());
+    choice.network = evaluate_cover(cover_problem(choice), std::move(network));
+    choice.one_fewer.reset();
+    any = true;
+  }
+  if (any) choice.asked.coverage = std::max(choice.asked.coverage, choice.network.coverage - choice.margins.coverage);
+  return any;
+}
+
 void mark_knee(std::vector<TradeOffPoint>& points) {
   if (points.size() < 3) return;
   const auto at = [&](const TradeOffPoint& point) {

@@ -87,12 +87,12 @@ std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const Sta
   return found;
 }
 
-StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, double least_m2,
+StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, const LeastGain& least,
                                   std::span<const std::vector<std::size_t>> units) {
   const std::size_t kept = problem.existing.size();
   const CoverageMatrix matrix = with_even_weights(problem.matrix);
   const std::size_t fewest = problem.fewest > 1 ? problem.fewest : problem.existing.empty() ? 1 : 0;
-  StationsThatPay found{.least_m2 = least_m2};
+  StationsThatPay found;
   // Longer and longer, since few sites take as many stations as are allowed.
   for (std::size_t most = std::min(std::max(kFirstChoice, fewest), problem.most);;
        most = std::min(2 * most, problem.most)) {
@@ -105,10 +105,12 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2
       const std::size_t next = looked_at_after(n), last = std::min(n + next, all);
       if (n + next > all && !ended) break;
       found.next_m2 = last > n ? (captured[last] - captured[n]) / static_cast<double>(last - n) : 0;
-      if (found.next_m2 >= least_m2) continue;
+      const auto before = static_cast<double>(std::max<std::size_t>(kept + n, 1));
+      found.least_m2 = std::max(least.m2, least.share * captured[n] / before);
+      if (found.next_m2 >= found.least_m2) continue;
       std::vector<std::size_t> chosen(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept + n));
       const std::vector<std::size_t> own =
-          for_empty_units(matrix, nullptr, chosen, units, element_m2, kLeastOfUnit * least_m2);
+          for_empty_units(matrix, nullptr, chosen, units, element_m2, kLeastOfUnit * least.m2);
       found.parts = std::min(own.size(), problem.most - n);
       chosen.insert(chosen.end(), own.begin(), own.begin() + static_cast<std::ptrdiff_t>(found.parts));
       found.stations = n + found.parts;
@@ -120,7 +122,11 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2
 
 FurtherStations further_stations(const CoverProblem& problem, std::size_t stations, double element_m2) {
   const CoverageMatrix matrix = with_even_weights(problem.matrix);
-  const CoverProblem even{.matrix = matrix, .existing = problem.existing, .most = looked_at_after(stations)};
+  const CoverProblem even{.matrix = matrix,
+                          .graph = problem.graph,
+                          .existing = problem.existing,
+                          .most = looked_at_after(stations),
+                          .link = problem.link};
   const std::vector<std::size_t> order = greedy(even);
   FurtherStations found{
       .candidates = {order.begin() + static_cast<std::ptrdiff_t>(problem.existing.size()), order.end()}};

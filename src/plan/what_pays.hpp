@@ -33,14 +33,20 @@ std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const Sta
                                          std::span<const std::vector<std::size_t>> units, double element_m2,
                                          double least_m2);
 
+// What a further station has to capture: so many m², and such a share of what the stations before it capture on
+// average.
+struct LeastGain {
+  double m2 = 0, share = 0;
+};
+
 // Follows a greedy choice of `problem.most` further stations at most, and takes `problem.fewest` at least where that is
 // more than one. After n of them the next n/5 are looked at together, at least one: a single step of a greedy choice
 // may be small by chance. `units`: candidates in each part of the floor that is to have a station. `element_m2`:
 // surface of an element.
-StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, double least_m2,
+StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, const LeastGain& least,
                                   std::span<const std::vector<std::size_t>> units = {});
 
-// What further stations add to those that exist, a fifth of `stations` together and at least one: new surface of each
+// What further stations of a problem add to those that exist, a fifth of `stations` together and at least one: new surface of each
 // on average, and the candidates.
 struct FurtherStations {
   std::vector<std::size_t> candidates = {};

@@ -53,7 +53,8 @@ class Maker {
     constexpr double kUnits[] = {1, 100, 1000, 1 / 0.0254, 1 / 0.3048};
     const std::size_t unit = chance(0.4) ? 0 : below(5);
     made_.variant.per_metre = kUnits[unit];
-    made_.variant.z_up = chance(0.5), made_.variant.utm = chance(0.3), made_.variant.nameless = chance(0.2);
+    made_.variant.z_up = chance(0.5), made_.variant.utm = chance(0.3),
+    made_.variant.nameless = chance(0.2) && !made_.named;
     if (made_.variant.utm) made_.site.offset = {500000, 5400000, 400};
     constexpr const char* kNames[] = {"m", "cm", "mm", "in", "ft"};
     made_.told += std::string(", in ") + kNames[unit] + (made_.variant.z_up ? ", Z up" : ", Y up") +
@@ -267,12 +268,9 @@ class Maker {
 }  // namespace
 
 RandomSite make_random_site(std::uint64_t seed) {
-  const bool strange = seed >= kFirstStrange;
-  RandomSite made = Maker(seed * 2 + 1, seed % 3 == 0)
-                        .make(strange ? std::optional<std::size_t>(seed % kStrangeKinds) : std::nullopt);
-  // Nothing but its name tells water from a floor.
-  if (strange && seed % kStrangeKinds == 0) made.variant.nameless = false;
-  return made;
+  std::optional<std::size_t> strange;
+  if (seed >= kFirstStrange) strange = (seed - kFirstStrange) % kStrangeKinds;
+  return Maker(seed * 2 + 1, seed % 3 == 0).make(strange);
 }
 
 void write_site(const RandomSite& random, const std::filesystem::path& file) {

@@ -19,6 +19,7 @@ struct RandomSite {
   std::set<std::string> shut;              // rooms that no way leads to
   std::vector<Part> leaves;                // of doors, closed in the file and open in truth
   std::map<std::string, Part> drawn = {};  // by the name of a part: what the file has instead, such as bars
+  bool named = false;                      // never written without names
   bool turned = false;                     // sheets whose normals point away from the room
   std::string told;                        // in words, for messages
 };

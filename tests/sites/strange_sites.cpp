@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <string>
 #include <vector>
 
 #include "generate/sites/shapes.hpp"
@@ -42,6 +44,7 @@ void add_hut(RandomSite& made, const Draws& draw, double x, double y, double z) 
 
 // Two plateaus of sheets above a river, a road over it between railings, and a house that is a mere block.
 void terrain(RandomSite& made, const Draws& draw) {
+  made.named = true;  // nothing but its name tells water from a floor
   const double z = draw.uniform(4, 9), y1 = draw.uniform(20, 40), half = draw.uniform(6, 9),
                wide = draw.uniform(20, 35);
   const double edge = half + z / std::tan(draw.uniform(0.9, 1.1));  // 50° to 63°
@@ -171,10 +174,118 @@ void sheets(RandomSite& made, const Draws& draw) {
   made.told = "two rooms of sheets";
 }
 
+// A yard over a cellar with a barrel vault, and an open stair between walls that leads down to its doorway.
+void vault(RandomSite& made, const Draws& draw) {
+  constexpr int kFacets = 12, kRises = 18;
+  constexpr double kGoing = 0.28, kWide = 1.4, t = 0.4;
+  const double x1 = draw.uniform(5, 7), y1 = draw.uniform(9, 16), depth = draw.uniform(3.2, 3.5), spring = 1.5;
+  const double rise = draw.uniform(0.9, 1.3), a = x1 / 2 - kWide / 2, b = a + kWide, y2 = y1 + t + kGoing * kRises;
+  carve(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
+        {block(-6, x1 + 6, -4, y2 + 6, -0.3, 0)}, {block(a, b, y1 + t, y2, -0.3, 0)});
+  add_box(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
+          block(-t, x1 + t, -t, y2, -depth - 0.3, -depth));
+  Part& walls = add_part(made.site, draw.name("wall"), sites::kPlaster, Surface::wall_top);
+  const double top = -depth + spring + rise + 0.1;
+  carve(walls,
+        {block(-t, 0, -t, y1 + t, -depth, -depth + spring), block(x1, x1 + t, -t, y1 + t, -depth, -depth + spring),
+         block(0, x1, -t, 0, -depth, top), block(0, x1, y1, y1 + t, -depth, top)},
+        {block(a, b, y1, y1 + t, -depth, -depth + 2.1)});
+  for (const double x : {a - t, b}) add_box(walls, block(x, x + t, y1 + t, y2, -depth, 0.9));
+  add_box(walls, block(a, b, y1 + 0.01, y1 + t, top, 0.9));
+  Part& shell = add_part(made.site, draw.name("vault"), sites::kPlaster, Surface::roof);
+  const auto on_arc = [&](int k, double y) {
+    const double angle = std::numbers::pi * k / kFacets;
+    return Vec3{x1 / 2 - x1 / 2 * std::cos(angle), y, -depth + spring + rise * std::sin(angle)};
+  };
+  for (int k = 0; k < kFacets; ++k)  // seen from below
+    add_quad(shell, on_arc(k, 0), on_arc(k, y1), on_arc(k + 1, y1), on_arc(k + 1, 0));
+  sites::add_flight(add_part(made.site, draw.name("stair"), sites::kConcrete, Surface::floor), a, b, y1 + t, -depth,
+                    kRises, depth / kRises, kGoing);
+  add_hut(made, draw, -5, -3, 0);
+  made.site.places = {place("yard", -6, x1 + 6, -4, y2 + 6, 0, true), place("cellar", 0, x1, 0, y1, -depth)};
+  made.told = "cellar with a vault below a yard";
+}
+
+// Decks for cars between parapets, with columns, and a ramp from each to the next.
+void car_park(RandomSite& made, const Draws& draw) {
+  constexpr double kRamp = 3.6, kSlab = 0.3, kFrom = 4;
+  const int levels = 2 + static_cast<int>(draw.uniform(0, 2));
+  const double storey = draw.uniform(2.7, 3), run = storey / draw.uniform(0.13, 0.15);
+  const double x1 = draw.uniform(18, 26), y1 = kFrom + run + draw.uniform(6, 9), ramp = x1 - 0.5 - kRamp;
+  for (int level = 0; level < levels; ++level) {
+    const double z = level * storey;
+    std::vector<Box> holes;
+    if (level > 0) holes.push_back(block(ramp, ramp + kRamp, kFrom, kFrom + run, z - kSlab, z));
+    carve(add_part(made.site, draw.name("deck"), sites::kConcrete, Surface::floor),
+          {block(0, x1, level > 0 ? 0 : -6, y1, z - kSlab, z)}, holes);
+    const double high = z + 1.1;
+    Part& parapets = add_part(made.site, draw.name("parapet"), sites::kPlaster, Surface::wall_top);
+    std::vector<Box> openings;
+    if (level == 0) openings.push_back(block(3, 9, 0, 0.2, z, high));
+    carve(parapets,
+          {block(0, x1, 0, 0.2, z, high), block(0, x1, y1 - 0.2, y1, z, high), block(0, 0.2, 0, y1, z, high),
+           block(x1 - 0.2, x1, 0, y1, z, high)},
+          openings);
+    if (level > 0) {
+      add_box(parapets, block(ramp - 0.15, ramp, kFrom, kFrom + run, z, high));
+      add_box(parapets, block(ramp, ramp + kRamp, kFrom - 0.15, kFrom, z, high));
+    }
+    for (int car = 0, cars = 2 + static_cast<int>(draw.uniform(0, 4)); car < cars; ++car)
+      sites::add_car(made.site, draw.name("car"), 3 + draw.uniform(0, 0.4), 3.5 + 3.1 * car, z);
+    if (level + 1 == levels) continue;
+    Part& columns = add_part(made.site, draw.name("column"), sites::kConcrete, Surface::wall_top);
+    for (double x = 0.2; x < ramp - 1; x += 8)
+      for (double y = 0.2; y < y1 - 0.5; y += 7.5)
+        add_box(columns, block(x, x + 0.4, y, y + 0.4, z, z + storey - kSlab));
+    const double end = kFrom + run, next = z + storey;
+    sites::add_prism(add_part(made.site, draw.name("ramp"), sites::kConcrete, Surface::floor),
+                     {{kFrom, z - 0.25}, {end, next - 0.25}, {end, next}, {kFrom, z}}, ramp, ramp + kRamp);
+  }
+  for (int level = 0; level < levels; ++level)
+    made.site.places.push_back(place("deck", 0, x1, 0, y1, level * storey, level + 1 == levels));
+  made.told = std::to_string(levels) + " decks for cars with ramps";
+}
+
+// A house on a slope: terrain of one sheet, a level floor on a foundation, a closed door on the uphill side.
+void hillside(RandomSite& made, const Draws& draw) {
+  constexpr int kCells = 24;
+  constexpr double kCell = 1.75, kSize = kCells * kCell, t = 0.3;
+  const double slope = draw.uniform(0.06, 0.16), swell = draw.uniform(0.2, 0.7), phase = draw.uniform(0, 6);
+  const auto at = [&](double x, double y) {
+    return Vec3{x, y, 30 + slope * x + swell * std::sin(0.17 * y + phase) * std::sin(std::numbers::pi * x / kSize)};
+  };
+  Part& terrain = add_part(made.site, draw.name("terrain"), sites::kGrass, Surface::floor);
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      const double x = i * kCell, y = j * kCell;
+      add_quad(terrain, at(x, y), at(x + kCell, y), at(x + kCell, y + kCell), at(x, y + kCell));
+    }
+  const double x0 = draw.uniform(10, 14), x1 = x0 + draw.uniform(6, 9), y0 = draw.uniform(14, 18),
+               y1 = y0 + draw.uniform(5, 7), door = y0 + 2;
+  double z = at(x1, door).z;
+  for (const double y : {y0, door, door + 1, y1}) z = std::max(z, at(x1, y).z + 0.1);
+  add_box(add_part(made.site, draw.name("foundation"), sites::kConcrete, Surface::floor),
+          block(x0, x1, y0, y1, z - 4, z));
+  const double high = z + 2.6, middle = (x0 + x1) / 2;
+  carve(
+      add_part(made.site, draw.name("wall"), sites::kPlaster, Surface::wall_top),
+      {block(x0, x1, y0, y0 + t, z, high), block(x0, x1, y1 - t, y1, z, high), block(x0, x0 + t, y0, y1, z, high),
+       block(x1 - t, x1, y0, y1, z, high), block(middle - 0.1, middle + 0.1, y0, y1, z, high)},
+      {block(x1 - t, x1, door, door + 1, z, z + 2.1), block(middle - 0.1, middle + 0.1, y0 + 1, y0 + 1.9, z, z + 2.05),
+       block(x0, x0 + t, y0 + 2, y0 + 3.4, z + 0.9, z + 2.1)});
+  add_box(add_part(made.site, draw.name("roof"), sites::kTiles, Surface::roof),
+          block(x0 - 0.4, x1 + 0.4, y0 - 0.4, y1 + 0.4, high, high + 0.25));
+  add_leaf(made, draw.name("leaf"),
+           block(x1 - t / 2 - 0.02, x1 - t / 2 + 0.02, door + 0.01, door + 0.99, z + 0.01, z + 2.09));
+  sites::add_tree(made.site, draw.name("tree"), 5, 8, at(5, 8).z);
+  made.site.places = {place("hall", middle, x1, y0, y1, z), place("chamber", x0, middle, y0, y1, z)};
+  made.told = "house on a slope";
+}
+
 }  // namespace
 
 void make_strange(RandomSite& made, std::size_t kind, const Draws& draw) {
-  constexpr std::array kinds{terrain, yard, shop, platform, loft, sheets};
+  constexpr std::array kinds{loft, sheets, terrain, yard, shop, platform, vault, car_park, hillside};
   static_assert(kinds.size() == kStrangeKinds);
   kinds[kind % kinds.size()](made, draw);
 }

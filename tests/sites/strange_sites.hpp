@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sites on which the right place is hard to find: terrain high above its lowest point, gates, glass doors, gratings,
-// ladders and single sheets.
+// Sites on which the right place is hard to find: terrain high above its lowest point or on a slope, gates, glass
+// doors, gratings, ladders, single sheets, vaults and decks for cars.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,6 @@ struct Draws {
 
 // Adds one of the kinds to an empty site.
 void make_strange(RandomSite& made, std::size_t kind, const Draws& draw);
-inline constexpr std::size_t kStrangeKinds = 6;
+inline constexpr std::size_t kStrangeKinds = 9;
 
 }  // namespace vantage::test

@@ -28,25 +28,35 @@ CoverageMatrix apart(const std::vector<std::uint32_t>& sizes, std::uint32_t weig
 
 TEST(WhatPays, EndsWhereAFurtherStationCapturesLess) {
   const CoverageMatrix matrix = apart({10, 40, 20, 30});
-  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 9}, 2, 50);
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 9}, 2, {.m2 = 50});
   EXPECT_EQ(pays.stations, 2u);
   EXPECT_DOUBLE_EQ(pays.capture, 0.7);
   EXPECT_DOUBLE_EQ(pays.next_m2, 40);
-  const StationsThatPay all = stations_that_pay({.matrix = matrix, .most = 9}, 2, 1);
+  const StationsThatPay all = stations_that_pay({.matrix = matrix, .most = 9}, 2, {.m2 = 1});
   EXPECT_EQ(all.stations, 4u);
   EXPECT_DOUBLE_EQ(all.capture, 1);
   EXPECT_DOUBLE_EQ(all.next_m2, 0);
 }
 
+TEST(WhatPays, AsksForAShareOfTheAverageWhereThatIsMore) {
+  const CoverageMatrix matrix = apart({100, 60, 9, 4});
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5}).stations, 3u);
+  // 9 of 80 and 4 of 56 on average.
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5, .share = 0.12}).stations, 2u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 1, .share = 0.1}).stations, 3u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 1, .share = 0.05}).stations, 4u);
+  EXPECT_DOUBLE_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5, .share = 0.12}).least_m2, 0.12 * 80);
+}
+
 TEST(WhatPays, TakesOneStationWhereNoneDoes) {
   const CoverageMatrix matrix = apart({3, 2});
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, 100).stations, 1u);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .existing = {1}, .most = 9}, 1, 100).stations, 0u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 100}).stations, 1u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .existing = {1}, .most = 9}, 1, {.m2 = 100}).stations, 0u);
 }
 
 TEST(WhatPays, CountsWhatExistingStationsCapture) {
   const CoverageMatrix matrix = apart({40, 30, 20, 10});
-  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .existing = {0}, .most = 9}, 1, 25);
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .existing = {0}, .most = 9}, 1, {.m2 = 25});
   EXPECT_EQ(pays.stations, 1u);
   EXPECT_DOUBLE_EQ(pays.capture, 0.7);
 }
@@ -56,33 +66,33 @@ TEST(WhatPays, LooksAtAFifthMoreStationsTogether) {
   std::vector<std::uint32_t> sizes(300, 20);
   sizes.insert(sizes.end(), 200, 2);
   const CoverageMatrix matrix = apart(sizes);
-  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 450}, 1, 10);
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 450}, 1, {.m2 = 10});
   EXPECT_GT(pays.stations, 240u);
   EXPECT_LT(pays.stations, 300u);
   EXPECT_LT(pays.next_m2, 10);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 100}, 1, 10).stations, 100u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 100}, 1, {.m2 = 10}).stations, 100u);
 }
 
 TEST(WhatPays, TakesAsManyStationsAsAreAskedForAtLeast) {
   const CoverageMatrix matrix = apart({40, 30, 20, 10});
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .fewest = 3, .most = 9}, 1, 100).stations, 3u);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .fewest = 2, .most = 3}, 1, 1).stations, 3u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .fewest = 3, .most = 9}, 1, {.m2 = 100}).stations, 3u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .fewest = 2, .most = 3}, 1, {.m2 = 1}).stations, 3u);
 }
 
 TEST(WhatPays, SurfaceCountsAlikeWhateverItsWeight) {
   const CoverageMatrix matrix = apart({40, 30, 20, 10}, 7);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, 25).stations, 2u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 25}).stations, 2u);
 }
 
 // Candidates 2 and 3 stand in parts of the floor where a further station adds little, 4 in one where it adds nothing.
 TEST(WhatPays, EachPartOfTheFloorHasAStation) {
   const CoverageMatrix matrix = apart({50, 30, 8, 6, 1});
   const std::vector<std::vector<std::size_t>> units{{0, 1}, {2}, {3}, {4}, {}};
-  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 9}, 1, 25, units);
+  const StationsThatPay pays = stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 25}, units);
   EXPECT_EQ(pays.stations, 4u);
   EXPECT_EQ(pays.parts, 2u);
   EXPECT_DOUBLE_EQ(pays.capture, 94.0 / 95);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 3}, 1, 25, units).stations, 3u);
+  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 3}, 1, {.m2 = 25}, units).stations, 3u);
 }
 
 TEST(WhatPays, APartTakesItsBestStationThatMayStand) {

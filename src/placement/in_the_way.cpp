@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/in_the_way.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace vantage {
+namespace {
+
+constexpr double kPassage_m = 0.65;  // a place with walls within this on both sides is a way through
+constexpr double kSwing_m = 1.0;     // from a way through, as far as the leaf of a door reaches
+constexpr double kDoor_m = 1.5;      // above the ground: over tables, below lintels
+
+// Ground that falls by a tread within the first distance and by two within the second. Steeper than the last fall
+// nobody walks.
+constexpr double kTread_m = 0.5, kTwoTreads_m = 0.9;
+constexpr double kFirstFall_m = 0.1, kSecondFall_m = 0.28, kLargestFall_m = 1.1;
+constexpr double kOver_m = 0.5;  // above the ground, from where the ground is looked for
+
+Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
+
+}  // namespace
+
+bool in_passage(const ClashChecker& clash, const Vec3& at) {
+  constexpr int kWays = 16;  // the jambs of a thin wall show along it only
+  for (int k = 0; k < kWays; ++k) {
+    const Vec3 step = level_way(std::numbers::pi * k / kWays) * kPassage_m;
+    if (!clash.sees(at, at + step) && !clash.sees(at, at - step)) return true;
+  }
+  return false;
+}
+
+// The points looked at lie close enough to meet a passage through a wall of 10 cm.
+bool in_swing(const ClashChecker& clash, const Vec3& at) {
+  constexpr int kRings = 11;
+  for (int ring = kRings; ring > 0; --ring) {
+    const double radius = kSwing_m * ring / kRings;
+    const int ways = 6 * ring;
+    for (int k = 0; k < ways; ++k) {
+      const Vec3 there = at + level_way(2 * std::numbers::pi * k / ways) * radius;
+      if (clash.distance(there, kPassage_m) < kPassage_m && clash.sees(at, there) && in_passage(clash, there))
+        return true;
+    }
+  }
+  return false;
+}
+
+bool on_steps(const ClashChecker& clash, const Vec3& ground) {
+  constexpr int kWays = 16;
+  const Vec3 over = ground + Vec3{0, 0, kOver_m};
+  for (int k = 0; k < kWays; ++k) {
+    const Vec3 way = level_way(2 * std::numbers::pi * k / kWays);
+    const auto fall_at = [&](double away_m) -> std::optional<double> {
+      const Vec3 there = over + way * away_m;
+      if (!clash.sees(over, there)) return std::nullopt;
+      const std::optional<Vec3> found = clash.ground_below(there, kOver_m + kLargestFall_m);
+      return found ? std::optional(ground.z - found->z) : std::nullopt;
+    };
+    const auto first = fall_at(kTread_m);
+    if (!first || *first < kFirstFall_m) continue;
+    const auto second = fall_at(kTwoTreads_m);
+    if (second && *second >= kSecondFall_m && *second > *first) return true;
+  }
+  return false;
+}
+
+bool in_the_way(const ClashChecker& clash, const Vec3& ground) {
+  const Vec3 at = ground + Vec3{0, 0, kDoor_m};
+  return on_steps(clash, ground) || in_passage(clash, at) || in_swing(clash, at);
+}
+
+}  // namespace vantage
