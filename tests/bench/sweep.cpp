@@ -17,6 +17,7 @@
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/plan_map.hpp"
+#include "placement/in_the_way.hpp"
 #include "sight.hpp"
 #include "sites/random_site.hpp"
 #include "support/temporary_folder.hpp"
@@ -101,7 +102,7 @@ struct Score {
   std::size_t at_least = 0, greedy = 0, by_thumb = 0;
   std::size_t rooms = 0, visited = 0;  // of the truth, those that a way leads to
   std::vector<std::string> left_out;   // rooms, neither visited nor captured from others
-  std::size_t off_ground = 0, near_pairs = 0, links = 0, through_walls = 0;
+  std::size_t off_ground = 0, in_the_way = 0, near_pairs = 0, links = 0, through_walls = 0;
   bool on_plane = false;
   double closed = 0;  // the largest share of all floor that is closed, not planned and to be decided on
   bool met = false;
@@ -187,6 +188,8 @@ void judge_ground(const SweptSite& swept, Site& site, const PlanEntry& entry, Sc
   score.on_plane = site.area().on_plane();
   for (const ClosedPart& part : site.area().not_entered())
     if (part.to_decide() && part.kind != ClosedKind::hollow) score.closed = std::max(score.closed, part.share);
+  score.in_the_way = static_cast<std::size_t>(std::ranges::count_if(
+      entry.stations, [&](const PlacedStation& station) { return in_the_way(site.clash(), station.ground); }));
   if (!swept.truth) return;
   std::vector<Place> unvisited;
   for (const Place& place : rooms) {
@@ -308,6 +311,7 @@ std::vector<std::string> cells(const SweptSite& site, const Score& score) {
           known ? number(score.visited) + " of " + number(score.rooms) : "–",
           known ? number(score.left_out.size()) : "–",
           site.truth ? number(score.off_ground) : "–",
+          number(score.in_the_way),
           number(score.near_pairs),
           number(score.through_walls) + " of " + number(score.links),
           score.plan.linked ? "yes" : "no",
@@ -393,7 +397,6 @@ std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
 PlanResult planned(Site& site, const SweepOptions& options, std::optional<double> capture, double link) {
   SurveyQuestion question;
   question.capture = capture, question.link = link, question.targets = 0;
-  if (!capture) question.pays_m2 = options.pays_m2;
   return plan(site, question, {.max_seconds = options.max_seconds});
 }
 
@@ -435,7 +438,8 @@ class Sweep {
 
  private:
   Table sites_{{"site", "what", "ground m²", "stations", "proven least", "greedy", "rule of thumb", "rooms visited",
-                "rooms left out", "off ground", "too near", "links through walls", "linked", "captured", "met", "s"}};
+                "rooms left out", "off ground", "in the way", "too near", "links through walls", "linked", "captured",
+                "met", "s"}};
   Table rounds_{{"site", "stations", "walk, m", "of the shortest", "steps without a link", "least possible"}};
   Table by_hand_{
       {"site", "by hand", "captured", "linked", "default", "captured", "linked", "default at equal figures"}};
@@ -450,15 +454,14 @@ bool Sweep::add(const SweptSite& swept, const SweepOptions& options) {
   as.user_size_m = options.user_size_m, as.spacing_m = options.spacing_m;
   const Stopwatch watch;
   Site site = Site::open(swept.file, as);
-  const PlanResult result =
-      planned(site, options, options.pays_m2 ? std::nullopt : std::optional(kCapture), default_link);
+  const PlanResult result = planned(site, options, options.pays ? std::nullopt : std::optional(kCapture), default_link);
   Score score;
   score.seconds = watch.seconds();
   const PlanEntry& entry = result.front[answer(result)];
   score.plan = judged(entry), score.met = met(result);
   judge_ground(swept, site, entry, score);
   if (const auto links = entry.links()) judge_sight(site, entry, *links, default_link, score);
-  judge_number(result, options.pays_m2 ? score.plan.captured : kCapture, score);
+  judge_number(result, options.pays ? score.plan.captured : kCapture, score);
   if (const auto links = entry.links(); links && entry.visit) rounds_.add(round_cells(swept, site, entry, *links));
   sites_.add(cells(swept, score));
   tiles_.push_back(tile_of(
@@ -499,7 +502,7 @@ void SweepOptions::add(CLI::App& command) {
   command.add_option("--step", step_deg, "Degrees between rays; that of the default scanner otherwise");
   command.add_option("--user-size", user_size_m, "Upper bound of the voxel size, metres; the site's own otherwise");
   command.add_option("--spacing", spacing_m, "Wanted distance of points, metres; the site's own otherwise");
-  command.add_option("--pays", pays_m2, "Plan for the stations that add so many m², and not for 90 %");
+  command.add_flag("--pays", pays, "Plan for the stations that pay, as by default, and not for 90 %");
   command.add_option("--max-time", max_seconds, "Seconds for each plan; none otherwise");
 }
 

@@ -14,7 +14,7 @@ struct SweepOptions {
   std::string folder, by_hand;          // for results; of plans by hand, NAME.csv each. Empty: none
   std::optional<std::string> unit, up;  // of files
   std::optional<double> step_deg, user_size_m, spacing_m;
-  std::optional<double> pays_m2;  // empty: 90 % of what is attainable
+  bool pays = false;  // by default 90 % of what is attainable
   double max_seconds = 0;
   void add(CLI::App& command);
 };

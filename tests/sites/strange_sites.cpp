@@ -179,11 +179,11 @@ void vault(RandomSite& made, const Draws& draw) {
   constexpr int kFacets = 12, kRises = 18;
   constexpr double kGoing = 0.28, kWide = 1.4, t = 0.4;
   const double x1 = draw.uniform(5, 7), y1 = draw.uniform(9, 16), depth = draw.uniform(3.2, 3.5), spring = 1.5;
-  const double rise = draw.uniform(0.9, 1.3), a = x1 / 2 - kWide / 2, b = a + kWide, y2 = y1 + t + kGoing * kRises;
+  const double rise = draw.uniform(0.9, 1.3), a = x1 / 2 - kWide / 2, b = a + kWide, y2 = y1 + t + kGoing * (kRises - 1);
   carve(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
         {block(-6, x1 + 6, -4, y2 + 6, -0.3, 0)}, {block(a, b, y1 + t, y2, -0.3, 0)});
-  add_box(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
-          block(-t, x1 + t, -t, y2, -depth - 0.3, -depth));
+  carve(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
+        {block(-t, x1 + t, -t, y1 + t, -depth - 0.3, -depth), block(a - t, b + t, y1, y2, -depth - 0.3, -depth)});
   Part& walls = add_part(made.site, draw.name("wall"), sites::kPlaster, Surface::wall_top);
   const double top = -depth + spring + rise + 0.1;
   carve(walls,
@@ -211,11 +211,12 @@ void car_park(RandomSite& made, const Draws& draw) {
   constexpr double kRamp = 3.6, kSlab = 0.3, kFrom = 4;
   const int levels = 2 + static_cast<int>(draw.uniform(0, 2));
   const double storey = draw.uniform(2.7, 3), run = storey / draw.uniform(0.13, 0.15);
-  const double x1 = draw.uniform(18, 26), y1 = kFrom + run + draw.uniform(6, 9), ramp = x1 - 0.5 - kRamp;
+  const double x1 = draw.uniform(18, 26), y1 = kFrom + run + draw.uniform(6, 9);
+  const auto ramp_from = [&](int level) { return x1 - 0.5 - kRamp - level * (kRamp + 0.5); };  // to the next deck
   for (int level = 0; level < levels; ++level) {
-    const double z = level * storey;
+    const double z = level * storey, ramp = ramp_from(level), hole = ramp_from(level - 1);
     std::vector<Box> holes;
-    if (level > 0) holes.push_back(block(ramp, ramp + kRamp, kFrom, kFrom + run, z - kSlab, z));
+    if (level > 0) holes.push_back(block(hole, hole + kRamp, kFrom, kFrom + run, z - kSlab, z));
     carve(add_part(made.site, draw.name("deck"), sites::kConcrete, Surface::floor),
           {block(0, x1, level > 0 ? 0 : -6, y1, z - kSlab, z)}, holes);
     const double high = z + 1.1;
@@ -227,8 +228,9 @@ void car_park(RandomSite& made, const Draws& draw) {
            block(x1 - 0.2, x1, 0, y1, z, high)},
           openings);
     if (level > 0) {
-      add_box(parapets, block(ramp - 0.15, ramp, kFrom, kFrom + run, z, high));
-      add_box(parapets, block(ramp, ramp + kRamp, kFrom - 0.15, kFrom, z, high));
+      for (const double x : {hole - 0.15, hole + kRamp})
+        add_box(parapets, block(x, x + 0.15, kFrom, kFrom + run, z, high));
+      add_box(parapets, block(hole, hole + kRamp, kFrom - 0.15, kFrom, z, high));
     }
     for (int car = 0, cars = 2 + static_cast<int>(draw.uniform(0, 4)); car < cars; ++car)
       sites::add_car(made.site, draw.name("car"), 3 + draw.uniform(0, 0.4), 3.5 + 3.1 * car, z);
