@@ -254,7 +254,12 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
   if (capture_meshes(choice, watch.stop)) check_links(choice, context, simulator, watch);
-  if (context.pays && add_what_pays(choice, *context.pays, watch.stop)) check_links(choice, context, simulator, watch);
+  if (context.pays && add_what_pays(choice, *context.pays, watch.stop)) {
+    // Swaps may have gained so much that the last one does not pay any more.
+    if (keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
+      require_no_more(choice, context, simulator, watch);
+    check_links(choice, context, simulator, watch);
+  }
   if (stand_aside(choice, context.oracle(), watch.stop)) check_links(choice, context, simulator, watch);
   return choice;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -133,15 +134,20 @@ bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double as
 
 bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std::stop_token& stop) {
   if (!choice.to_visit || choice.asked.minutes || out_of_reach(choice)) return false;
+  CoverProblem problem = cover_problem(choice);
+  problem.coverage = 1;  // as much as there is
+  std::optional<ColumnIndex> columns;
   bool any = false;
   while (choice.placed() < choice.asked.most && !stop.stop_requested()) {
-    CoverProblem problem = cover_problem(choice);
-    problem.existing = choice.network.chosen;
-    const FurtherStations more = further_stations(problem, choice.placed(), choice.to_visit->element_m2);
+    CoverProblem further = problem;
+    further.existing = choice.network.chosen;
+    const FurtherStations more = further_stations(further, choice.placed(), choice.to_visit->element_m2);
     if (more.candidates.empty() || more.each_m2 < pays.least_m2) break;
     std::vector<std::size_t> network = choice.network.chosen;
     network.push_back(more.candidates.front());
-    choice.network = evaluate_cover(cover_problem(choice), std::move(network));
+    if (!columns) columns.emplace(problem.matrix);
+    choice.network =
+        evaluate_cover(cover_problem(choice), improve_by_swaps(problem, *columns, std::move(network), stop));
     choice.one_fewer.reset();
     any = true;
   }

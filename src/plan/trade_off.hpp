@@ -21,8 +21,9 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
 bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double asked_capture,
                     const std::stop_token& stop);
 
-// Adds linked stations as long as a further one captures `pays.least_m2`: fewer stations than a greedy choice takes may
-// capture the same and leave more. Asks for what all of them capture then. True if there was one to add.
+// Adds linked stations as long as a further one captures `pays.least_m2`, with swaps for coverage after each: fewer
+// stations than a greedy choice takes may capture the same and leave more. Asks for what all of them capture then. True
+// if there was one to add.
 bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std::stop_token& stop);
 
 // Numbers of stations to tell a trade-off by, around the chosen one: all of few, else so many evenly spread.

@@ -77,6 +77,30 @@ TEST(Look, TakesExistingStationsFirstAndSomeCandidatesWhereTimeIsOver) {
   EXPECT_EQ(looked_at(stop.get_token(), abort.get_token()).stations().size(), 0u);
 }
 
+TEST(StandAside, SwapsAStationThatIsInTheWay) {
+  FewestChoice choice = chosen(floor_problem(0.7), 16);
+  const FewestChoice before = choice;
+  ASSERT_EQ(choice.network.violation, 0);
+  PlacementOracle oracle = test::toy_site();
+  EXPECT_FALSE(stand_aside(choice, oracle, {})) << "nothing tells what is in the way";
+  const Vec3 door = choice.stations_of(choice.network)[1].ground;
+  double near_m = 0.7;
+  oracle.in_the_way = [&](const Vec3& ground) { return test::apart_m(ground, door) < near_m; };
+  EXPECT_TRUE(stand_aside(choice, oracle, {}));
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_EQ(choice.network.chosen.size(), before.network.chosen.size());
+  std::size_t same = 0;
+  for (const std::size_t k : choice.network.chosen) {
+    EXPECT_GE(test::apart_m(choice.table.stations()[k].ground, door), near_m);
+    same += static_cast<std::size_t>(std::ranges::count(before.network.chosen, k));
+  }
+  EXPECT_EQ(same, before.network.chosen.size() - 1) << "the others stay";
+  near_m = 3.5;  // farther than it looks
+  choice = before;
+  EXPECT_FALSE(stand_aside(choice, oracle, {}));
+  EXPECT_EQ(choice.network.chosen, before.network.chosen);
+}
+
 // A share of so much, of which samples show more or less: the bound is above it in a share of the samples that the
 // normal distribution gives for as many standard errors.
 TEST(LeastShare, IsRarelyAboveTheTruth) {

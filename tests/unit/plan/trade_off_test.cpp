@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "plan/what_pays.hpp"
 #include "unit/plan/floor_survey.hpp"
 
 namespace vantage {
@@ -106,6 +107,33 @@ TEST(KeepWhatPays, LeavesAFarCorner) {
   within.to_visit = &square_metres;
   EXPECT_FALSE(keep_what_pays(within, {.least_m2 = 1, .stations = all}, 0, {})) << "no more than pay by themselves";
   EXPECT_EQ(within.placed(), all);
+}
+
+TEST(AddWhatPays, EndsWhereALinkedStationAddsLess) {
+  const UnitsToVisit cells{.units = {}, .least_m2 = 0, .element_m2 = 1.0 / 16};  // of the floor
+  FewestChoice choice = test::floor_choice(test::floor_problem(0.4));
+  const auto candidates = test::floor_candidates(16);
+  look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
+  choose(choice, {}, {});
+  choice.to_visit = &cells;
+  const std::size_t before = choice.placed();
+  EXPECT_FALSE(add_what_pays(choice, {.least_m2 = 1e3}, {}));
+  EXPECT_EQ(choice.placed(), before);
+  EXPECT_TRUE(add_what_pays(choice, {.least_m2 = 5}, {}));
+  EXPECT_GT(choice.placed(), before);
+  EXPECT_EQ(choice.network.violation, 0) << "what is added is linked";
+  EXPECT_GE(choice.network.link, 0.1);
+  EXPECT_NEAR(choice.asked.coverage, choice.network.coverage, 1e-12);
+  const auto further_m2 = [&](const std::vector<std::size_t>& network) {
+    CoverProblem problem = cover_problem(choice);
+    problem.existing = network;
+    return further_stations(problem, 1, cells.element_m2).each_m2;
+  };
+  EXPECT_LT(further_m2(choice.network.chosen), 5);
+  const auto last = choice.network.chosen.end() - 1;
+  EXPECT_GE(further_m2({choice.network.chosen.begin(), last}), 5) << "the last one paid";
+  choice.asked.most = choice.placed();
+  EXPECT_FALSE(add_what_pays(choice, {.least_m2 = 0}, {})) << "as many as are allowed";
 }
 
 TEST(TradeOff, KneeIsFarthestAboveTheLineBetweenTheEnds) {
