@@ -140,8 +140,11 @@ Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
 /// along shorter ways are preferred to them, then links of larger values. Empty if links are not known.
 std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite& on_site);
 /// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are
-/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`.
+/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`, and stations whose access windows no
+/// session keeps in `Visit::closed`.
 void add_sessions(Evaluation& evaluation, const OnSite& on_site);
+/// Stations that no session can scan within the access windows of their rooms.
+std::size_t closed_stations(const Evaluation& evaluation);
 /// Minutes that the requirements allow on site; infinity if they set no limit.
 double most_minutes(std::span<const Requirement> requirements);
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.

@@ -483,6 +483,8 @@ class OnSiteOptions:
     entrance: Optional[Tuple[float, float, float]]
     day_min: Optional[float]
     crews: int
+    day_start_min: float
+    windows: List[str]
     def __init__(
         self,
         *,
@@ -493,6 +495,8 @@ class OnSiteOptions:
         entrance: Optional[Sequence[float]] = None,
         day_min: Optional[float] = None,
         crews: int = 1,
+        day_start_min: float = 480.0,
+        windows: Sequence[str] = [],
     ) -> None: ...
 
 class Target:
@@ -547,6 +551,18 @@ class Session(Round):
     def parts(self) -> int: ...
     @property
     def linked(self) -> bool: ...
+    @property
+    def start_min(self) -> float: ...
+    @property
+    def wait_min(self) -> List[float]: ...
+    @property
+    def waiting_min(self) -> float: ...
+
+class ClosedStation:
+    @property
+    def station(self) -> int: ...
+    @property
+    def why(self) -> str: ...
 
 class Visit(Round):
     @property
@@ -555,6 +571,10 @@ class Visit(Round):
     def sessions(self) -> List[Session]: ...
     @property
     def not_split(self) -> str: ...
+    @property
+    def closed(self) -> List[ClosedStation]: ...
+    @property
+    def bound(self) -> int: ...
 
 class OnSite:
     def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...

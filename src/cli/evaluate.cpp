@@ -406,7 +406,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     if (site.has_area()) text += lines_text(ground_lines(site.scene(), site.area(), placed));
     program.console.print(text);
   }
-  return exit_ok;
+  return closed_stations(found) == 0 ? exit_ok : exit_unmet;
 }
 
 }  // namespace

@@ -93,10 +93,19 @@ ordered_json sessions_json(const std::vector<Session>& sessions, std::size_t kep
   for (const Session& session : sessions) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}};
     one.update(round_json(session, kept));
+    one["start"] = clock_text(session.start_min);
     one["arrive_min"] = session.arrive_min;
+    one["wait_min"] = session.wait_min;
     one["parts"] = session.parts, one["linked"] = session.linked;
     json.push_back(std::move(one));
   }
+  return json;
+}
+
+// Stations that no session can scan within the access windows of their rooms.
+ordered_json closed_json(const std::vector<ClosedStation>& closed, std::size_t kept) {
+  ordered_json json = ordered_json::array();
+  for (const ClosedStation& one : closed) json.push_back({{"station", kept + one.station + 1}, {"why", one.why}});
   return json;
 }
 
@@ -205,6 +214,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     json["on_site"] = round_json(*entry.visit, kept);
     if (!entry.visit->sessions.empty()) json["on_site"]["sessions"] = sessions_json(entry.visit->sessions, kept);
     if (!entry.visit->not_split.empty()) json["on_site"]["not_split"] = entry.visit->not_split;
+    if (entry.visit->bound > 0) json["on_site"]["closed"] = closed_json(entry.visit->closed, kept);
   }
   return json;
 }
@@ -320,10 +330,10 @@ std::string evaluation_json(const Evaluation& evaluation) {
     json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
   if (evaluation.data) json["data"] = data_json(*evaluation.data);
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
+  const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
   if (evaluation.visit && !evaluation.visit->sessions.empty())
-    json["sessions"] = sessions_json(
-        evaluation.visit->sessions,
-        static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing)));
+    json["sessions"] = sessions_json(evaluation.visit->sessions, kept);
+  if (evaluation.visit && evaluation.visit->bound > 0) json["closed"] = closed_json(evaluation.visit->closed, kept);
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
   if (!evaluation.targets.empty()) {

@@ -57,6 +57,25 @@ std::string sessions_text(const Visit& visit) {
   return text + "the longest takes " + duration(60 * longest) + ", all together " + duration(60 * all);
 }
 
+// "kept at all 5 stations that access windows are for, with 35 min of waiting"
+std::string hours_text(const Visit& visit) {
+  const std::string all = counted(visit.bound, "station") + " that access windows are for";
+  if (!visit.closed.empty())
+    return "not kept at " + number(visit.closed.size()) + " of " + all + ", which no session scans";
+  double waiting = 0;
+  for (const Session& one : visit.sessions) waiting += one.waiting_min;
+  return "kept at all " + all + ", with " + (waiting > 0 ? duration(60 * waiting) + " of" : std::string("no")) +
+         " waiting";
+}
+
+// A sentence for each station whose access windows no session keeps.
+std::vector<std::string> hours_advice(const Visit& visit, const std::vector<std::string>& placed) {
+  std::vector<std::string> advice;
+  for (const ClosedStation& one : visit.closed)
+    advice.push_back(placed[one.station] + " is in no session: it " + one.why);
+  return advice;
+}
+
 // A sentence for each session whose scans no link holds together, or to the others.
 std::vector<std::string> sessions_advice(const Visit& visit, const std::vector<std::string>& placed) {
   std::vector<std::string> advice;
@@ -343,6 +362,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (evaluation.visit)
     lines.push_back({"on site", evaluation.visit->sessions.empty() ? "about " + duration(60 * evaluation.visit->minutes)
                                                                    : sessions_text(*evaluation.visit)});
+  if (evaluation.visit && evaluation.visit->bound > 0) lines.push_back({"hours", hours_text(*evaluation.visit)});
   if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
@@ -351,9 +371,11 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   to_do(storeys_advice(evaluation.storey_ties, names));
   if (evaluation.visit && !evaluation.visit->not_split.empty())
     to_do({"not split into days: " + evaluation.visit->not_split});
-  if (evaluation.visit && !evaluation.visit->sessions.empty()) {
+  if (evaluation.visit) {
     const auto existing = std::ranges::count(evaluation.stations, true, &PlacedStation::existing);
-    to_do(sessions_advice(*evaluation.visit, {names.begin() + existing, names.end()}));
+    const std::vector<std::string> placed(names.begin() + existing, names.end());
+    to_do(hours_advice(*evaluation.visit, placed));
+    to_do(sessions_advice(*evaluation.visit, placed));
   }
   to_do(stations_advice(evaluation, names));
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))

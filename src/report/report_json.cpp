@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/read_file.hpp"
+#include "core/text.hpp"
 #include "export/missed_colours.hpp"
 #include "export/run_json.hpp"
 #include "export/shown_links.hpp"
@@ -105,6 +106,9 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
   for (const Session& session : visit.sessions) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
     one.update(round_json(session, kept));
+    one["clock"] = clock_text(session.start_min) + "–" + clock_text(session.start_min + session.minutes);
+    one["waiting_min"] = session.waiting_min, one["begin"] = ordered_json::array();
+    for (const double arrive : session.arrive_min) one["begin"].push_back(clock_text(session.start_min + arrive));
     json["sessions"].push_back(std::move(one));
   }
   return json;

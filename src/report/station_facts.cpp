@@ -29,6 +29,7 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network) {
       StationFacts& f = facts[one.stations[k]];
       f.visit = ++visited, f.stop = k + 1, f.walk_m = one.round->legs_m[k];
       f.done_min = one.round->arrive_min[k] + one.round->stay_min[k];
+      if (one.start_min) f.done_at = clock_text(*one.start_min + f.done_min);
     }
   }
 }
@@ -170,8 +171,10 @@ std::vector<SheetRound> sheet_rounds(const Evaluation& network) {
   if (!network.visit) return {SheetRound{}};
   if (network.visit->sessions.empty()) return {of(*network.visit, "")};
   std::vector<SheetRound> rounds;
-  for (const Session& session : network.visit->sessions)
+  for (const Session& session : network.visit->sessions) {
     rounds.push_back(of(session, "Day " + std::to_string(session.day) + ", crew " + std::to_string(session.crew)));
+    rounds.back().start_min = session.start_min;
+  }
   return rounds;
 }
 

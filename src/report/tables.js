@@ -110,7 +110,7 @@ const sessionName = (session) => `Day ${session.day}, crew ${session.crew}`;
 function stopOf(network, k) {
   for (const round of sessionsOf(network).length ? sessionsOf(network) : network.visit ? [network.visit] : []) {
     const stop = round.order.indexOf(k);
-    if (stop >= 0) return { session: round.day ? sessionName(round) : null, stop: stop + 1, of: round.order.length, walk: round.legs_m[stop].toFixed(1) };
+    if (stop >= 0) return { session: round.day ? sessionName(round) : null, stop: stop + 1, of: round.order.length, walk: round.legs_m[stop].toFixed(1), begin: round.begin ? round.begin[stop] : null };
   }
   return null;
 }
@@ -134,12 +134,12 @@ function stationTable(holder, network, pick, order = visitingOrder(network)) {
       s.points_on_surveyed === null ? null : grouped(s.points_on_surveyed), s.linked === undefined ? null : s.linked];
     if (targets) cells.push(seen(k));
     if (round) {
-      const at = stopOf(network, k) || { session: null, stop: null, walk: null };
-      cells.push(...(sessions ? [at.session] : []), at.stop, at.walk);
+      const at = stopOf(network, k) || { session: null, stop: null, walk: null, begin: null };
+      cells.push(...(sessions ? [at.session] : []), at.stop, ...(sessions ? [at.begin] : []), at.walk);
     }
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
-  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(sessions ? ['Session'] : []), ...(round ? ['Stop', 'Walk (m)'] : []), ''];
+  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(sessions ? ['Session'] : []), ...(round ? ['Stop', ...(sessions ? ['Begin'] : []), 'Walk (m)'] : []), ''];
   holder.replaceChildren(...foldedTable(titles, order.map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
 }
 
@@ -178,8 +178,10 @@ function sessionTable(holder, network) {
   const sessions = sessionsOf(network), kNamed = 12;
   const names = ({ order }) => order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ') + (order.length > kNamed ? ` → … ${order.length} in all` : '');
   holder.hidden = !sessions.length;
-  holder.replaceChildren(table(['Session', 'Stations', 'At stations', 'Walking', 'In all', 'Links'], sessions.map((s) => [sessionName(s), names(s),
-    duration(60 * (s.minutes - s.walk_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, duration(60 * s.minutes), s.links]), [0, 1, 5]));
+  const waits = sessions.some((s) => s.waiting_min > 0), titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', 'Links'];
+  holder.replaceChildren(table(titles, sessions.map((s) => [sessionName(s), s.clock, names(s),
+    duration(60 * (s.minutes - s.walk_min - s.waiting_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, ...(waits ? [s.waiting_min > 0 ? duration(60 * s.waiting_min) : ''] : []),
+    duration(60 * s.minutes), s.links]), [0, 1, 2, titles.length - 1]));
 }
 
 function linkTable(holder, wordsHolder, network) {
