@@ -12,7 +12,6 @@
 namespace vantage {
 
 void check_rooms(std::span<const AccessWindow> windows, std::span<const Room> rooms) {
-  constexpr std::size_t kMostNames = 8;
   for (const AccessWindow& window : windows) {
     if (rooms.empty())
       throw Error(Errc::invalid_argument, "window: '" + to_string(window) +
@@ -21,15 +20,8 @@ void check_rooms(std::span<const AccessWindow> windows, std::span<const Room> ro
     std::vector<std::string> names;
     for (const Room& room : rooms)
       if (std::ranges::find(names, room.name) == names.end()) names.push_back(room.name);
-    std::string letters = window.rooms;
-    std::erase_if(letters, [](char c) { return c == '*' || c == '?' || c == '!' || c == '|'; });
-    std::string what = "window: no room is named like '" + window.rooms + "'";
-    if (const std::string near = did_you_mean(letters, names); !near.empty())
-      throw Error(Errc::invalid_argument, what + near);
-    what += "; there are ";
-    for (std::size_t k = 0; k < std::min(names.size(), kMostNames); ++k) what += (k == 0 ? "" : ", ") + names[k];
-    if (names.size() > kMostNames) what += " and " + std::to_string(names.size() - kMostNames) + " more";
-    throw Error(Errc::invalid_argument, what);
+    throw Error(Errc::invalid_argument,
+                "window: no room is named like '" + window.rooms + "'" + names_there_are(window.rooms, names));
   }
 }
 
