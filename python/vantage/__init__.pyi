@@ -207,6 +207,7 @@ class Scanner:
         angle_accuracy_arcsec: float = 0.0,
         range_accuracy_mm: float = 0.0,
         range_accuracy_ppm: float = 0.0,
+        tilt_accuracy_arcsec: float = 0.0,
         detection_range_m: float = 0.0,
         detection_reflectivity: float = 0.9,
     ) -> None: ...
@@ -229,6 +230,7 @@ class Scanner:
     angle_accuracy_arcsec: float
     range_accuracy_mm: float
     range_accuracy_ppm: float
+    tilt_accuracy_arcsec: float
     detection_range_m: float
     detection_reflectivity: float
     @property
@@ -346,6 +348,7 @@ class RegistrationOptions:
         position_m: float = 0.03,
         heading_deg: float = 0.2,
         tilt_deg: float = 0.004166666667,
+        tilt_of_scanner: bool = False,
         surfaces: Literal["surveyed", "all"] = "surveyed",
     ) -> None: ...
     rho_m: float
@@ -353,6 +356,7 @@ class RegistrationOptions:
     position_m: float
     heading_deg: float
     tilt_deg: float
+    tilt_of_scanner: bool
     surfaces: Literal["surveyed", "all"]
 
 class RegistrationError:
