@@ -52,18 +52,21 @@ void add_targets(py::module_& m) {
                     "Standard deviation of known coordinates, in each axis; 0: no control point.")
       .def_readonly("proposed", &Target::proposed, "Whether it was proposed.")
       .def_readonly("stations", &Target::stations, "Indices of the stations that measure it.")
+      .def_readonly("check", &Target::check,
+                    "Whether it is a place for a check of the vertical index, which ties no scans.")
       .def("__repr__", [](const Target& t) {
         return "<vantage.Target " + t.name + " at " + std::string(py::repr(py::cast(t.centre))) + ">";
       });
-  target.def(
-      py::pickle([](const Target& t) { return py::make_tuple(t.name, t.centre, t.control_m, t.proposed, t.stations); },
-                 [](const py::tuple& t) {
-                   return Target{.name = t[0].cast<std::string>(),
-                                 .centre = t[1].cast<Vec3>(),
-                                 .control_m = t[2].cast<double>(),
-                                 .proposed = t[3].cast<bool>(),
-                                 .stations = t[4].cast<std::vector<std::size_t>>()};
-                 }));
+  target.def(py::pickle(
+      [](const Target& t) { return py::make_tuple(t.name, t.centre, t.control_m, t.proposed, t.stations, t.check); },
+      [](const py::tuple& t) {
+        return Target{.name = t[0].cast<std::string>(),
+                      .centre = t[1].cast<Vec3>(),
+                      .control_m = t[2].cast<double>(),
+                      .proposed = t[3].cast<bool>(),
+                      .stations = t[4].cast<std::vector<std::size_t>>(),
+                      .check = t.size() > 5 && t[5].cast<bool>()};
+      }));
   m.def(
       "read_targets_csv", [](const std::filesystem::path& file) { return read_targets_csv(file); }, py::arg("file"),
       "Reads Targets from a table with columns name, x, y, z, and for control points sigma, in metres.\nRaises Error: "

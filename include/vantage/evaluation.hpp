@@ -105,7 +105,9 @@ struct Evaluation {
   double link_overlap = default_link_overlap;                    ///< Least overlap of a link,
   double link = default_link;                                    ///< or least scan overlap, if that is known.
   std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
-  std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
+  std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each; places of checks.
+  /// Instruments whose errors are most of the registration error, and that no place would check (`Target::check`).
+  std::vector<std::string> no_steep_check = {};
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
   std::optional<ScanData> data = std::nullopt;          ///< Empty: not known, without the surroundings or every ray.

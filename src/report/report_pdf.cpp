@@ -215,6 +215,7 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                   std::string notes = f.note;
                   const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
                   if (!f.register_to.empty()) add(f.register_to);
+                  if (!f.set_up.empty()) add(f.set_up);
                   constexpr double kLeastTold = 0.0005;
                   if (f.alone >= kLeastTold) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
                   std::vector<std::string> cells{f.stop > 0 ? std::to_string(f.stop) : "",

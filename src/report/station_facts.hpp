@@ -25,12 +25,13 @@ struct StationFacts {
   // strongest link to.
   std::string register_to = {};
   std::string targets = {};  // that it measures: "T1, T3"
+  std::string set_up = {};   // by known points, "resection from 3", if they allow it
   std::string note = {};     // "there before", what is wrong with its place, or nothing
 };
 
 struct TargetFacts {
   std::vector<WallCorner> corners = {};  // to find its spot by
-  std::string kind = {};                 // "proposed", "there before"; of a control point "± 2 mm"
+  std::string kind = {};                 // "proposed", "there before", "check of …"; of a control point "± 2 mm"
   std::string stations = {};             // that measure it, and how far they are in plan: "S1 6.61, S4 7.02"
 };
 // Of all targets of the answer, in their order.
