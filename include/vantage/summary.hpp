@@ -29,8 +29,8 @@ std::string station_table(std::span<const PlacedStation> stations, std::span<con
 /// no control point.
 std::vector<std::string> set_ups_of(const Evaluation& evaluation);
 
-/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "on site" or
-/// "to do") and its text.
+/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "control",
+/// "on site", "hours" or "to do") and its text.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };

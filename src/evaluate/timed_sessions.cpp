@@ -57,21 +57,27 @@ class GrowingSession {
       std::optional<TimedSession> best;
       std::tuple<bool, double> least;
       std::size_t taken = 0;
+      double busy_then = 0;
       for (std::size_t k = 0; k < some.size(); ++k) {
         const bool apart = !now_.stops.empty() && stops_->linked &&
                            std::ranges::none_of(now_.stops, [&](std::size_t s) { return stops_->linked(s, some[k]); });
         if (best && std::tuple(apart, 0.0) > least) continue;
         for (std::size_t at = 0; at <= now_.stops.size(); ++at) {
+          // A session is no shorter than its stays and walks, which rules most places out.
+          const double busy = busy_min_ + added(some[k], at);
+          if (busy > day_.to_min - day_.from_min + kRounding_min) continue;
+          if (best && std::tuple(apart, busy) >= least) continue;
           std::vector<std::size_t> order = now_.stops;
           order.insert(order.begin() + static_cast<std::ptrdiff_t>(at), some[k]);
           std::optional<TimedSession> tried = timed_session(*stops_, order, day_);
           if (!tried) continue;
           const std::tuple cost{apart, tried->end_min - tried->start_min};
           if (best && cost >= least) continue;
-          least = cost, best = std::move(tried), taken = k;
+          least = cost, best = std::move(tried), taken = k, busy_then = busy;
         }
       }
       if (!best) return;
+      busy_min_ = busy_then;
       now_ = std::move(*best);
       some.erase(some.begin() + static_cast<std::ptrdiff_t>(taken));
     }
@@ -79,9 +85,22 @@ class GrowingSession {
   const TimedSession& now() const { return now_; }
 
  private:
+  // Minutes that a further stop at a place of the order adds, with the ways to it and on.
+  double added(std::size_t stop, std::size_t at) const {
+    const std::vector<std::size_t>& order = now_.stops;
+    const auto leg = [&](std::size_t from) {
+      return at < order.size() ? stops_->walk_min[from][order[at]] : stops_->out_min[from];
+    };
+    if (order.empty()) return stops_->stay_min[stop] + 2 * stops_->out_min[stop];
+    if (at == 0) return stops_->stay_min[stop] + stops_->out_min[stop] + leg(stop) - stops_->out_min[order[0]];
+    const std::size_t before = order[at - 1];
+    return stops_->stay_min[stop] + stops_->walk_min[before][stop] + leg(stop) - leg(before);
+  }
+
   const TimedStops* stops_;
   DayHours day_;
   TimedSession now_;
+  double busy_min_ = 0;  // stays and walks
 };
 
 }  // namespace
