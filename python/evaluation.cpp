@@ -85,6 +85,7 @@ void add_registration(py::module_& m) {
         .add("position_m", &RegistrationOptions::position_m, "Sigma of a head before registration, in each axis.")
         .add("heading_deg", &RegistrationOptions::heading, "Sigma of the heading before registration.")
         .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.")
+        .add("tilt_of_scanner", &RegistrationOptions::tilt_of_scanner, "Take the tilt that the scanners state instead.")
         .add("surfaces", &RegistrationOptions::surfaces, "Surfaces that scans register on: 'surveyed' or 'all'.");
   }();
   py::class_<RegistrationOptions> type(

@@ -20,7 +20,21 @@ Options<OnSiteOptions> on_site_options() {
            "Ground (x, y, z) where people enter and leave; None: at the first station.")
       .add("day_min", &OnSiteOptions::day_min,
            "Minutes of the longest session; a longer round is split. None: it is not.")
-      .add("crews", &OnSiteOptions::crews, "Crews that work side by side, a session each, every day.");
+      .add("crews", &OnSiteOptions::crews, "Crews that work side by side, a session each, every day.")
+      .add("day_start_min", &OnSiteOptions::day_start_min, "Minutes after midnight at which a day begins.")
+      .add<std::vector<std::string>>(
+          "windows",
+          [](const OnSiteOptions& o) {
+            std::vector<std::string> texts;
+            for (const AccessWindow& window : o.windows) texts.push_back(to_string(window));
+            return texts;
+          },
+          [](OnSiteOptions& o, const std::vector<std::string>& texts) {
+            o.windows.clear();
+            for (const std::string& text : texts)
+              o.windows.push_back(parse_access_window(text, "OnSiteOptions: windows"));
+          },
+          "Hours of the day outside of which nobody may scan in rooms of such names: \"hall*=06:00-08:00\".");
 }
 
 }  // namespace
@@ -38,18 +52,21 @@ void add_targets(py::module_& m) {
                     "Standard deviation of known coordinates, in each axis; 0: no control point.")
       .def_readonly("proposed", &Target::proposed, "Whether it was proposed.")
       .def_readonly("stations", &Target::stations, "Indices of the stations that measure it.")
+      .def_readonly("check", &Target::check,
+                    "Whether it is a place for a check of the vertical index, which ties no scans.")
       .def("__repr__", [](const Target& t) {
         return "<vantage.Target " + t.name + " at " + std::string(py::repr(py::cast(t.centre))) + ">";
       });
-  target.def(
-      py::pickle([](const Target& t) { return py::make_tuple(t.name, t.centre, t.control_m, t.proposed, t.stations); },
-                 [](const py::tuple& t) {
-                   return Target{.name = t[0].cast<std::string>(),
-                                 .centre = t[1].cast<Vec3>(),
-                                 .control_m = t[2].cast<double>(),
-                                 .proposed = t[3].cast<bool>(),
-                                 .stations = t[4].cast<std::vector<std::size_t>>()};
-                 }));
+  target.def(py::pickle(
+      [](const Target& t) { return py::make_tuple(t.name, t.centre, t.control_m, t.proposed, t.stations, t.check); },
+      [](const py::tuple& t) {
+        return Target{.name = t[0].cast<std::string>(),
+                      .centre = t[1].cast<Vec3>(),
+                      .control_m = t[2].cast<double>(),
+                      .proposed = t[3].cast<bool>(),
+                      .stations = t[4].cast<std::vector<std::size_t>>(),
+                      .check = t.size() > 5 && t[5].cast<bool>()};
+      }));
   m.def(
       "read_targets_csv", [](const std::filesystem::path& file) { return read_targets_csv(file); }, py::arg("file"),
       "Reads Targets from a table with columns name, x, y, z, and for control points sigma, in metres.\nRaises Error: "
@@ -66,7 +83,7 @@ void add_visits(py::module_& m) {
 
   py::class_<Round> round(m, "Round", "In at the entrance, to every station, and back out.");
   round.def_readonly("order", &Round::order, "Indices of the stations; unusable ones are left out.")
-      .def_readonly("arrive_min", &Round::arrive_min, "Minutes from the start to the arrival at each, in that order.")
+      .def_readonly("arrive_min", &Round::arrive_min, "Minutes from the start until the stay at each begins.")
       .def_readonly("stay_min", &Round::stay_min, "Minutes at each: scan, set-up and photos.")
       .def_readonly("legs_m", &Round::legs_m, "Path to each in that order, then back out, metres.")
       .def_readonly("paths", &Round::paths, "Ground points of each of these paths: lists of (x, y, z).")
@@ -75,17 +92,19 @@ void add_visits(py::module_& m) {
       .def_readonly("set_up_min", &Round::set_up_min, "Minutes of setting up.")
       .def_readonly("photos_min", &Round::photos_min, "Minutes of taking pictures.")
       .def_readonly("walk_min", &Round::walk_min, "Minutes of walking.")
-      .def_readonly("minutes", &Round::minutes, "Scan, set-up, photos and walking together.")
+      .def_readonly("minutes", &Round::minutes, "Scan, set-up, photos, walking and waiting together.")
       .def_readonly("unconnected", &Round::unconnected, "Legs that the search area does not connect.")
       .def_readonly("unlinked", &Round::unlinked,
                     "Stations without a link to the one before; 0 if no links are known.");
 
-  py::class_<Session, Round> session(m, "Session",
-                                     "Consecutive stations of a longer round, for one crew within a day.");
+  py::class_<Session, Round> session(m, "Session", "Stations of a longer round, for one crew within a day.");
   session.def_readonly("day", &Session::day, "From 1.")
       .def_readonly("crew", &Session::crew, "From 1.")
       .def_readonly("parts", &Session::parts, "Groups of its stations that no link connects; 1 if no links are known.")
       .def_readonly("linked", &Session::linked, "Whether a station is linked to one of another session, if any.")
+      .def_readonly("start_min", &Session::start_min, "Minutes after midnight at which it leaves the entrance.")
+      .def_readonly("wait_min", &Session::wait_min, "Minutes waited for an access window before the stay at each.")
+      .def_readonly("waiting_min", &Session::waiting_min, "All of these.")
       .def("__repr__", [](const Session& s) {
         return "<vantage.Session of day " + std::to_string(s.day) + ", crew " + std::to_string(s.crew) + ": " +
                std::to_string(s.order.size()) + " stations, " + std::string(py::str(py::float_(s.minutes))) +
@@ -93,10 +112,21 @@ void add_visits(py::module_& m) {
       });
   add_pickle(session);
 
+  py::class_<ClosedStation> closed(m, "ClosedStation",
+                                   "A station that no session can scan within the access windows of its room.");
+  closed.def_readonly("station", &ClosedStation::station, "Its index.")
+      .def_readonly("why", &ClosedStation::why, "What would have to change.")
+      .def("__repr__", [](const ClosedStation& c) {
+        return "<vantage.ClosedStation " + std::to_string(c.station) + ": " + c.why + ">";
+      });
+  add_pickle(closed);
+
   py::class_<Visit, Round> visit(m, "Visit", "The round over all stations.");
   visit.def_readonly("day_min", &Visit::day_min, "Minutes that its sessions may take; 0: none were asked for.")
       .def_readonly("sessions", &Visit::sessions, "Its Sessions by day and crew; empty: none, or not asked for.")
       .def_readonly("not_split", &Visit::not_split, "What keeps it from being split into sessions; empty: nothing.")
+      .def_readonly("closed", &Visit::closed, "ClosedStations: in no session, since none keeps their access windows.")
+      .def_readonly("bound", &Visit::bound, "Stations that access windows are for.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
                std::string(py::str(py::float_(v.minutes))) + " minutes>";
@@ -123,6 +153,7 @@ void add_on_site(py::module_& m) {
             const std::vector<PlacedStation> stations = stations_of(given);
             Visit visit = site.visit(stations);
             visit.day_min = site.options().day_min.value_or(0);
+            site.add_windows(stations, visit);
             visit.sessions = site.sessions(stations, visit);
             return visit;
           },

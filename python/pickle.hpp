@@ -37,10 +37,13 @@ inline auto members(Round& r) {
                   r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked);
 }
 inline auto members(Session& s) {
-  return std::tuple_cat(members(static_cast<Round&>(s)), std::tie(s.day, s.crew, s.parts, s.linked));
+  return std::tuple_cat(members(static_cast<Round&>(s)),
+                        std::tie(s.day, s.crew, s.parts, s.linked, s.start_min, s.wait_min, s.waiting_min));
 }
+inline auto members(ClosedStation& c) { return std::tie(c.station, c.why); }
 inline auto members(Visit& v) {
-  return std::tuple_cat(members(static_cast<Round&>(v)), std::tie(v.day_min, v.sessions, v.not_split));
+  return std::tuple_cat(members(static_cast<Round&>(v)),
+                        std::tie(v.day_min, v.sessions, v.not_split, v.closed, v.bound));
 }
 inline auto members(StoreyTie& t) { return std::tie(t.a, t.b, t.value, t.apart_m, t.way_m); }
 inline auto members(ScanData& d) { return std::tie(d.points, d.e57_bytes, d.las_bytes); }

@@ -64,6 +64,10 @@ Options<Scanner> scanner_options() {
           "range_accuracy_mm", [](const Scanner& s) { return s.range_accuracy_m * 1e3; },
           [](Scanner& s, double mm) { s.range_accuracy_m = mm * 1e-3; }, "The same of the offset of ranges.")
       .add("range_accuracy_ppm", &Scanner::range_accuracy_ppm, "The same of their scale.")
+      .add<double>(
+          "tilt_accuracy_arcsec", [](const Scanner& s) { return s.tilt_accuracy.in_degrees() * 3600; },
+          [](Scanner& s, double arcsec) { s.tilt_accuracy = Angle::degrees(arcsec / 3600); },
+          "Error of each tilt of a scan by the compensator, one standard deviation; 0: not stated.")
       .add("detection_range_m", &Scanner::detection_range_m,
            "Longest distance from which a surface of detection_reflectivity is detected; 0: every echo is.")
       .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.");

@@ -105,7 +105,9 @@ struct Evaluation {
   double link_overlap = default_link_overlap;                    ///< Least overlap of a link,
   double link = default_link;                                    ///< or least scan overlap, if that is known.
   std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
-  std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each.
+  std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each; places of checks.
+  /// Instruments whose errors are most of the registration error, and that no place would check (`Target::check`).
+  std::vector<std::string> no_steep_check = {};
   /// Root mean square registration error by surfaces alone, metres; known if there are targets, or were looked for.
   std::optional<double> without_targets_m = std::nullopt;
   std::optional<ScanData> data = std::nullopt;          ///< Empty: not known, without the surroundings or every ray.
@@ -140,8 +142,11 @@ Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
 /// along shorter ways are preferred to them, then links of larger values. Empty if links are not known.
 std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite& on_site);
 /// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are
-/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`.
+/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`, and stations whose access windows no
+/// session keeps in `Visit::closed`.
 void add_sessions(Evaluation& evaluation, const OnSite& on_site);
+/// Stations that no session can scan within the access windows of their rooms.
+std::size_t closed_stations(const Evaluation& evaluation);
 /// Minutes that the requirements allow on site; infinity if they set no limit.
 double most_minutes(std::span<const Requirement> requirements);
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.

@@ -133,6 +133,7 @@ struct StationRow {
   std::optional<Angle> step = std::nullopt;  ///< Azimuth and zenith step.
   /// Standard deviation of a control point's coordinates, in metres (`read_targets_csv()`).
   std::optional<double> sigma_m = std::nullopt;
+  bool check = false;  ///< A place of a check (`Target::check`), which `read_targets_csv()` leaves out.
 };
 /// Reads a table with a header. Columns may have any order, and others are ignored: x, y, z (of the head), or E, N, Z,
 /// or Easting, Northing, Height; ground_z for the ground's height; u, v; name; heading, tilt and step in degrees;

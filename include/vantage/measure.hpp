@@ -102,6 +102,7 @@ struct RegistrationOptions {
   /// Each of the two tilts, as by a dual-axis compensator. 0: exactly level, so 4 unknowns a station instead of 6; some
   /// degrees: not levelled at all.
   Angle tilt = Angle::degrees(15.0 / 3600);
+  bool tilt_of_scanner = false;  ///< In place of `tilt` that of the scanners: `levelled_by()`.
   RegistrationSurfaces surfaces = RegistrationSurfaces::surveyed;  ///< The error is that of surveyed surfaces either
                                                                    ///< way.
 };
@@ -111,6 +112,10 @@ Settings settings(const RegistrationOptions& options);
 const SettingTable<RegistrationOptions>& registration_settings();
 /// Throws Error invalid_argument with the member and its value.
 void check(const RegistrationOptions& options);
+/// The options with the tilt of the scanners (`Scanner::tilt_accuracy`), the largest of several, if they ask for it.
+/// Evaluations, plans and proposals of targets begin with this. Throws Error invalid_argument for a scanner that states
+/// none.
+RegistrationOptions levelled_by(RegistrationOptions options, std::span<const Scanner> scanners);
 
 /// A point that scans measure one by one, such as the centre of a target. It ties scans together where surfaces do not.
 struct RegistrationTarget {

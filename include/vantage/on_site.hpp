@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vantage/placement.hpp"
@@ -16,6 +17,16 @@
 #include "vantage/settings.hpp"
 
 namespace vantage {
+
+/// Hours of every day outside of which nobody may scan in some rooms.
+struct AccessWindow {
+  std::string rooms;  ///< Pattern of their names, as for meshes in `captured()`: "hall*", "!hall*", "hall*|archive".
+  /// Minutes after midnight. An end at or before the begin is of the next day; 0 to 1440 is all day.
+  double from_min = 0, to_min = 0;
+};
+/// Reads "hall*=06:00-08:00". Throws Error invalid_argument; the message begins with `what`.
+AccessWindow parse_access_window(const std::string& text, const std::string& what = "window");
+std::string to_string(const AccessWindow& window);  ///< As it is read.
 
 /// Times of a person with a tripod. These are our assumptions, each with a setting; crews differ by more than scanners.
 struct OnSiteOptions {
@@ -30,7 +41,10 @@ struct OnSiteOptions {
   std::optional<Vec3> entrance = std::nullopt;
   /// Minutes of the longest session, from the entrance and back: a longer round is split. Empty: it is not.
   std::optional<double> day_min = std::nullopt;
-  std::size_t crews = 1;  ///< Crews that work side by side, a session each, every day.
+  std::size_t crews = 1;          ///< Crews that work side by side, a session each, every day.
+  double day_start_min = 8 * 60;  ///< Minutes after midnight at which the crews' day begins, at the entrance.
+  /// Hours of rooms, with a day. A station in a room that several name is scanned within one of these.
+  std::vector<AccessWindow> windows = {};
 };
 
 Settings settings(const OnSiteOptions& options);
@@ -40,30 +54,42 @@ const SettingTable<OnSiteOptions>& on_site_settings();
 /// One round: in at the entrance, to every station, and back out.
 struct Round {
   std::vector<std::size_t> order;  ///< Indices of the stations; unusable ones are left out.
-  std::vector<double> arrive_min;  ///< Minutes from the start to the arrival at each, in that order.
+  std::vector<double> arrive_min;  ///< Minutes from the start until the stay at each begins, in that order.
   std::vector<double> stay_min;    ///< Minutes at each: scan, set-up and photos.
   std::vector<double> legs_m;      ///< Path to each in that order, then back out: one more than stations.
   /// Ground points of each of these paths, survey frame; a straight line if the search area does not connect its ends.
   std::vector<std::vector<Vec3>> paths;
   double walk_m = 0;
   double scan_min = 0, set_up_min = 0, photos_min = 0, walk_min = 0;
-  double minutes = 0;           ///< Scan, set-up, photos and walking together.
+  double minutes = 0;           ///< Scan, set-up, photos, walking and waiting together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
   std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
 };
 
-/// Consecutive stations of a longer round, as a round of their own that one crew does within a day.
+/// Stations of a longer round, as a round of their own that one crew does within a day: consecutive ones, unless access
+/// windows say otherwise.
 struct Session : Round {
   std::size_t day = 1, crew = 1;  ///< Both from 1.
   std::size_t parts = 1;          ///< Groups of its stations that no link connects; 1 if links were not given.
   bool linked = true;             ///< Some station is linked to one of another session, if there is one.
+  double start_min = 0;           ///< Minutes after midnight at which it leaves the entrance.
+  std::vector<double> wait_min;   ///< Minutes waited for an access window before the stay at each.
+  double waiting_min = 0;         ///< All of these.
+};
+
+/// A station of a visit that no session can scan within the access windows of its room.
+struct ClosedStation {
+  std::size_t station = 0;  ///< As in `Round::order`.
+  std::string why;          ///< What would have to change, for people.
 };
 
 /// The round over all stations.
 struct Visit : Round {
-  double day_min = 0;             ///< `OnSiteOptions::day_min` of the sessions; 0: none were asked for.
-  std::vector<Session> sessions;  ///< In the order of the round, by day and crew; empty: none, or not asked for.
-  std::string not_split;          ///< What keeps the round from being split into sessions; empty: nothing.
+  double day_min = 0;                 ///< `OnSiteOptions::day_min` of the sessions; 0: none were asked for.
+  std::vector<Session> sessions;      ///< In the order of the round, by day and crew; empty: none, or not asked for.
+  std::string not_split;              ///< What keeps the round from being split into sessions; empty: nothing.
+  std::vector<ClosedStation> closed;  ///< Stations in no session, since none can keep their access windows.
+  std::size_t bound = 0;              ///< Stations that access windows are for.
 };
 
 /// Strength of the link between two stations, by their indices: 0 if they are not linked, else at most 1.
@@ -98,18 +124,25 @@ class OnSite {
   /// Cuts a visit of these stations into sessions of at most `OnSiteOptions::day_min`: as few as its order allows.
   /// Among these cuts that one is taken whose sessions fall into the fewest parts, then the one with the fewest
   /// sessions that are not linked, then with the shortest longest session, then with the least walking. A visit without
-  /// stations, or options without a day, give none. Throws Error invalid_argument if a day is too short for one station
-  /// and the walk there and back.
+  /// stations, or options without a day, give none. With access windows, stations that they are for come first: a
+  /// session takes as many of them as fit in a day, by cheapest insertion, and then others, each time the one that adds
+  /// the fewest minutes; it leaves the entrance as late as that allows. What no such session takes is cut as above.
+  /// Stations whose windows no session can keep are in none (`add_windows`). Throws Error invalid_argument if a day is
+  /// too short for one station and the walk there and back.
   std::vector<Session> sessions(std::span<const PlacedStation> stations, const Visit& visit,
                                 const LinkStrength& link = {}) const;
+  /// Sets `Visit::closed` and `bound` of a visit of these stations, if the options have a day and access windows.
+  void add_windows(std::span<const PlacedStation> stations, Visit& visit) const;
   /// `Scanner::rays()` / `Scanner::points_per_second`, in minutes. Throws std::out_of_range.
   double minutes_per_scan(std::uint32_t scanner = 0) const;
   const OnSiteOptions& options() const noexcept;
 
  private:
   friend class Site;
+  /// Access windows of a place on the ground, by their indices.
+  using WindowsAt = std::function<std::vector<std::size_t>(const Vec3&)>;
   OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
-         const OnSiteOptions& options, const Vec3& origin);
+         const OnSiteOptions& options, const Vec3& origin, WindowsAt windows_at);
 
   struct Impl;
   std::shared_ptr<const Impl> impl_;

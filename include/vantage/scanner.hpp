@@ -64,6 +64,9 @@ struct Scanner {
   Angle angle_accuracy = Angle::radians(0);
   double range_accuracy_m = 0;
   double range_accuracy_ppm = 0;
+  /// Error of each of a scan's two tilts by the compensator, one standard deviation, another in every scan. 0: not
+  /// stated. Registration takes it if asked to (`RegistrationOptions::tilt_of_scanner`).
+  Angle tilt_accuracy = Angle::radians(0);
   /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;

@@ -21,12 +21,16 @@ std::string mixed_text(const MixedPoints& mixed, std::uint64_t points);
 /// A header, and a line for each station: its name, ground and head (survey frame, metres, to the millimetre), its
 /// status, and its points on surveyed meshes if `points` has them. If any is turned, or has another scanner than the
 /// first, also heading and tilt in degrees, its scanner and that scanner's step. `scanners` are indexed by
-/// `StationSetup::scanner`.
+/// `StationSetup::scanner`. `set_ups`: how each may be set up by known points, or none.
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
-                          std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {});
+                          std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {},
+                          std::span<const std::string> set_ups = {});
+/// How each station may be set up by the control points that its scan measures: "resection from 3". Empty if there is
+/// no control point.
+std::vector<std::string> set_ups_of(const Evaluation& evaluation);
 
-/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "on site" or
-/// "to do") and its text.
+/// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "control",
+/// "on site", "hours" or "to do") and its text.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };

@@ -39,7 +39,12 @@ struct Target {
   bool proposed = false;
   /// Stations that measure it, ascending, by their places in the network.
   std::vector<std::size_t> stations = {};
+  /// A place on a surveyed surface for a check of the vertical index: two stations or more see it steeply. It ties no
+  /// scans in any prediction.
+  bool check = false;
 };
+/// Whether any of them ties scans, and is not for checks alone.
+bool any_ties(std::span<const Target> targets) noexcept;
 
 /// Needs of a scan that measures a target, and places for new ones.
 struct TargetOptions {

@@ -207,6 +207,7 @@ class Scanner:
         angle_accuracy_arcsec: float = 0.0,
         range_accuracy_mm: float = 0.0,
         range_accuracy_ppm: float = 0.0,
+        tilt_accuracy_arcsec: float = 0.0,
         detection_range_m: float = 0.0,
         detection_reflectivity: float = 0.9,
     ) -> None: ...
@@ -229,6 +230,7 @@ class Scanner:
     angle_accuracy_arcsec: float
     range_accuracy_mm: float
     range_accuracy_ppm: float
+    tilt_accuracy_arcsec: float
     detection_range_m: float
     detection_reflectivity: float
     @property
@@ -346,6 +348,7 @@ class RegistrationOptions:
         position_m: float = 0.03,
         heading_deg: float = 0.2,
         tilt_deg: float = 0.004166666667,
+        tilt_of_scanner: bool = False,
         surfaces: Literal["surveyed", "all"] = "surveyed",
     ) -> None: ...
     rho_m: float
@@ -353,6 +356,7 @@ class RegistrationOptions:
     position_m: float
     heading_deg: float
     tilt_deg: float
+    tilt_of_scanner: bool
     surfaces: Literal["surveyed", "all"]
 
 class RegistrationError:
@@ -483,6 +487,8 @@ class OnSiteOptions:
     entrance: Optional[Tuple[float, float, float]]
     day_min: Optional[float]
     crews: int
+    day_start_min: float
+    windows: List[str]
     def __init__(
         self,
         *,
@@ -493,6 +499,8 @@ class OnSiteOptions:
         entrance: Optional[Sequence[float]] = None,
         day_min: Optional[float] = None,
         crews: int = 1,
+        day_start_min: float = 480.0,
+        windows: Sequence[str] = [],
     ) -> None: ...
 
 class Target:
@@ -507,6 +515,8 @@ class Target:
     def proposed(self) -> bool: ...
     @property
     def stations(self) -> List[int]: ...
+    @property
+    def check(self) -> bool: ...
 
 def read_targets_csv(file: Path) -> List[Target]: ...
 
@@ -547,6 +557,18 @@ class Session(Round):
     def parts(self) -> int: ...
     @property
     def linked(self) -> bool: ...
+    @property
+    def start_min(self) -> float: ...
+    @property
+    def wait_min(self) -> List[float]: ...
+    @property
+    def waiting_min(self) -> float: ...
+
+class ClosedStation:
+    @property
+    def station(self) -> int: ...
+    @property
+    def why(self) -> str: ...
 
 class Visit(Round):
     @property
@@ -555,6 +577,10 @@ class Visit(Round):
     def sessions(self) -> List[Session]: ...
     @property
     def not_split(self) -> str: ...
+    @property
+    def closed(self) -> List[ClosedStation]: ...
+    @property
+    def bound(self) -> int: ...
 
 class OnSite:
     def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...

@@ -15,6 +15,7 @@
 #include "core/options_json.hpp"
 #include "export/run_json.hpp"
 #include "export/shown_links.hpp"
+#include "export/station_json.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -274,6 +275,7 @@ nlohmann::json stations_json(const std::vector<SiteStation>& stations, const Eva
                              const std::vector<std::string>& names, bool traced, std::span<const Scanner> scanners) {
   const NetworkCounts& counts = found.counts;
   nlohmann::json rows = nlohmann::json::array();
+  const std::vector<KnownPoints> known_points = vantage::known_points(found);
   for (std::size_t k = 0; k < stations.size(); ++k) {
     auto row = to_json(stations[k], names[k], scanners);
     row["points"] = nullptr;
@@ -286,6 +288,7 @@ nlohmann::json stations_json(const std::vector<SiteStation>& stations, const Eva
       const Vec3& to = move->to->position;
       row["move_to"] = {to.x, to.y, to.z};
     }
+    if (!known_points.empty()) add_set_up(row, known_points[k], found);
     row["dropped"] = row["mixed"] = nullptr;
     if (!counts.dropped.empty()) row["dropped"] = dropped_json(counts.dropped[k]);
     if (!counts.mixed.empty()) row["mixed"] = nlohmann::json(mixed_json(counts.mixed[k]));
@@ -313,7 +316,7 @@ std::string evaluation_text(const Evaluation& found, const std::vector<std::stri
   std::string text = station_table(
       found.stations, names,
       traced ? std::span<const std::uint64_t>(found.counts.points_on_surveyed) : std::span<const std::uint64_t>(),
-      scanners);
+      scanners, set_ups_of(found));
   const auto with_error = [&](const char* measure) {
     const Estimate& estimate = found.values.at(measure);
     return traced ? fmt::format("{:.4f}", estimate.value)
@@ -406,7 +409,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     if (site.has_area()) text += lines_text(ground_lines(site.scene(), site.area(), placed));
     program.console.print(text);
   }
-  return exit_ok;
+  return closed_stations(found) == 0 ? exit_ok : exit_unmet;
 }
 
 }  // namespace

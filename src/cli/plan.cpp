@@ -327,7 +327,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   // Ground that is made up, and floor that is left out, are for the surveyor to decide on.
   const bool whole = !result.area || (!result.area->on_plane() &&
                                       std::ranges::none_of(result.area->not_entered(), &ClosedPart::to_decide));
-  const int code = whole && (result.problem.requirements.empty() || met(result)) ? exit_ok : exit_unmet;
+  const bool in_windows = closed_stations(result.front[answer(result)]) == 0;
+  const int code = whole && in_windows && (result.problem.requirements.empty() || met(result)) ? exit_ok : exit_unmet;
   const auto show = [&] {
     program.console.print(options.json ? front_json(result, simulator) + "\n"
                                        : plan_text(result, answer(result), folder.string()));

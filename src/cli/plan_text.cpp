@@ -75,8 +75,10 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   if (whole_front) text += front_text(result, chosen) + "\n";
   const std::size_t shown = std::min(entry.stations.size(), kStationsShown);
   const std::span<const std::uint64_t> points(entry.counts.points_on_surveyed);
+  const std::vector<std::string> set_ups = set_ups_of(entry);
   text += station_table(std::span(entry.stations).first(shown), station_names(entry.stations, entry.names),
-                        points.first(std::min(shown, points.size())), result.scanners);
+                        points.first(std::min(shown, points.size())), result.scanners,
+                        std::span<const std::string>(set_ups).first(std::min(shown, set_ups.size())));
   if (shown < entry.stations.size())
     text += fmt::format("and {} more in stations.csv\n", entry.stations.size() - shown);
   text += "\n";

@@ -55,4 +55,15 @@ std::string did_you_mean(std::string_view typed, std::span<const std::string> na
   return name.empty() ? "" : "; did you mean " + name + "?";
 }
 
+std::string names_there_are(std::string_view pattern, std::span<const std::string> names) {
+  constexpr std::size_t kMostNames = 8;
+  std::string letters(pattern);
+  std::erase_if(letters, [](char c) { return c == '*' || c == '?' || c == '!' || c == '|'; });
+  if (std::string near = did_you_mean(letters, names); !near.empty()) return near;
+  std::string what = "; there are ";
+  for (std::size_t k = 0; k < std::min(names.size(), kMostNames); ++k) what += (k == 0 ? "" : ", ") + names[k];
+  if (names.size() > kMostNames) what += " and " + std::to_string(names.size() - kMostNames) + " more";
+  return what;
+}
+
 }  // namespace vantage

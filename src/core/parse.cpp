@@ -183,6 +183,25 @@ double parse_duration(std::string_view text, const std::string& what) {
   return seconds;
 }
 
+double parse_clock(std::string_view text, const std::string& what) {
+  constexpr unsigned kHours = 24, kMinutes = 60;
+  const std::string_view clock = trimmed_text(text);
+  const auto colon = clock.find(':');
+  const auto digits = [](std::string_view part) -> std::optional<unsigned> {
+    unsigned value = 0;
+    if (part.empty() || part.size() > 2) return std::nullopt;
+    const auto [end, error] = std::from_chars(part.begin(), part.end(), value);
+    return error == std::errc() && end == part.end() ? std::optional(value) : std::nullopt;
+  };
+  if (colon != std::string_view::npos) {
+    const auto hours = digits(clock.substr(0, colon)), minutes = digits(clock.substr(colon + 1));
+    if (hours && minutes && clock.size() == colon + 3 && *minutes < kMinutes &&
+        *hours * kMinutes + *minutes <= kHours * kMinutes)
+      return *hours * kMinutes + *minutes;
+  }
+  refuse(what, text, "is no time of the day; write hours and minutes from 00:00 to 24:00, such as 06:30");
+}
+
 std::uint64_t parse_bytes(std::string_view text, const std::string& what) {
   std::string_view number = text;
   for (const std::string_view end : {"iB", "B"})

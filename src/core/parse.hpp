@@ -58,6 +58,8 @@ DeviceList parse_devices(std::string_view text, const std::string& what);
 
 // Seconds: a number, optionally followed by s, min or h.
 double parse_duration(std::string_view text, const std::string& what);
+// "06:30": minutes after midnight, up to 24:00.
+double parse_clock(std::string_view text, const std::string& what);
 // "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.
 std::uint64_t parse_bytes(std::string_view text, const std::string& what);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <string>
@@ -26,6 +27,14 @@ inline std::string grouped(std::uint64_t value) {
   std::string text = std::to_string(value);
   for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, "\u2009");  // a thin space
   return text;
+}
+
+// "08:05" of minutes after midnight, of a later day too.
+inline std::string clock_text(double minutes) {
+  constexpr std::int64_t kDay_min = 24 * 60;
+  const std::int64_t whole = std::llround(minutes), of_day = (whole % kDay_min + kDay_min) % kDay_min;
+  const std::string hours = std::to_string(of_day / 60), rest = std::to_string(of_day % 60);
+  return (hours.size() < 2 ? "0" : "") + hours + ":" + (rest.size() < 2 ? "0" : "") + rest;
 }
 
 // ASCII letters alone.

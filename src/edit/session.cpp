@@ -379,7 +379,7 @@ std::optional<Estimate> EditSession::captured() const {
 std::optional<Estimate> EditSession::registered(const Network& network) const {
   if (std::ranges::count(network, true, &Station::active) < 2 || simulator_.voxel_count() == 0) return std::nullopt;
   const std::uint64_t voxels = std::min(options_.registration_voxels, simulator_.voxel_count());
-  RegistrationOptions options = options_.registration;
+  RegistrationOptions options = levelled_by(options_.registration, simulator_.scanners());
   options.surfaces = RegistrationSurfaces::surveyed;
   const NetworkCounts counts =
       simulator_.evaluate_sampled({&network, 1}, {.voxels = voxels, .registration = options.model}).front();

@@ -6,6 +6,7 @@
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
 #include "evaluate/evaluator.hpp"
+#include "evaluate/steep_checks.hpp"
 #include "evaluate/through_glass.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
@@ -128,6 +129,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     Evaluation& one = made.emplace_back(evaluator.evaluate(network));
     if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;
     look_closer(one, site);
+    if (site.clash) add_steep_checks(one, site.simulator, *site.clash);
     look_through_glass(one, site.simulator, progress);
     one.violation = violation_of(one, options.requirements);
   }

@@ -58,11 +58,17 @@ void add_sessions(Evaluation& evaluation, const OnSite& on_site) {
   }
   evaluation.visit->day_min = *on_site.options().day_min;
   try {
-    evaluation.visit->sessions = on_site.sessions(std::span(stations).subspan(existing), *evaluation.visit, link);
+    const std::span<const PlacedStation> placed = std::span(stations).subspan(existing);
+    on_site.add_windows(placed, *evaluation.visit);
+    evaluation.visit->sessions = on_site.sessions(placed, *evaluation.visit, link);
   } catch (const Error& error) {  // a plan that took hours is worth more than its days
     if (error.code() != Errc::invalid_argument) throw;
     evaluation.visit->not_split = error.what();
   }
+}
+
+std::size_t closed_stations(const Evaluation& evaluation) {
+  return evaluation.visit ? evaluation.visit->closed.size() : 0;
 }
 
 double most_minutes(std::span<const Requirement> requirements) {

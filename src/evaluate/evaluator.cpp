@@ -51,7 +51,9 @@ Evaluator::Evaluator(const EvaluationSite& site, EvaluationOptions options, std:
     : site_(site),
       options_(std::move(options)),
       measures_(std::move(measures)),
-      needs_(required_inputs_of(measures_, options_)) {}
+      needs_(required_inputs_of(measures_, options_)) {
+  if (options_.registration) options_.registration = levelled_by(*options_.registration, site_.simulator.scanners());
+}
 
 CountedNetworks Evaluator::count(std::span<const Network> networks, bool field, const Progress& progress) const {
   CountedNetworks counts;

@@ -11,6 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "core/first_numbers.hpp"
+#include "core/graph.hpp"
 #include "core/parallel.hpp"
 #include "core/parse.hpp"
 #include "core/person.hpp"
@@ -19,6 +21,7 @@
 #include "core/text.hpp"
 #include "evaluate/check_day.hpp"
 #include "evaluate/cut_round.hpp"
+#include "evaluate/timed_sessions.hpp"
 #include "evaluate/ways.hpp"
 #include "scan/scan_seconds.hpp"
 #include "vantage/error.hpp"
@@ -276,9 +279,10 @@ struct OnSite::Impl {
   };
 
   Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans,
-       const Vec3& centre)
+       const Vec3& centre, WindowsAt rooms)
       : options(o),
         origin(centre),
+        windows_at(std::move(rooms)),
         scan_min(std::move(scans)),
         entered(area.entries().begin(), area.entries().end()),
         ways(walked_ground(area), [clash](const Vec3& a, const Vec3& b) {
@@ -305,14 +309,15 @@ struct OnSite::Impl {
     round.photos_min = count * options.photos_min;
     round.minutes = round.scan_min + round.set_up_min + round.photos_min;
   }
-  // The stations in their order, and a leg before each and after the last.
+  // The stations in their order, and a leg before each and after the last. `wait_min`: before each stay, or none.
   void walk(Round& round, std::span<const PlacedStation> stations, std::vector<std::size_t> order,
-            std::vector<Leg> legs) const {
+            std::vector<Leg> legs, std::span<const double> wait_min = {}) const {
     round.order = std::move(order);
     double minutes = 0;
     for (std::size_t k = 0; k < legs.size(); ++k) {
       minutes += walk_min(legs[k].metres);
       if (k < round.order.size()) {
+        if (!wait_min.empty()) minutes += wait_min[k];
         const double stay = stay_min(stations[round.order[k]]);
         round.arrive_min.push_back(minutes), round.stay_min.push_back(stay);
         minutes += stay;
@@ -325,8 +330,24 @@ struct OnSite::Impl {
     round.minutes += round.walk_min;
   }
 
+  struct Part;
+  std::vector<DayHours> hours_at(const Vec3& ground) const;
+  DayHours day() const;
+  TimedStops timed_stops(std::span<const PlacedStation> stations, const Visit& visit, const RoundTimes& times) const;
+  std::vector<Part> parts_within(const TimedStops& stops) const;
+  RoundTimes times_of(std::span<const PlacedStation> stations, const Visit& visit) const;
+  // Sets the minutes that a session waits.
+  void wait(Session& session, const Part& part, const std::vector<double>& stay_min,
+            const std::vector<Leg>& legs) const;
+  // Ground where sessions of a visit begin and end. REQUIRES: a stop.
+  Vec3 entrance(std::span<const PlacedStation> stations, const Visit& visit) const {
+    return options.entrance.value_or(stations[visit.order.front()].ground);
+  }
+  Leg leg(const Vec3& from, const Vec3& to) const { return from == to ? Leg() : leg(from, to, ways.between(from, to)); }
+
   OnSiteOptions options;
-  Vec3 origin;                   // of the scene
+  Vec3 origin;  // of the scene
+  WindowsAt windows_at;
   std::vector<double> scan_min;  // by scanner
   std::vector<Vec3> entered;     // where the search area is entered, as far as is known
   Ways ways;
@@ -338,6 +359,8 @@ void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) 
   if (options.crews > 1 && !options.day_min)
     throw Error(Errc::invalid_argument,
                 "crews: only a round that is split is shared by crews; give the length of a day too");
+  if (!options.windows.empty() && !options.day_min)
+    throw Error(Errc::invalid_argument, "window: hours are kept by the sessions of a day; give its length too");
   if (!options.day_min) return;
   double least_min = std::numeric_limits<double>::infinity();
   for (const Scanner& scanner : scanners) least_min = std::min(least_min, minutes_of_scan(scanner));
@@ -349,13 +372,13 @@ void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) 
 }
 
 OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
-               const OnSiteOptions& options, const Vec3& origin) {
+               const OnSiteOptions& options, const Vec3& origin, WindowsAt windows_at) {
   check(options, origin);
   if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
   std::vector<double> scan_min;
   for (const Scanner& scanner : scanners) scan_min.push_back(minutes_of_scan(scanner));
   check_day(options, scanners);
-  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin);
+  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin, std::move(windows_at));
 }
 
 std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
@@ -437,50 +460,181 @@ Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength&
   return visit;
 }
 
+// A session before its legs are known.
+struct OnSite::Impl::Part {
+  std::vector<std::size_t> stops;  // by their places in the visit
+  std::size_t parts = 1;
+  bool linked = true;
+  double start_min = 0;
+  std::vector<double> begin_min = {};  // of the stay at each, minutes after midnight; empty: none waits
+};
+
+std::vector<DayHours> OnSite::Impl::hours_at(const Vec3& ground) const {
+  std::vector<DayHours> hours;
+  if (!options.windows.empty())
+    for (const std::size_t k : windows_at(ground))
+      hours.push_back({options.windows[k].from_min, options.windows[k].to_min});
+  return hours;
+}
+
+DayHours OnSite::Impl::day() const { return {options.day_start_min, options.day_start_min + *options.day_min}; }
+
+TimedStops OnSite::Impl::timed_stops(std::span<const PlacedStation> stations, const Visit& visit,
+                                     const RoundTimes& times) const {
+  const std::size_t n = visit.order.size();
+  TimedStops stops{.stay_min = times.stay_min,
+                   .walk_min = std::vector<std::vector<double>>(n, std::vector<double>(n, 0)),
+                   .out_min = times.out_min,
+                   .hours = {},
+                   .linked = times.linked};
+  std::vector<Vec3> grounds;
+  for (const std::size_t station : visit.order) grounds.push_back(stations[station].ground);
+  const auto apart = ways.between_all(grounds);
+  for (std::size_t a = 0; a < n; ++a) {
+    stops.hours.push_back(hours_at(grounds[a]));
+    for (std::size_t b = 0; b < n; ++b)
+      if (a != b) stops.walk_min[a][b] = walk_min(leg(grounds[a], grounds[b], apart[a][b]).metres);
+  }
+  return stops;
+}
+
+void OnSite::Impl::wait(Session& session, const Part& part, const std::vector<double>& stay_min,
+                        const std::vector<Leg>& legs) const {
+  constexpr double kRounding_min = 1e-6;
+  session.wait_min.assign(part.stops.size(), 0);
+  double now = part.start_min;
+  for (std::size_t k = 0; k < part.begin_min.size(); ++k) {
+    now += walk_min(legs[k].metres);
+    if (const double waits = part.begin_min[k] - now; waits > kRounding_min) {
+      session.wait_min[k] = waits, session.waiting_min += waits;
+      now = part.begin_min[k];
+    }
+    now += stay_min[part.stops[k]];
+  }
+  session.minutes += session.waiting_min;
+}
+
+// Sessions that keep the access windows, then the others' as without.
+std::vector<OnSite::Impl::Part> OnSite::Impl::parts_within(const TimedStops& stops) const {
+  const FilledSessions filled = fill_sessions(stops, day());
+  std::vector<Part> parts;
+  for (const TimedSession& one : filled.sessions)
+    parts.push_back({.stops = one.stops, .start_min = one.start_min, .begin_min = one.begin_min});
+  RoundTimes rest;
+  for (std::size_t k = 0; k < filled.rest.size(); ++k) {
+    const std::size_t stop = filled.rest[k];
+    rest.stay_min.push_back(stops.stay_min[stop]), rest.out_min.push_back(stops.out_min[stop]);
+    if (k > 0) rest.step_min.push_back(stops.walk_min[filled.rest[k - 1]][stop]);
+  }
+  if (stops.linked)
+    rest.linked = [&](std::size_t a, std::size_t b) { return stops.linked(filled.rest[a], filled.rest[b]); };
+  for (const RoundPiece& piece : cut_round(rest, *options.day_min))
+    parts.push_back({.stops = {filled.rest.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                               filled.rest.begin() + static_cast<std::ptrdiff_t>(piece.end)},
+                     .start_min = options.day_start_min});
+  // A piece of the rest is linked to stops before it, too.
+  const std::size_t n = stops.stay_min.size();
+  for (Part& part : parts) {
+    if (!stops.linked) break;
+    const auto own = [&](std::size_t stop) { return std::ranges::find(part.stops, stop) != part.stops.end(); };
+    part.parts = components(part.stops.size(), [&](std::size_t a, std::size_t b) {
+                   return stops.linked(part.stops[a], part.stops[b]);
+                 }).count;
+    part.linked = part.stops.size() == n;
+    for (std::size_t other = 0; other < n && !part.linked; ++other)
+      part.linked =
+          !own(other) && std::ranges::any_of(part.stops, [&](std::size_t s) { return stops.linked(s, other); });
+  }
+  return parts;
+}
+
+RoundTimes OnSite::Impl::times_of(std::span<const PlacedStation> stations, const Visit& visit) const {
+  const std::vector<std::size_t>& order = visit.order;
+  const Vec3 gate = entrance(stations, visit);
+  RoundTimes times;
+  times.stay_min = visit.stay_min;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    times.out_min.push_back(walk_min(leg(gate, stations[order[k]].ground).metres));
+    if (k > 0) times.step_min.push_back(walk_min(visit.legs_m[k]));
+  }
+  return times;
+}
+
 std::vector<Session> OnSite::sessions(std::span<const PlacedStation> stations, const Visit& visit,
                                       const LinkStrength& link) const {
   const OnSiteOptions& options = impl_->options;
   if (!options.day_min || visit.order.empty()) return {};
   const std::vector<std::size_t>& order = visit.order;
-  const std::size_t n = order.size();
   const auto ground = [&](std::size_t k) { return stations[order[k]].ground; };
-  const Vec3 entrance = options.entrance.value_or(ground(0));
-  const auto leg = [&](const Vec3& from, const Vec3& to) {
-    return from == to ? Impl::Leg() : impl_->leg(from, to, impl_->ways.between(from, to));
-  };
-  RoundTimes times;
-  times.stay_min = visit.stay_min;
-  for (std::size_t k = 0; k < n; ++k) {
-    times.out_min.push_back(impl_->walk_min(leg(entrance, ground(k)).metres));
-    if (k > 0) times.step_min.push_back(impl_->walk_min(visit.legs_m[k]));
+  const Vec3 entrance = impl_->entrance(stations, visit);
+  RoundTimes times = impl_->times_of(stations, visit);
+  for (std::size_t k = 0; k < order.size(); ++k)
     if (const double alone = visit.stay_min[k] + 2 * times.out_min[k]; alone > *options.day_min)
       throw Error(Errc::invalid_argument, "day: station " + std::to_string(order[k] + 1) + " takes " + fixed(alone, 2) +
                                               " min from the entrance and back, " + fixed(visit.stay_min[k], 2) +
                                               " of them at the station; a day has " + fixed(*options.day_min, 2) +
                                               ". Give a longer day");
-  }
   if (link) times.linked = [&](std::size_t a, std::size_t b) { return link(order[a], order[b]) > 0; };
+  std::vector<Impl::Part> parts;
+  if (options.windows.empty())
+    for (const RoundPiece& piece : cut_round(times, *options.day_min))
+      parts.push_back({.stops = first_numbers(piece.end - piece.first, piece.first),
+                       .parts = piece.parts,
+                       .linked = piece.linked,
+                       .start_min = options.day_start_min});
+  else
+    parts = impl_->parts_within(impl_->timed_stops(stations, visit, times));
   std::vector<Session> sessions;
-  for (const RoundPiece& piece : cut_round(times, *options.day_min)) {
+  for (const Impl::Part& part : parts) {
     Session& session = sessions.emplace_back();
-    const std::size_t number = sessions.size() - 1, size = piece.end - piece.first;
+    const std::size_t number = sessions.size() - 1, size = part.stops.size();
     session.day = number / options.crews + 1, session.crew = number % options.crews + 1;
-    session.parts = piece.parts, session.linked = piece.linked;
-    std::vector<std::size_t> own(order.begin() + static_cast<std::ptrdiff_t>(piece.first),
-                                 order.begin() + static_cast<std::ptrdiff_t>(piece.end));
-    for (std::size_t k = piece.first + 1; k < piece.end && times.linked; ++k)
-      if (!times.linked(k - 1, k)) ++session.unlinked;
+    session.parts = part.parts, session.linked = part.linked, session.start_min = part.start_min;
+    std::vector<std::size_t> own;
+    for (const std::size_t stop : part.stops) own.push_back(order[stop]);
+    for (std::size_t k = 1; k < size && times.linked; ++k)
+      if (!times.linked(part.stops[k - 1], part.stops[k])) ++session.unlinked;
     std::vector<Impl::Leg> legs(size + 1);
     parallel::for_all(std::size_t{0}, legs.size(), [&](std::size_t k) {
-      const Vec3 from = k == 0 ? entrance : ground(piece.first + k - 1);
-      const Vec3 to = k == size ? entrance : ground(piece.first + k);
-      legs[k] = leg(from, to);
+      const Vec3 from = k == 0 ? entrance : ground(part.stops[k - 1]);
+      const Vec3 to = k == size ? entrance : ground(part.stops[k]);
+      legs[k] = impl_->leg(from, to);
       if (!(from == to)) legs[k].path = impl_->ways.path(from, to);
     });
     impl_->stand(session, stations, own);
-    impl_->walk(session, stations, std::move(own), std::move(legs));
+    impl_->wait(session, part, visit.stay_min, legs);
+    impl_->walk(session, stations, std::move(own), std::move(legs), session.wait_min);
   }
   return sessions;
+}
+
+void OnSite::add_windows(std::span<const PlacedStation> stations, Visit& visit) const {
+  visit.closed.clear(), visit.bound = 0;
+  const OnSiteOptions& options = impl_->options;
+  if (!options.day_min || options.windows.empty()) return;
+  const RoundTimes times = impl_->times_of(stations, visit);
+  const DayHours day = impl_->day();
+  for (std::size_t k = 0; k < visit.order.size(); ++k) {
+    const Vec3& ground = stations[visit.order[k]].ground;
+    const std::vector<DayHours> hours = impl_->hours_at(ground);
+    if (hours.empty()) continue;
+    ++visit.bound;
+    const double stay = visit.stay_min[k], out = times.out_min[k];
+    const TimedStops alone{.stay_min = {stay}, .walk_min = {{0}}, .out_min = {out}, .hours = {hours}};
+    if (timed_session(alone, {0}, day)) continue;
+    std::string windows;
+    for (const std::size_t w : impl_->windows_at(ground))
+      windows += (windows.empty() ? "" : " or ") + to_string(options.windows[w]);
+    const bool fits = earliest_begin(hours, 0, stay).has_value();
+    visit.closed.push_back(
+        {.station = visit.order[k],
+         .why = "takes " + fixed(stay, 1) + " min within " + windows +
+                (fits ? ", and a day from " + clock_text(day.from_min) + " to " + clock_text(day.to_min) + " with " +
+                            fixed(out, 1) +
+                            " min from the entrance has no such time: begin the day at another time, "
+                            "make it longer or the window wider"
+                      : ", which is shorter: make the window wider")});
+  }
 }
 
 }  // namespace vantage

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/setting_table.hpp"
+#include "core/text.hpp"
 #include "vantage/on_site.hpp"
 #include "vantage/targets.hpp"
 
@@ -7,8 +8,31 @@ namespace vantage {
 namespace {
 
 constexpr Interval minutes{.low = 0, .high = 1e6};
+constexpr Interval of_day{.low = 0, .high = 24 * 60};  // minutes
+
+[[noreturn]] void refuse_window(const std::string& text, const std::string& what) {
+  throw Error(Errc::invalid_argument,
+              what + ": '" + text + "' is no pattern of rooms and hours of the day, such as hall*=06:00-08:00");
+}
 
 }  // namespace
+
+AccessWindow parse_access_window(const std::string& text, const std::string& what) {
+  const auto equals = text.rfind('=');
+  const auto dash = text.find('-', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || equals == 0 || dash == std::string::npos) refuse_window(text, what);
+  const AccessWindow window{.rooms = text.substr(0, equals),
+                            .from_min = parse_clock(text.substr(equals + 1, dash - equals - 1), what),
+                            .to_min = parse_clock(text.substr(dash + 1), what)};
+  if (window.from_min == window.to_min) refuse_window(text, what);
+  return window;
+}
+
+std::string to_string(const AccessWindow& window) {
+  constexpr double kMidnight_min = 24 * 60;
+  return window.rooms + "=" + clock_text(window.from_min) + "-" +
+         (window.to_min == kMidnight_min ? "24:00" : clock_text(window.to_min));
+}
 
 const SettingTable<OnSiteOptions>& on_site_settings() {
   static const SettingTable<OnSiteOptions> table =
@@ -31,6 +55,24 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
                  &OnSiteOptions::crews, 1, 1000)
           .checked([](const OnSiteOptions& options, const std::string& what) {
             parse_count(std::to_string(options.crews), what, 1, 1000);
+          })
+          .custom("day-start", "HH:MM", "Time at which a day's sessions leave the entrance; 08:00 otherwise",
+                  [](OnSiteOptions& options, const std::string& text, const std::string& what) {
+                    options.day_start_min = parse_clock(text, what);
+                  })
+          .checked([](const OnSiteOptions& options, const std::string& what) {
+            check_number(options.day_start_min, what, of_day);
+          })
+          .repeated(
+              "window", "ROOMS=HH:MM-HH:MM",
+              "Hours of the day outside of which nobody may scan in rooms of such names: 'hall*=06:00-08:00'. "
+              "Takes a day; may be repeated",
+              [](OnSiteOptions & options) -> auto& { return options.windows; }, parse_access_window)
+          .checked([](const OnSiteOptions& options, const std::string& what) {
+            for (const AccessWindow& window : options.windows) {
+              if (window.rooms.empty()) refuse_window(to_string(window), what);
+              for (const double time : {window.from_min, window.to_min}) check_number(time, what, of_day);
+            }
           })
           .take();
   return table;

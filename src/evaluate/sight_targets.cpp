@@ -113,6 +113,10 @@ double target_reach_m(const Scanner& scanner, const TargetOptions& options) {
   return std::min(std::sqrt(points_at(scanner, 1, options) / points), scanner.max_range_m);
 }
 
+bool any_ties(std::span<const Target> targets) noexcept {
+  return !std::ranges::all_of(targets, [](const Target& target) { return target.check; });
+}
+
 void check(const Target& target, const Vec3& origin) {
   require_in_reach(target.centre, origin, "target \"" + target.name + "\" is");
   check_number(target.control_m, "targets: the sigma of " + target.name, any_share);

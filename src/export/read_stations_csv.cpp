@@ -19,7 +19,7 @@
 namespace vantage {
 namespace {
 
-enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step, sigma };
+enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step, sigma, proposed };
 
 // Names of columns; each name means one quantity alone.
 const std::map<std::string, Column, std::less<>>& known_columns() {
@@ -61,7 +61,8 @@ const std::map<std::string, Column, std::less<>>& known_columns() {
                                                                 {"tilt", Column::tilt},
                                                                 {"scanner", Column::scanner},
                                                                 {"step", Column::step},
-                                                                {"sigma", Column::sigma}};
+                                                                {"sigma", Column::sigma},
+                                                                {"proposed", Column::proposed}};
   return names;
 }
 
@@ -257,6 +258,7 @@ class Table {
     };
     row.name = text_of_csv_cell(word(Column::name));
     row.scanner = text_of_csv_cell(word(Column::scanner));
+    row.check = text_of_csv_cell(word(Column::proposed)) == "check";
     const auto angle = [&](Column column) -> std::optional<Angle> {
       const auto degrees = value(column);
       return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
@@ -304,6 +306,7 @@ std::vector<Target> read_targets_csv(const std::filesystem::path& file) {
     if (!row.position) refuse("has no x, y and z of its centre");
     if (row.sigma_m && !(*row.sigma_m > 0 && *row.sigma_m <= 1))
       refuse("has a sigma that is not above 0 and at most 1 m; leave it empty unless its coordinates are known");
+    if (row.check) continue;  // proposed anew for the stations of the day
     targets.push_back({.name = name, .centre = *row.position, .control_m = row.sigma_m.value_or(0)});
   }
   return targets;

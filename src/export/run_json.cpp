@@ -93,10 +93,19 @@ ordered_json sessions_json(const std::vector<Session>& sessions, std::size_t kep
   for (const Session& session : sessions) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}};
     one.update(round_json(session, kept));
+    one["start"] = clock_text(session.start_min);
     one["arrive_min"] = session.arrive_min;
+    one["wait_min"] = session.wait_min;
     one["parts"] = session.parts, one["linked"] = session.linked;
     json.push_back(std::move(one));
   }
+  return json;
+}
+
+// Stations that no session can scan within the access windows of their rooms.
+ordered_json closed_json(const std::vector<ClosedStation>& closed, std::size_t kept) {
+  ordered_json json = ordered_json::array();
+  for (const ClosedStation& one : closed) json.push_back({{"station", kept + one.station + 1}, {"why", one.why}});
   return json;
 }
 
@@ -137,6 +146,7 @@ ordered_json targets_json(const std::vector<Target>& targets) {
                     {"sigma_m", target.control_m > 0 ? ordered_json(target.control_m) : ordered_json()},
                     {"proposed", target.proposed},
                     {"stations", std::move(stations)}});
+    if (target.check) json.back()["check"] = true;
   }
   return json;
 }
@@ -159,12 +169,14 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
                         std::span<const Scanner> scanners) {
   ordered_json stations = ordered_json::array();
   const auto names = station_names(entry.stations, entry.names);
+  const std::vector<KnownPoints> known_points = vantage::known_points(entry);
   const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     ordered_json station = station_json<ordered_json>(entry.stations[i], names[i]);
     if (setups) add_setup(station, entry.stations[i].setup, scanners);
     if (entry.exact && i < entry.counts.points_on_surveyed.size())
       station["points_on_surveyed"] = entry.counts.points_on_surveyed[i];
+    if (!known_points.empty()) add_set_up(station, known_points[i], entry);
     stations.push_back(std::move(station));
   }
   ordered_json json{{"entry", number}}, exact, values;
@@ -192,8 +204,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
   if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
   add_ties(json, entry);
-  if (!entry.targets.empty()) {
-    json["targets"] = targets_json(entry.targets);
+  if (!entry.targets.empty()) json["targets"] = targets_json(entry.targets);
+  if (any_ties(entry.targets)) {
     json["registration_mm"] = {{"with_targets", entry.value("registration")},
                                {"without_targets", known(1e3 * entry.without_targets_m.value_or(std::nan("")))}};
     if (entry.registration && entry.registration->absolute_rms_m)
@@ -205,6 +217,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     json["on_site"] = round_json(*entry.visit, kept);
     if (!entry.visit->sessions.empty()) json["on_site"]["sessions"] = sessions_json(entry.visit->sessions, kept);
     if (!entry.visit->not_split.empty()) json["on_site"]["not_split"] = entry.visit->not_split;
+    if (entry.visit->bound > 0) json["on_site"]["closed"] = closed_json(entry.visit->closed, kept);
   }
   return json;
 }
@@ -320,17 +333,15 @@ std::string evaluation_json(const Evaluation& evaluation) {
     json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
   if (evaluation.data) json["data"] = data_json(*evaluation.data);
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
+  const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
   if (evaluation.visit && !evaluation.visit->sessions.empty())
-    json["sessions"] = sessions_json(
-        evaluation.visit->sessions,
-        static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing)));
+    json["sessions"] = sessions_json(evaluation.visit->sessions, kept);
+  if (evaluation.visit && evaluation.visit->bound > 0) json["closed"] = closed_json(evaluation.visit->closed, kept);
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
-  if (!evaluation.targets.empty()) {
-    json["targets"] = targets_json(evaluation.targets);
-    if (evaluation.without_targets_m && evaluation.registration)
-      json["registration"]["without_targets_mm"] = 1e3 * *evaluation.without_targets_m;
-  }
+  if (!evaluation.targets.empty()) json["targets"] = targets_json(evaluation.targets);
+  if (any_ties(evaluation.targets) && evaluation.without_targets_m && evaluation.registration)
+    json["registration"]["without_targets_mm"] = 1e3 * *evaluation.without_targets_m;
   if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
   if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
   if (!evaluation.counts.mixed.empty()) json["mixed"] = sum_json(evaluation.counts.mixed);

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "evaluate/known_points.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/station_setup.hpp"
@@ -47,6 +48,13 @@ void add_setup(Json& station, const StationSetup& setup, std::span<const Scanner
   station["zenith_start"] = scanner.zenith_start.in_degrees();
   station["nearest"] = scanner.min_range_m;
   station["farthest"] = scanner.max_range_m;
+}
+
+// Adds {known_points, set_up}: how many control points its scan measures, and what they allow.
+template <class Json>
+void add_set_up(Json& station, const KnownPoints& known, const Evaluation& evaluation) {
+  station["known_points"] = known.seen.size();
+  station["set_up"] = set_up_text(known, evaluation);
 }
 
 }  // namespace vantage

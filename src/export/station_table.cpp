@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "evaluate/known_points.hpp"
 #include "export/station_cells.hpp"
 #include "vantage/summary.hpp"
 
@@ -42,8 +43,15 @@ std::vector<TableColumn> setup_columns(std::span<const PlacedStation> stations, 
 
 }  // namespace
 
+std::vector<std::string> set_ups_of(const Evaluation& evaluation) {
+  std::vector<std::string> texts;
+  for (const KnownPoints& known : known_points(evaluation)) texts.push_back(set_up_text(known, evaluation));
+  return texts;
+}
+
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
-                          std::span<const std::uint64_t> points, std::span<const Scanner> scanners) {
+                          std::span<const std::uint64_t> points, std::span<const Scanner> scanners,
+                          std::span<const std::string> set_ups) {
   TableColumn name{.title = "station", .words = true}, x{"ground x"}, y{"y"}, z{"z"}, head{"head z"},
       status{.title = "status", .words = true}, counted{"points on surveyed meshes"};
   for (std::size_t k = 0; k < stations.size(); ++k) {
@@ -59,6 +67,8 @@ std::string station_table(std::span<const PlacedStation> stations, std::span<con
   }
   std::vector<TableColumn> columns{name, x, y, z, head, status};
   if (!points.empty()) columns.push_back(counted);
+  if (!set_ups.empty())
+    columns.push_back({.title = "known points", .cells = {set_ups.begin(), set_ups.end()}, .words = true});
   if (tells_setups(stations)) std::ranges::move(setup_columns(stations, scanners), std::back_inserter(columns));
 
   std::vector<std::string> lines(stations.size() + 1);

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "evaluate/known_points.hpp"
+#include "evaluate/steep_checks.hpp"
 #include "plan/answer.hpp"
 #include "scan/scan_seconds.hpp"
 #include "scene/room_floors.hpp"
@@ -55,6 +57,25 @@ std::string sessions_text(const Visit& visit) {
                      counted(days, "day") + (crews > 1 ? " with " + counted(crews, "crew") : "") + "; ";
   if (sessions.size() == 1) return text + "it takes " + duration(60 * all);
   return text + "the longest takes " + duration(60 * longest) + ", all together " + duration(60 * all);
+}
+
+// "kept at all 5 stations that access windows are for, with 35 min of waiting"
+std::string hours_text(const Visit& visit) {
+  const std::string all = counted(visit.bound, "station") + " that access windows are for";
+  if (!visit.closed.empty())
+    return "not kept at " + number(visit.closed.size()) + " of " + all + ", which no session scans";
+  double waiting = 0;
+  for (const Session& one : visit.sessions) waiting += one.waiting_min;
+  return "kept at all " + all + ", with " + (waiting > 0 ? duration(60 * waiting) + " of" : std::string("no")) +
+         " waiting";
+}
+
+// A sentence for each station whose access windows no session keeps.
+std::vector<std::string> hours_advice(const Visit& visit, const std::vector<std::string>& placed) {
+  std::vector<std::string> advice;
+  for (const ClosedStation& one : visit.closed)
+    advice.push_back(placed[one.station] + " is in no session: it " + one.why);
+  return advice;
 }
 
 // A sentence for each session whose scans no link holds together, or to the others.
@@ -184,8 +205,6 @@ std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const s
 
 // Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
 constexpr double kLeastTenth = 0.05;
-// Share of the random error from which on the errors of the instrument are told to be checked.
-constexpr double kMuchRandom = 1.2;
 std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
 
 // " S4 (61 mm), S7 (40 mm) and 3 more": stations whose part of the surface misses the class.
@@ -217,9 +236,9 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
                 ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves)"
                 : " by random errors alone (the scanner states no calibration)";
   }
-  const auto by = static_cast<std::size_t>(
-      std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
-  if (!evaluation.targets.empty()) {
+  const auto by = static_cast<std::size_t>(std::ranges::count_if(
+      evaluation.targets, [](const Target& target) { return !target.check && target.stations.size() > 1; }));
+  if (any_ties(evaluation.targets)) {
     text += ", with " + std::to_string(by) + (by == 1 ? " target that ties" : " targets that tie") + " scans together";
     if (evaluation.without_targets_m) text += " (" + tenths(1000 * *evaluation.without_targets_m) + " mm without)";
   }
@@ -239,12 +258,55 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
          (beyond.empty() ? "" : ", most at" + beyond);
 }
 
+// "a target at C1 (3.21, 4.05, 2.87), 41° above or below the heads of S1 and S4: …", one for each instrument.
+std::vector<SummaryLine> check_lines(const Evaluation& evaluation, const std::vector<std::string>& names) {
+  std::vector<SummaryLine> lines;
+  if (!wants_steep_check(evaluation)) return lines;
+  const std::string why = ": level sights hide an error of the scanner's vertical index";
+  for (const Target& target : evaluation.targets) {
+    if (!target.check) continue;
+    double least = 90;
+    for (const std::size_t station : target.stations)
+      least = std::min(least, elevation_deg(evaluation.stations[station].position, target.centre));
+    lines.push_back({"to check", "a target at " + target.name + " (" + fixed(target.centre.x, 2) + ", " +
+                                     fixed(target.centre.y, 2) + ", " + fixed(target.centre.z, 2) + "), " +
+                                     fixed(least, 0) + "° or more above or below the heads of " +
+                                     listed(target.stations, names) + why});
+  }
+  for (const std::string& instrument : evaluation.no_steep_check)
+    lines.push_back({"to check", "a target more than 30° above or below the heads of two stations of " + instrument +
+                                     why +
+                                     "; no surveyed surface is so steep for two of them within 30 m: check it "
+                                     "elsewhere"});
+  if (lines.empty())
+    lines.push_back({"to check", "a target more than 30° above or below the heads of two stations" + why});
+  return lines;
+}
+
+// "3 of 5 stations may be set up by known points: S1 (over P1, sights 2), S3 (resection from 3)"
+std::string control_text(const Evaluation& evaluation, const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 12;
+  const std::vector<KnownPoints> known = known_points(evaluation);
+  if (known.empty()) return {};
+  std::size_t may = 0;
+  std::string text;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    if (!may_be_set_up(known[k])) continue;
+    if (++may <= kNamed) text += (may > 1 ? ", " : ": ") + names[k] + " (" + set_up_text(known[k], evaluation) + ")";
+  }
+  if (may > kNamed) text += " and " + std::to_string(may - kNamed) + " more";
+  const auto used = static_cast<std::size_t>(std::ranges::count_if(evaluation.stations, active));
+  return (may == 0 ? "none" : std::to_string(may)) + " of " + counted(used, "station") +
+         " may be set up by known points" + (may == 0 ? ", of which two in range are needed, three for a check" : text);
+}
+
 // A registration that misses its class.
 std::vector<std::string> registration_advice(const Evaluation& evaluation, double rms_mm) {
   if (error_at_95_percent(rms_mm / 1000) <= largest_error_m(evaluation.accuracy_class)) return {};
   const std::string what = "surfaces do not hold the scans together to " + to_string(evaluation.accuracy_class) + ": ";
-  const bool proposed = std::ranges::any_of(evaluation.targets, &Target::proposed);
-  if (!evaluation.without_targets_m || (!proposed && !evaluation.targets.empty()))
+  const bool proposed =
+      std::ranges::any_of(evaluation.targets, [](const Target& target) { return target.proposed && !target.check; });
+  if (!evaluation.without_targets_m || (!proposed && any_ties(evaluation.targets)))
     return {what + "let targets be proposed, or add stations that share more walls"};
   return {what +
           (proposed ? "nor do the proposed targets; " : "no place for a target is near enough to two stations; ") +
@@ -335,14 +397,13 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   const bool several = std::ranges::count_if(evaluation.stations, active) > 1;  // one scan is registered to nothing
   if (several && registered != evaluation.values.end() && std::isfinite(registered->second.value))
     lines.push_back({"registered", registered_text(evaluation, registered->second, names)});
-  if (several && evaluation.registration &&
-      evaluation.registration->rms_m > kMuchRandom * evaluation.registration->random_m)
-    lines.push_back({"to check",
-                     "a target more than 30° above or below the heads of two stations: level sights hide an error of "
-                     "the scanner's vertical index"});
+  std::ranges::move(check_lines(evaluation, names), std::back_inserter(lines));
+  if (std::string control = control_text(evaluation, names); !control.empty())
+    lines.push_back({"control", std::move(control)});
   if (evaluation.visit)
     lines.push_back({"on site", evaluation.visit->sessions.empty() ? "about " + duration(60 * evaluation.visit->minutes)
                                                                    : sessions_text(*evaluation.visit)});
+  if (evaluation.visit && evaluation.visit->bound > 0) lines.push_back({"hours", hours_text(*evaluation.visit)});
   if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
@@ -351,9 +412,11 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   to_do(storeys_advice(evaluation.storey_ties, names));
   if (evaluation.visit && !evaluation.visit->not_split.empty())
     to_do({"not split into days: " + evaluation.visit->not_split});
-  if (evaluation.visit && !evaluation.visit->sessions.empty()) {
+  if (evaluation.visit) {
     const auto existing = std::ranges::count(evaluation.stations, true, &PlacedStation::existing);
-    to_do(sessions_advice(*evaluation.visit, {names.begin() + existing, names.end()}));
+    const std::vector<std::string> placed(names.begin() + existing, names.end());
+    to_do(hours_advice(*evaluation.visit, placed));
+    to_do(sessions_advice(*evaluation.visit, placed));
   }
   to_do(stations_advice(evaluation, names));
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
@@ -659,7 +722,7 @@ std::string trade_off_text(const PlanResult& result) {
     if (to - from > 3) shown[(from + to) / 2] = 1;
     from = to;
   }
-  const bool targets = !result.front.empty() && !result.front[answer(result)].targets.empty();
+  const bool targets = !result.front.empty() && any_ties(result.front[answer(result)].targets);
   std::string text =
       "stations   captured  registered  on site" + std::string(targets ? "  (without targets)" : "") + "\n";
   for (std::size_t k = 0; k < points.size(); ++k) {

@@ -14,7 +14,10 @@ void write_targets_csv(const std::filesystem::path& file, std::span<const Target
     for (const std::size_t k : target.stations) stations += (stations.empty() ? "" : " ") + station_names[k];
     text += csv_cell(target.name) + "," + fixed(target.centre.x, 4) + "," + fixed(target.centre.y, 4) + "," +
             fixed(target.centre.z, 4) + "," + (target.control_m > 0 ? number(target.control_m) : "") + "," +
-            (target.proposed ? "yes" : "no") + "," + csv_cell(stations) + "\n";
+            (target.check      ? "check"
+             : target.proposed ? "yes"
+                               : "no") +
+            "," + csv_cell(stations) + "\n";
   }
   write_atomically(file, text);
 }

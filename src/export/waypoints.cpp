@@ -21,9 +21,9 @@ struct Waypoint {
   std::string name;
   Vec3 ground;
   double head_height_m = 0;
-  double yaw = 0;           // radians, from +X towards +Y
-  double first_column = 0;  // degrees, of the scanner's first column
-  double dwell_s = 0;
+  double yaw = 0;                           // radians, from +X towards +Y
+  double first_column = 0;                  // degrees, of the scanner's first column
+  double dwell_s = 0, wait_s = 0;           // there, and before that for an access window
   const std::vector<Vec3>* path = nullptr;  // that leads to it
 };
 
@@ -85,6 +85,7 @@ ordered_json json_of(const Waypoint& one, std::size_t order) {
           {"first_column", one.first_column},
           {"head_height", one.head_height_m},
           {"dwell_s", std::round(1000 * one.dwell_s) / 1000},
+          {"wait_s", std::round(1000 * one.wait_s) / 1000},
           {"path", std::move(path)}};
 }
 
@@ -107,14 +108,14 @@ std::string waypoints_json(const std::vector<WaypointRound>& rounds, const std::
 }
 
 std::string waypoints_csv(const std::vector<WaypointRound>& rounds) {
-  std::string text = "day,crew,order,name,x,y,z,head_height,heading,first_column,dwell_s\n";
+  std::string text = "day,crew,order,name,x,y,z,head_height,heading,first_column,dwell_s,wait_s\n";
   for (const WaypointRound& round : rounds)
     for (std::size_t k = 0; k < round.waypoints.size(); ++k) {
       const Waypoint& one = round.waypoints[k];
       text += number(round.day) + "," + number(round.crew) + "," + number(k + 1) + "," + csv_cell(one.name) + "," +
               number(one.ground.x) + "," + number(one.ground.y) + "," + number(one.ground.z) + "," +
               fixed(one.head_height_m, 3) + "," + fixed(wrapped_degrees(Angle::radians(one.yaw)), 2) + "," +
-              fixed(one.first_column, 2) + "," + fixed(one.dwell_s, 1) + "\n";
+              fixed(one.first_column, 2) + "," + fixed(one.dwell_s, 1) + "," + fixed(one.wait_s, 1) + "\n";
     }
   return text;
 }
@@ -134,6 +135,8 @@ void write_waypoints(const std::filesystem::path& file, const Evaluation& evalua
   for (const Session& session : evaluation.visit->sessions) {
     rounds.push_back(waypoints_of(session, evaluation, scanners, names));
     rounds.back().day = session.day, rounds.back().crew = session.crew;
+    for (std::size_t k = 0; k < session.wait_min.size(); ++k)
+      rounds.back().waypoints[k].wait_s = 60 * session.wait_min[k];
   }
   if (rounds.empty()) rounds.push_back(waypoints_of(*evaluation.visit, evaluation, scanners, names));
   write_atomically(file, extension == ".json" ? waypoints_json(rounds, crs) : waypoints_csv(rounds));

@@ -14,19 +14,11 @@ namespace vantage {
 namespace {
 
 [[noreturn]] void refuse_meshes(const Scene& scene, std::string_view pattern) {
-  constexpr std::size_t kMostNames = 8;
   std::vector<std::string> names;
   for (const MeshInfo& mesh : scene.meshes())
     if (mesh.role == Role::surveyed && std::ranges::find(names, mesh.name) == names.end()) names.push_back(mesh.name);
-  std::string letters(pattern);
-  std::erase_if(letters, [](char c) { return c == '*' || c == '?' || c == '!' || c == '|'; });
-  std::string what = "captured: no surveyed mesh is named like \"" + std::string(pattern) + "\"";
-  if (const std::string near = did_you_mean(letters, names); !near.empty())
-    throw Error(Errc::invalid_argument, what + near);
-  what += "; there are ";
-  for (std::size_t k = 0; k < std::min(names.size(), kMostNames); ++k) what += (k == 0 ? "" : ", ") + names[k];
-  if (names.size() > kMostNames) what += " and " + std::to_string(names.size() - kMostNames) + " more";
-  throw Error(Errc::invalid_argument, what);
+  throw Error(Errc::invalid_argument, "captured: no surveyed mesh is named like \"" + std::string(pattern) + "\"" +
+                                          names_there_are(pattern, names));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/setting_list.hpp"
@@ -7,6 +9,7 @@
 #include "objective/whole_counts.hpp"
 #include "vantage/error.hpp"
 #include "vantage/measure.hpp"
+#include "vantage/scanner.hpp"
 
 namespace vantage {
 
@@ -20,12 +23,25 @@ Settings settings(const RegistrationOptions& options) {
       .add("patch_m", options.model.patch_m, {"registration-patch"})
       .add("position_m", options.position_m, {"registration-position"})
       .add("heading_deg", options.heading, {"registration-heading"})
-      .add("tilt_deg", options.tilt, {"registration-tilt"})
+      .add("tilt_deg", options.tilt_of_scanner ? std::optional<Angle>() : options.tilt, {"registration-tilt"})
       .add("surfaces", to_string(options.surfaces), {"registration-surfaces"})
       .take();
 }
 
 void check(const RegistrationOptions& options) { check_settings(registration_settings(), options); }
+
+RegistrationOptions levelled_by(RegistrationOptions options, std::span<const Scanner> scanners) {
+  if (!options.tilt_of_scanner) return options;
+  options.tilt_of_scanner = false;
+  options.tilt = Angle();
+  for (const Scanner& scanner : scanners) {
+    if (!(scanner.tilt_accuracy.in_radians() > 0))
+      throw Error(Errc::invalid_argument,
+                  "registration-tilt: the scanner " + scanner.name + " states no accuracy of its tilts; give degrees");
+    options.tilt = Angle::radians(std::max(options.tilt.in_radians(), scanner.tilt_accuracy.in_radians()));
+  }
+  return options;
+}
 
 // E |shift + turn × q|² = tr D + 2 q · E[shift × turn] + |q|² tr A − qᵀ A q, with A the covariance of the turn and D
 // that of the shift: a map asks for it at millions of points.
@@ -45,6 +61,8 @@ RegistrationInputs registration_inputs(const NetworkCounts& counts, std::uint64_
                                        const RegistrationOptions& options, const NetworkCounts* surroundings,
                                        std::uint64_t surroundings_voxels) {
   check(options);
+  if (options.tilt_of_scanner)
+    throw Error(Errc::invalid_argument, "registration: the tilt of a scanner is asked for; see levelled_by()");
   require_whole(counts, "registration");
   if (surroundings) require_whole(*surroundings, "registration");
   const bool all = options.surfaces == RegistrationSurfaces::all;

@@ -3,6 +3,11 @@
 #include "vantage/measure.hpp"
 
 namespace vantage {
+namespace {
+
+constexpr Interval tilts{.low = 0, .high = 180};  // degrees
+
+}  // namespace
 
 const SettingTable<RegistrationOptions>& registration_settings() {
   static const SettingTable<RegistrationOptions> table = [] {
@@ -27,11 +32,17 @@ const SettingTable<RegistrationOptions>& registration_settings() {
                            usual.heading.in_degrees()),
                  &Options::heading, {.low = 1e-6, .high = 180})
         .advanced()
-        .degrees("registration-tilt",
-                 otherwise("Standard deviation of a scan's tilts, from its compensator, in degrees; 0: exactly level, "
-                           "some degrees: not levelled",
-                           usual.tilt.in_degrees()),
-                 &Options::tilt, {.low = 0, .high = 180})
+        .custom("registration-tilt", "DEG|scanner",
+                otherwise("Standard deviation of a scan's tilts, from its compensator, in degrees; 0: exactly level, "
+                          "some degrees: not levelled, scanner: what the scanner states",
+                          usual.tilt.in_degrees()),
+                [](Options& options, const std::string& text, const std::string& what) {
+                  options.tilt_of_scanner = text == "scanner";
+                  if (!options.tilt_of_scanner) options.tilt = Angle::degrees(parse_number(text, what, tilts));
+                })
+        .checked([](const Options& options, const std::string& what) {
+          check_number(whole_degrees(options.tilt), what, tilts);
+        })
         .advanced()
         .custom("registration-surfaces", "surveyed|all",
                 "Surfaces that scans register on: surveyed ones, or all; surveyed otherwise",

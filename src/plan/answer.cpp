@@ -39,6 +39,9 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   return std::sqrt(sum);
 }
 
+// Whether sessions keep all access windows, as far as rounds are known.
+bool keeps_windows(const PlanEntry& entry) { return closed_stations(entry) == 0; }
+
 bool all_placed(const PlanResult& result) {
   const std::size_t placed = result.front[answer(result)].stations.size() - result.problem.existing.size();
   return placed >= result.problem.stations_max;
@@ -77,7 +80,8 @@ bool requires_what_pays(const PlanResult& result, const Requirement& requirement
 bool met(const PlanResult& result) {
   if (result.front.empty()) return false;
   const PlanEntry& entry = result.front[answer(result)];
-  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact) && !look_cut_short(result);
+  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact) && !look_cut_short(result) &&
+         keeps_windows(entry);
 }
 
 std::vector<std::string> what_would_help(const PlanResult& result) {
@@ -87,8 +91,12 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   const SurveyProblem& problem = result.problem;
   if (look_cut_short(result))
     help.push_back("more time: the look at attainable coverage was cut short, so capture is a share of too little");
+  if (!keeps_windows(entry))
+    help.push_back("other access windows, or another day: " + std::to_string(entry.visit->closed.size()) + " of " +
+                   std::to_string(entry.visit->bound) + " stations that they are for are in no session");
   if (entry.violation == 0) {
-    if (!entry.exact) help.push_back("more time: no network was traced with every ray, so the figures are estimates");
+    if (!entry.exact && !problem.requirements.empty())
+      help.push_back("more time: no network was traced with every ray, so the figures are estimates");
     return help;
   }
   const auto minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most);

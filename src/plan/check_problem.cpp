@@ -11,6 +11,7 @@
 #include "plan/limits.hpp"
 #include "plan/measures.hpp"
 #include "scene/scene_data.hpp"
+#include "site/room_windows.hpp"
 #include "vantage/error.hpp"
 #include "vantage/question.hpp"
 
@@ -20,6 +21,7 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
   const Vec3 origin = site.scene().data().origin;
   check_settings(on_site_settings(), problem.on_site);
   check_day(problem.on_site, site.scanners());
+  check_rooms(problem.on_site.windows, site.scene().rooms());
   check_settings(registration_settings(), problem.registration);
   check_settings(target_settings(), problem.target);
   check_number(problem.link_overlap, "link-overlap", any_share);

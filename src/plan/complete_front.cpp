@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "evaluate/evaluator.hpp"
+#include "evaluate/steep_checks.hpp"
 #include "evaluate/through_glass.hpp"
 #include "plan/answer_targets.hpp"
 #include "plan/fewest_choice.hpp"
@@ -87,6 +88,7 @@ void complete_front(PlanResult& result, PlanContext& context, Site& site, const 
   look_through_glass(chosen, site.simulator(), progress);
   put_answer_in_trade_off(result);
   add_targets(result, site, context.measures(), progress);
+  add_steep_checks(result.front[answer(result)], site.simulator(), site.clash());
 }
 
 }  // namespace vantage

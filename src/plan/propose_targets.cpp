@@ -213,9 +213,10 @@ std::optional<std::vector<std::size_t>> choose(TargetChooser& chooser, std::span
 }  // namespace
 
 std::optional<TargetProposal> propose_targets(Site& site, std::span<const PlacedStation> stations,
-                                              const RegistrationOptions& registration, const TargetOptions& asked,
+                                              const RegistrationOptions& predicted_by, const TargetOptions& asked,
                                               std::vector<Target> given, const Progress& progress) {
   check(asked);
+  const RegistrationOptions registration = levelled_by(predicted_by, site.scanners());
   const TargetOptions options = with_class_of(site.options(), asked);
   const bool all = registration.surfaces == RegistrationSurfaces::all;
   Simulator& simulator = site.simulator();

@@ -193,7 +193,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   asked.existing_names = question.existing_names;
   asked.heights_m = question.heights_m;
   asked.link_overlap = least;
-  asked.registration = question.registration;
+  asked.registration = levelled_by(question.registration, site.scanners());
   asked.on_site = question.on_site;
   asked.targets = question.targets, asked.existing_targets = question.existing_targets;
   asked.target = with_class_of(site.options(), question.target);

@@ -7,18 +7,14 @@
 #include <limits>
 
 #include "placement/triangle_parts.hpp"
+#include "scene/room_above.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr double kKnee_m = 0.5;     // above a floor one is surely in its room
 constexpr double kStanding_m2 = 1;  // floor that a tripod stands on
 
 double edge_length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
-std::optional<std::size_t> room_above(std::span<const Room> rooms, const Vec3& ground) {
-  return room_at(rooms, ground + Vec3{0, 0, kKnee_m});
-}
 
 // Adds the area of a triangle to the rooms that its parts lie in.
 template <class Add>

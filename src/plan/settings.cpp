@@ -38,7 +38,14 @@ Settings settings(const OnSiteOptions& options) {
       .add("entrance", options.entrance);
   // Sessions are made of the answer's round, and decide nothing in a search for it.
   if (options.day_min)
-    list.add("day", number(*options.day_min) + "min", {"day", false}).add("crews", options.crews, {"crews", false});
+    list.add("day", number(*options.day_min) + "min", {"day", false})
+        .add("crews", options.crews, {"crews", false})
+        .add("day_start", clock_text(options.day_start_min), {"day-start", false});
+  if (!options.windows.empty()) {
+    std::vector<std::string> windows;
+    for (const AccessWindow& window : options.windows) windows.push_back(to_string(window));
+    list.add("windows", windows, {"window", false});
+  }
   return list.take();
 }
 

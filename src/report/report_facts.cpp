@@ -37,14 +37,16 @@ std::string stations_text(const Evaluation& network) {
 
 std::string time_text(const Visit& visit) {
   Round all = visit;
+  double waiting = 0;
   if (!visit.sessions.empty()) {
     all.walk_m = all.walk_min = all.minutes = 0;
     for (const Session& one : visit.sessions)
-      all.walk_m += one.walk_m, all.walk_min += one.walk_min, all.minutes += one.minutes;
+      all.walk_m += one.walk_m, all.walk_min += one.walk_min, all.minutes += one.minutes, waiting += one.waiting_min;
   }
   return "scans " + minutes_text(all.scan_min) + ", setting up " + minutes_text(all.set_up_min) +
          (all.photos_min > 0 ? ", photos " + minutes_text(all.photos_min) : "") + ", walking " +
-         minutes_text(all.walk_min) + " (" + fixed(all.walk_m, 0) + " m): " + minutes_text(all.minutes) + " in all";
+         minutes_text(all.walk_min) + " (" + fixed(all.walk_m, 0) + " m)" +
+         (waiting > 0 ? ", waiting " + minutes_text(waiting) : "") + ": " + minutes_text(all.minutes) + " in all";
 }
 
 // Of each scanner that stations have.

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/read_file.hpp"
+#include "core/text.hpp"
 #include "export/missed_colours.hpp"
 #include "export/run_json.hpp"
 #include "export/shown_links.hpp"
@@ -34,12 +35,14 @@ ordered_json stations_json(const Evaluation& network) {
   ordered_json stations = ordered_json::array();
   const std::vector<std::string> names = station_names(network.stations, network.names);
   const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
+  const std::vector<KnownPoints> known_points = vantage::known_points(network);
   for (std::size_t k = 0; k < network.stations.size(); ++k) {
     const PlacedStation& s = network.stations[k];
     ordered_json station = station_json<ordered_json>(s, names[k]);
     station["fault"] = explain(s.status);
     station["active"] = active(s);
     station["points_on_surveyed"] = network.exact && k < points.size() ? ordered_json(points[k]) : ordered_json();
+    if (!known_points.empty()) add_set_up(station, known_points[k], network);
     stations.push_back(std::move(station));
   }
   return stations;
@@ -105,6 +108,9 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
   for (const Session& session : visit.sessions) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
     one.update(round_json(session, kept));
+    one["clock"] = clock_text(session.start_min) + "–" + clock_text(session.start_min + session.minutes);
+    one["waiting_min"] = session.waiting_min, one["begin"] = ordered_json::array();
+    for (const double arrive : session.arrive_min) one["begin"].push_back(clock_text(session.start_min + arrive));
     json["sessions"].push_back(std::move(one));
   }
   return json;
@@ -118,6 +124,7 @@ ordered_json targets_json(const std::vector<Target>& targets) {
                     {"position", point_json(target.centre)},
                     {"sigma_m", target.control_m > 0 ? ordered_json(target.control_m) : ordered_json()},
                     {"proposed", target.proposed},
+                    {"check", target.check},
                     {"stations", target.stations}});
   return json;
 }

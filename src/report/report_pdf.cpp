@@ -147,14 +147,15 @@ void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const
   begin_section(sheets, sessions.size());
   Sheet& sheet = sheets.back();
   sheet.heading("Sessions");
-  sheet.words(
-      Sheet::kMargin,
-      "Each begins and ends at the entrance; its stations stand in the table of stations in their order. Links: "
-      "whether its scans hold together by themselves, and with those of other sessions.",
-      {.size = 9, .colour = kFaintInk});
+  sheet.words(Sheet::kMargin,
+              "Each begins and ends at the entrance, at these times of the day; its stations stand in the table of "
+              "stations in their order. Links: "
+              "whether its scans hold together by themselves, and with those of other sessions.",
+              {.size = 9, .colour = kFaintInk});
   sheet.y += 6;
   write_table(sheets, a4(),
               {{"Session", Align::start},
+               {"Time"},
                {"Stations"},
                {"From, to", Align::start},
                {"At stations"},
@@ -166,9 +167,10 @@ void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                 const Session& one = sessions[k];
                 const std::vector<std::size_t>& stations = rounds[k].stations;
                 return {rounds[k].name,
+                        clock_text(one.start_min) + "–" + clock_text(one.start_min + one.minutes),
                         std::to_string(stations.size()),
                         names[stations.front()] + ", " + names[stations.back()],
-                        minutes_text(one.minutes - one.walk_min),
+                        minutes_text(one.minutes - one.walk_min - one.waiting_min),
                         minutes_text(one.walk_min),
                         fixed(one.walk_m, 0),
                         minutes_text(one.minutes),
@@ -198,7 +200,7 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
       Sheet::kMargin,
       "Metres. x, y and z are of the ground under the tripod, the head stands so high over it. " +
           std::string(corners ? "Corners: tape distances to the two corners that the map marks. " : "") +
-          "Done at: since the start of the " + std::string(sessions ? "session" : "round") +
+          "Done at: " + std::string(sessions ? "the time of the day" : "since the start of the round") +
           ". Field software "
           "registers each scan to the one before; a station that has no link to that says to which station instead.",
       {.size = 9, .colour = kFaintInk});
@@ -213,6 +215,7 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                   std::string notes = f.note;
                   const auto add = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };
                   if (!f.register_to.empty()) add(f.register_to);
+                  if (!f.set_up.empty()) add(f.set_up);
                   constexpr double kLeastTold = 0.0005;
                   if (f.alone >= kLeastTold) add("alone sees " + percent(f.alone) + ": " + f.alone_where);
                   std::vector<std::string> cells{f.stop > 0 ? std::to_string(f.stop) : "",
@@ -224,7 +227,9 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
                                                  placed ? fixed(s.position.z - s.ground.z, 2) : "",
                                                  tape_text(f.corners),
                                                  f.visit > 0 ? fixed(f.walk_m, 1) : "",
-                                                 f.visit > 0 ? minutes_text(f.done_min) : "",
+                                                 f.visit == 0        ? ""
+                                                 : f.done_at.empty() ? minutes_text(f.done_min)
+                                                                     : f.done_at,
                                                  network.exact && k < points.size() ? grouped(points[k]) : "",
                                                  notes};
                   if (!corners) cells.erase(cells.begin() + kCorners);
@@ -244,7 +249,8 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
     table(stations);
   };
   for (const SheetRound& round : sheet_rounds(network))
-    part(round.name + ": " + minutes_text(round.round->minutes), round.stations);
+    part(round.name + ", from " + clock_text(*round.start_min) + ": " + minutes_text(round.round->minutes),
+         round.stations);
   if (!order.empty()) part("In no session", order);
 }
 

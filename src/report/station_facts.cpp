@@ -8,6 +8,7 @@
 
 #include "core/first_numbers.hpp"
 #include "core/text.hpp"
+#include "evaluate/known_points.hpp"
 #include "export/section.hpp"
 #include "report/coverage_cells.hpp"
 #include "report/place_names.hpp"
@@ -29,6 +30,7 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network) {
       StationFacts& f = facts[one.stations[k]];
       f.visit = ++visited, f.stop = k + 1, f.walk_m = one.round->legs_m[k];
       f.done_min = one.round->arrive_min[k] + one.round->stay_min[k];
+      if (one.start_min) f.done_at = clock_text(*one.start_min + f.done_min);
     }
   }
 }
@@ -132,6 +134,9 @@ std::vector<StationFacts> station_facts(const Report& report, const Simulator& s
   for (const Target& target : network.targets)
     for (const std::size_t k : target.stations)
       facts[k].targets += (facts[k].targets.empty() ? "" : ", ") + target.name;
+  const std::vector<KnownPoints> known = known_points(network);
+  for (std::size_t k = 0; k < known.size(); ++k)
+    if (may_be_set_up(known[k])) facts[k].set_up = set_up_text(known[k], network);
   add_round(facts, network);
   add_register_to(facts, network);
   add_corners(facts, network.stations, simulator.scene().data());
@@ -149,7 +154,8 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
   for (std::size_t k = 0; k < network.targets.size(); ++k) {
     const Target& target = network.targets[k];
     TargetFacts& one = facts.emplace_back(TargetFacts{.corners = corners[k]});
-    one.kind = target.proposed        ? "proposed"
+    one.kind = target.check           ? "check of the vertical index"
+               : target.proposed      ? "proposed"
                : target.control_m > 0 ? "± " + number(1000 * target.control_m) + " mm"
                                       : "there before";
     for (const std::size_t station : target.stations) {
@@ -170,8 +176,10 @@ std::vector<SheetRound> sheet_rounds(const Evaluation& network) {
   if (!network.visit) return {SheetRound{}};
   if (network.visit->sessions.empty()) return {of(*network.visit, "")};
   std::vector<SheetRound> rounds;
-  for (const Session& session : network.visit->sessions)
+  for (const Session& session : network.visit->sessions) {
     rounds.push_back(of(session, "Day " + std::to_string(session.day) + ", crew " + std::to_string(session.crew)));
+    rounds.back().start_min = session.start_min;
+  }
   return rounds;
 }
 

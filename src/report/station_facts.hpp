@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct StationFacts {
   std::size_t visit = 0;                 // its place in the round, from 1; 0: it is not visited
   std::size_t stop = 0;                  // the same in its session; in the round if there are no sessions
   double walk_m = 0, done_min = 0;       // the way to it, and the time since the start once it is scanned
+  std::string done_at = {};              // in a session the time of the day at that; else ""
   std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
   double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
   std::string alone_where = {};          // the rooms, or meshes, with most of that
@@ -23,12 +25,13 @@ struct StationFacts {
   // strongest link to.
   std::string register_to = {};
   std::string targets = {};  // that it measures: "T1, T3"
+  std::string set_up = {};   // by known points, "resection from 3", if they allow it
   std::string note = {};     // "there before", what is wrong with its place, or nothing
 };
 
 struct TargetFacts {
   std::vector<WallCorner> corners = {};  // to find its spot by
-  std::string kind = {};                 // "proposed", "there before"; of a control point "± 2 mm"
+  std::string kind = {};                 // "proposed", "there before", "check of …"; of a control point "± 2 mm"
   std::string stations = {};             // that measure it, and how far they are in plan: "S1 6.61, S4 7.02"
 };
 // Of all targets of the answer, in their order.
@@ -42,6 +45,7 @@ struct SheetRound {
   const Round* round = nullptr;            // borrowed from the network; null: none is known
   std::string name = {};                   // "Day 1, crew 2" of a session
   std::vector<std::size_t> stations = {};  // in its order, by their places in the network
+  std::optional<double> start_min = {};    // of a session, minutes after midnight
 };
 // The sessions of a network, else its round, else one without any.
 std::vector<SheetRound> sheet_rounds(const Evaluation& network);

@@ -110,7 +110,7 @@ const sessionName = (session) => `Day ${session.day}, crew ${session.crew}`;
 function stopOf(network, k) {
   for (const round of sessionsOf(network).length ? sessionsOf(network) : network.visit ? [network.visit] : []) {
     const stop = round.order.indexOf(k);
-    if (stop >= 0) return { session: round.day ? sessionName(round) : null, stop: stop + 1, of: round.order.length, walk: round.legs_m[stop].toFixed(1) };
+    if (stop >= 0) return { session: round.day ? sessionName(round) : null, stop: stop + 1, of: round.order.length, walk: round.legs_m[stop].toFixed(1), begin: round.begin ? round.begin[stop] : null };
   }
   return null;
 }
@@ -124,7 +124,7 @@ function visitingOrder(network) {
 
 function stationTable(holder, network, pick, order = visitingOrder(network)) {
   const round = network.visit && network.visit.order.length > 0, sessions = sessionsOf(network).length > 0;
-  const targets = network.targets.length > 0;
+  const targets = network.targets.length > 0, known = network.stations.some((s) => s.set_up !== undefined);
   const seen = (k) => network.targets.filter((t) => t.stations.includes(k)).map((t) => t.name).join(', ') || null;
   const row = (k) => {
     const s = network.stations[k];
@@ -133,18 +133,19 @@ function stationTable(holder, network, pick, order = visitingOrder(network)) {
     const cells = [name, ...(s.position || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
       s.points_on_surveyed === null ? null : grouped(s.points_on_surveyed), s.linked === undefined ? null : s.linked];
     if (targets) cells.push(seen(k));
+    if (known) cells.push(s.set_up);
     if (round) {
-      const at = stopOf(network, k) || { session: null, stop: null, walk: null };
-      cells.push(...(sessions ? [at.session] : []), at.stop, at.walk);
+      const at = stopOf(network, k) || { session: null, stop: null, walk: null, begin: null };
+      cells.push(...(sessions ? [at.session] : []), at.stop, ...(sessions ? [at.begin] : []), at.walk);
     }
     return [...cells, s.existing ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
   };
-  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(sessions ? ['Session'] : []), ...(round ? ['Stop', 'Walk (m)'] : []), ''];
+  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(targets ? ['Targets to see'] : []), ...(known ? ['By known points'] : []), ...(sessions ? ['Session'] : []), ...(round ? ['Stop', ...(sessions ? ['Begin'] : []), 'Walk (m)'] : []), ''];
   holder.replaceChildren(...foldedTable(titles, order.map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
 }
 
 function targetTable(holder, network) {
-  const kind = (t) => (t.sigma_m !== null ? `control point, known to ${1e3 * t.sigma_m} mm` : t.proposed ? 'proposed' : 'there before');
+  const kind = (t) => (t.sigma_m !== null ? `control point, known to ${1e3 * t.sigma_m} mm` : t.check ? 'check of the vertical index' : t.proposed ? 'proposed' : 'there before');
   holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'z (m)', 'Kind', 'Measured by'], network.targets.map((t) => [t.name, ...t.position.map(metres), kind(t),
     t.stations.length ? t.stations.map((k) => network.stations[k].name).join(', ') : element('span', { class: 'tag weak' }, 'no station')]), [0, 4, 5]));
 }
@@ -178,8 +179,10 @@ function sessionTable(holder, network) {
   const sessions = sessionsOf(network), kNamed = 12;
   const names = ({ order }) => order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ') + (order.length > kNamed ? ` → … ${order.length} in all` : '');
   holder.hidden = !sessions.length;
-  holder.replaceChildren(table(['Session', 'Stations', 'At stations', 'Walking', 'In all', 'Links'], sessions.map((s) => [sessionName(s), names(s),
-    duration(60 * (s.minutes - s.walk_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, duration(60 * s.minutes), s.links]), [0, 1, 5]));
+  const waits = sessions.some((s) => s.waiting_min > 0), titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', 'Links'];
+  holder.replaceChildren(table(titles, sessions.map((s) => [sessionName(s), s.clock, names(s),
+    duration(60 * (s.minutes - s.walk_min - s.waiting_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, ...(waits ? [s.waiting_min > 0 ? duration(60 * s.waiting_min) : ''] : []),
+    duration(60 * s.minutes), s.links]), [0, 1, 2, titles.length - 1]));
 }
 
 function linkTable(holder, wordsHolder, network) {

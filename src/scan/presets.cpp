@@ -165,7 +165,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
              "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
              "default_setting", "noise", "detection", "angle_accuracy_arcsec", "range_accuracy_mm",
-             "range_accuracy_ppm"});
+             "range_accuracy_ppm", "tilt_accuracy_arcsec"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -205,6 +205,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
     scanner.angle_accuracy = Angle::degrees(node.member("angle_accuracy_arcsec").figure() / 3600);
   if (node.has("range_accuracy_mm")) scanner.range_accuracy_m = node.member("range_accuracy_mm").figure() * 1e-3;
   if (node.has("range_accuracy_ppm")) scanner.range_accuracy_ppm = node.member("range_accuracy_ppm").figure();
+  if (node.has("tilt_accuracy_arcsec"))
+    scanner.tilt_accuracy = Angle::degrees(node.member("tilt_accuracy_arcsec").figure() / 3600);
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
   if (chosen.has("noise_factor")) {
     const Node factor = chosen.member("noise_factor");

@@ -108,6 +108,9 @@ void Scanner::check() const {
   if (!(range_accuracy_m >= 0 && range_accuracy_m <= 1)) refuse("range_accuracy_m", range_accuracy_m, "from 0 to 1");
   if (!(range_accuracy_ppm >= 0 && range_accuracy_ppm <= 10'000))
     refuse("range_accuracy_ppm", range_accuracy_ppm, "from 0 to 10000");
+  const double tilt_arcsec = tilt_accuracy.in_degrees() * 3600;
+  if (!(tilt_arcsec >= 0 && tilt_arcsec <= 18'000))
+    refuse("tilt_accuracy in arc seconds", tilt_arcsec, "from 0 to 18000");
   check_number(points_per_second, "scanner: points_per_second", measurable);
   check_noise(noise);
 }

@@ -21,6 +21,7 @@
 #include "scan/scan_seconds.hpp"
 #include "scene/scene_data.hpp"
 #include "scene/told_by_name.hpp"
+#include "site/room_windows.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
 
@@ -450,7 +451,13 @@ std::optional<PlacedStation> Site::nearest_place(const Vec3& head, double reach_
 
 OnSite Site::on_site(OnSiteOptions options) {
   if (!options.entrance && !walkable().enter.empty()) options.entrance = walkable().enter.front();
-  return {area(), clash(), scanners(), options, impl_->scene.data().origin};
+  check_rooms(options.windows, scene().rooms());
+  return {area(),
+          clash(),
+          scanners(),
+          options,
+          impl_->scene.data().origin,
+          windows_by_room(options.windows, scene().rooms())};
 }
 
 Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,

@@ -56,6 +56,13 @@ class AfterASearch(unittest.TestCase):
         self.assertEqual(len(split.sessions[1].paths), len(split.sessions[1].order) + 1)
         with self.assertRaisesRegex(vantage.Error, "too short for one station"):
             vantage.OnSite(self.site, vantage.OnSiteOptions(day_min=1))
+        with self.assertRaisesRegex(vantage.Error, "the model names none"):
+            vantage.OnSite(self.site, vantage.OnSiteOptions(day_min=480, windows=["Hall*=06:00-08:00"]))
+        with self.assertRaisesRegex(vantage.Error, "OnSiteOptions: windows: 'Hall' is no pattern"):
+            vantage.OnSiteOptions(day_min=480, windows=["Hall"])
+        at_six = vantage.OnSite(self.site, vantage.OnSiteOptions(set_up_min=5, day_min=480, day_start_min=360)).visit(BEFORE_EACH_WALL)
+        self.assertEqual([(s.start_min, s.waiting_min) for s in at_six.sessions], [(360, 0)])
+        self.assertEqual((at_six.bound, at_six.closed), (0, []))
         problem = vantage.SurveyProblem(objectives=["time"], on_site=options)
         self.assertEqual(problem.on_site.set_up_min, 5)
 

@@ -94,7 +94,7 @@ def check_tables(folder, written):
 def check_sessions(folder, written):
     """Sessions in front.json and sessions.csv are the round, cut."""
     entry = written["front"][written["answer"] - 1]
-    sessions, table = entry["on_site"]["sessions"], rows(os.path.join(folder, "days/sessions.csv"))
+    sessions, table = entry["on_site"]["sessions"], rows(os.path.join(folder, "days/sessions.csv"), TEXTS | {"begin", "end"})
     assert len(sessions) > 1 and [[s["day"], s["crew"]] for s in sessions[:3]] == [[1, 1], [1, 2], [2, 1]][:len(sessions)]
     assert sum((session["order"] for session in sessions), []) == entry["on_site"]["order"]
     assert [row["station"] for row in table] == entry["on_site"]["order"]

@@ -107,6 +107,63 @@ TEST_F(Bound, EvaluateTellsOfRooms) {
   EXPECT_TRUE(table.starts_with("storey,room,floor_m2,ground_m2,stations,why_no_station,voxels,captured,")) << table;
   EXPECT_NE(table.find("\n,7,50.00,"), std::string::npos) << table;
   EXPECT_NE(table.find(",S1,,"), std::string::npos) << table;
+
+  // Hours of the room: one of two stations is in it.
+  const auto evaluate = [&](const std::string& window) {
+    return run_program({"evaluate",    path("rooms.glb"),
+                        "--engine",    "embree",
+                        "--station",   "-2,0,1.5",
+                        "--station",   "2,0,1.5",
+                        "--step",      "2",
+                        "--user-size", "0.5",
+                        "--day",       "8h",
+                        "--day-start", "06:00",
+                        "--window",    window,
+                        "--sessions",  path("sessions.csv")});
+  };
+  const Outcome kept = evaluate("7=07:30-08:00");
+  EXPECT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_NE(kept.out.find("kept at all 1 station that access windows are for"), std::string::npos) << kept.out;
+  const std::string sessions = read("sessions.csv");
+  EXPECT_TRUE(
+      sessions.starts_with("session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min,wait_min,"
+                           "begin,end\n"))
+      << sessions;
+  EXPECT_NE(sessions.find(",07:30,"), std::string::npos) << sessions;
+  const Outcome closed = evaluate("7=04:00-05:59");
+  EXPECT_EQ(closed.exit_code, 3) << closed.err;
+  EXPECT_NE(closed.out.find("S1 is in no session: it takes "), std::string::npos) << closed.out;
+  expect_refused(evaluate("hall=07:30-08:00"), 2, "no room is named like 'hall'; there are 7");
+
+  // A plan's answer is the same whatever the hours; a station that they leave out is told.
+  for (const bool open : {true, false}) {
+    const Outcome planned = run_program({"plan",         path("rooms.glb"),
+                                         "--engine",     "embree",
+                                         "--problem",    "coverage-fix",
+                                         "--stations",   "6",
+                                         "--population", "6",
+                                         "--iterations", "2",
+                                         "--sample",     "200",
+                                         "--step",       "2",
+                                         "--user-size",  "0.5",
+                                         "--day",        "8h",
+                                         "--day-start",  "06:00",
+                                         "--window",     open ? "7=06:30-09:00" : "7=04:00-05:59",
+                                         "--no-report",  "-o",
+                                         path("plan"),   "--force"});
+    EXPECT_EQ(planned.exit_code, open ? 0 : 3) << planned.err;
+    const auto front = nlohmann::json::parse(read("plan/front.json"));
+    const auto& entry = front["front"][front["answer"].get<std::size_t>() - 1];
+    std::size_t in_room = 0;
+    for (const auto& station : entry["stations"]) in_room += station["position"][0] < 0;
+    EXPECT_GT(in_room, 0u);
+    EXPECT_EQ(entry["on_site"]["closed"].size(), open ? 0 : in_room);
+    EXPECT_EQ(front["met"], open);
+    EXPECT_EQ(front["what_would_help"].empty(), open);
+    EXPECT_EQ(front["parameters"]["plan"]["windows"].size(), 1u);
+    const std::string config = read("plan/config.json");
+    EXPECT_NE(config.find(open ? "7=06:30-09:00" : "7=04:00-05:59"), std::string::npos) << config;
+  }
 }
 
 }  // namespace

@@ -151,7 +151,8 @@ TEST_F(Plan, SplitsARoundThatIsLongerThanADay) {
                                " sessions of at most 8 min: 2 days with 2 crews; the longest takes "))
       << told;
   const std::string table = read("plan/sessions.csv");
-  EXPECT_TRUE(table.starts_with("session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min\n1,1,1,1,"));
+  EXPECT_TRUE(table.starts_with(
+      "session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min,wait_min,begin,end\n1,1,1,1,"));
   EXPECT_EQ(std::ranges::count(table, '\n'), 6);
   EXPECT_EQ(front["parameters"]["plan"]["day"], "8min");
 

@@ -103,6 +103,25 @@ TEST(EvaluateStations, TellsWhatTheScansHold) {
   EXPECT_NE(summary_text(counted).find("\ndata       about "), std::string::npos) << summary_text(counted);
 }
 
+TEST(EvaluateStations, LevelsScansAsTheirScannerDoesIfAsked) {
+  const std::vector<PlacedStation> stations{{.position = {1, 1, 0.5}}, {.position = {2, 0, 1.5}}};
+  const auto rms = [&](Angle stated, const RegistrationOptions& registration) {
+    Scanner scanner = test::coarse_scanner(0.5);
+    scanner.tilt_accuracy = stated;
+    Site site = test::site_of(Simulator(test::wall_and_floor().scene(), scanner,
+                                        {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+    EvaluationOptions options;
+    options.registration = registration;
+    return evaluate_stations({.simulator = site.simulator()}, stations, options).registration->rms_m;
+  };
+  const Angle usual = RegistrationOptions().tilt, coarse = Angle::degrees(0.05);
+  const RegistrationOptions asked{.tilt_of_scanner = true};
+  EXPECT_EQ(rms(coarse, {}), rms(usual, {})) << "not asked";
+  EXPECT_EQ(rms(coarse, asked), rms(usual, {.tilt = coarse}));
+  EXPECT_GT(rms(coarse, asked), rms(usual, asked)) << "one wall does not hold all tilts";
+  EXPECT_THROW(rms(Angle(), asked), Error) << "it states none";
+}
+
 std::string message_of(const std::function<void()>& call) {
   try {
     call();

@@ -522,6 +522,126 @@ TEST(Sessions, BeginAtTheFirstStationWhereNoEntranceIsKnown) {
   EXPECT_TRUE(on_site.sessions({}, {}).empty());
 }
 
+// The corridor's stations 0 to 3 are in a hall, the others in an archive, 4.5 m apart.
+class Halls : public Corridor {
+ public:
+  Site site() const {
+    SceneData data = yard_.scene.data();
+    data.rooms = {{.name = "Hall 1", .storey = {}, .box = {{0, 15, 0}, {10, 25, 3}}},
+                  {.name = "Hall 2", .storey = {}, .box = {{10, 15, 0}, {17, 25, 3}}},
+                  {.name = "Archive", .storey = {}, .box = {{17, 15, 0}, {40, 25, 3}}}};
+    return test::site_of(Simulator(Scene(std::make_shared<const SceneData>(std::move(data))), yard_.scanner,
+                                   {.engine = Engine::embree, .user_size_m = 1, .point_spacing_m = 0.5}),
+                         SearchArea::from_mesh(yard_.ground));
+  }
+  static OnSiteOptions options(double day_min, double start_min, const std::vector<std::string>& windows) {
+    OnSiteOptions options{
+        .set_up_min = 2, .walking_m_per_s = 0.5, .entrance = kEntrance, .day_min = day_min, .day_start_min = start_min};
+    for (const std::string& window : windows) options.windows.push_back(parse_access_window(window));
+    return options;
+  }
+  Evaluation planned(const OnSiteOptions& options) const {
+    Site own = site();
+    const OnSite on_site = own.on_site(options);
+    Evaluation made{.stations = stations, .values = {{"coverage", {0.5, 0}}}};
+    made.visit = on_site.visit(made.stations);
+    add_sessions(made, on_site);
+    return made;
+  }
+  bool in_hall(std::size_t station) const { return place[station] <= 3; }
+
+ private:
+  Yard yard_;
+};
+
+TEST(AccessWindows, SessionsScanRoomsWithinTheirHours) {
+  const Halls halls;
+  // Four stations of three minutes in the halls, whose hour has room for all; four others after or before it.
+  const Evaluation made = halls.planned(Halls::options(60, 7 * 60, {"Hall*=07:20-07:40"}));
+  ASSERT_EQ(made.visit->sessions.size(), 1u);
+  EXPECT_TRUE(made.visit->closed.empty());
+  EXPECT_EQ(made.visit->bound, 4u);
+  EXPECT_EQ(closed_stations(made), 0u);
+  const Session& one = made.visit->sessions[0];
+  std::vector<std::size_t> all = one.order;
+  std::ranges::sort(all);
+  EXPECT_EQ(all.size(), 8u);
+  EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
+  double now = one.start_min, waited = 0;
+  for (std::size_t k = 0; k < one.order.size(); ++k) {
+    const double begin = one.start_min + one.arrive_min[k];
+    now += one.legs_m[k] / 0.5 / 60 + one.wait_min[k];
+    EXPECT_NEAR(begin, now, 1e-6);
+    now += one.stay_min[k], waited += one.wait_min[k];
+    if (!halls.in_hall(one.order[k])) continue;
+    EXPECT_GE(begin, 7 * 60 + 20 - 1e-6);
+    EXPECT_LE(begin + one.stay_min[k], 7 * 60 + 40 + 1e-6);
+  }
+  EXPECT_NEAR(one.waiting_min, waited, 1e-9);
+  EXPECT_NEAR(one.minutes, now + one.legs_m.back() / 0.5 / 60 - one.start_min, 1e-6);
+  EXPECT_GE(one.start_min, 7 * 60);
+  EXPECT_LE(one.start_min + one.minutes, 8 * 60);
+  EXPECT_EQ(std::ranges::count(summary_lines(made), "hours", &SummaryLine::heading), 1);
+
+  // Seven minutes a day have room for two of them: two mornings, which others fill.
+  const Evaluation twice = halls.planned(Halls::options(60, 7 * 60, {"Hall*=07:20-07:27"}));
+  ASSERT_EQ(twice.visit->sessions.size(), 2u);
+  for (const Session& session : twice.visit->sessions)
+    EXPECT_EQ(std::ranges::count_if(session.order, [&](std::size_t k) { return halls.in_hall(k); }), 2);
+  EXPECT_EQ(twice.visit->sessions[1].day, 2u);
+
+  // Without windows nothing changes but the time that is told.
+  const Evaluation plain = halls.planned(Halls::options(60, 7 * 60, {}));
+  ASSERT_EQ(plain.visit->sessions.size(), 1u);
+  EXPECT_EQ(plain.visit->sessions[0].order, plain.visit->order);
+  EXPECT_EQ(plain.visit->sessions[0].start_min, 7 * 60);
+  EXPECT_EQ(plain.visit->sessions[0].waiting_min, 0);
+}
+
+TEST(AccessWindows, HoursThatNoSessionKeepsAreTold) {
+  const Halls halls;
+  const Evaluation late = halls.planned(Halls::options(60, 8 * 60, {"Hall 1=06:00-08:03", "Archive=08:00-24:00"}));
+  ASSERT_EQ(late.visit->closed.size(), 2u) << "three minutes with the walk from the entrance are too many";
+  EXPECT_EQ(late.visit->bound, 6u);
+  EXPECT_EQ(closed_stations(late), 2u);
+  std::size_t visited = 0;
+  for (const Session& session : late.visit->sessions) {
+    visited += session.order.size();
+    for (const ClosedStation& closed : late.visit->closed)
+      EXPECT_EQ(std::ranges::count(session.order, closed.station), 0);
+  }
+  EXPECT_EQ(visited, 6u);
+  for (const ClosedStation& closed : late.visit->closed) {
+    EXPECT_LE(halls.place[closed.station], 1);
+    EXPECT_TRUE(closed.why.starts_with("takes 3.0 min within Hall 1=06:00-08:03, and a day from 08:00 to 09:00 with "))
+        << closed.why;
+  }
+  std::vector<std::string> told;
+  for (const SummaryLine& line : summary_lines(late))
+    if (line.heading == "hours" || line.text.find("is in no session") != std::string::npos) told.push_back(line.text);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[0], "not kept at 2 of 6 stations that access windows are for, which no session scans");
+
+  const auto refusal = [&](const OnSiteOptions& options) -> std::string {
+    try {
+      halls.site().on_site(options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(Halls::options(60, 0, {"hall*=06:00-08:00"})),
+            "window: no room is named like 'hall*'; did you mean Hall 1?");
+  OnSiteOptions no_day = Halls::options(60, 0, {"Hall*=06:00-08:00"});
+  no_day.day_min.reset();
+  EXPECT_EQ(refusal(no_day), "window: hours are kept by the sessions of a day; give its length too");
+  EXPECT_THROW(Yard().on_site(Halls::options(60, 0, {"Hall*=06:00-08:00"})), Error) << "no rooms are known";
+  for (const char* text : {"", "Hall", "Hall=", "=06:00-08:00", "Hall=06:00", "Hall=6-8", "Hall=06:00-24:01",
+                           "Hall=06:00-06:00", "Hall=06:60-08:00", "Hall=-06:00-08:00"})
+    EXPECT_THROW(parse_access_window(text), Error) << text;
+  EXPECT_EQ(to_string(parse_access_window("a=b|c*=22:00-2:30")), "a=b|c*=22:00-02:30");
+}
+
 // A gallery over a hall, with a ramp up to it at the far end: metres.
 struct Gallery {
   Site site = [] {

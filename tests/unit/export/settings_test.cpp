@@ -70,8 +70,9 @@ const std::vector<Change<Scanner>> kScanner{
     {"angle_accuracy", [](Scanner& s) { s.angle_accuracy = Angle::degrees(0.005); }},
     {"range_accuracy_m", [](Scanner& s) { s.range_accuracy_m = 0.001; }},
     {"range_accuracy_ppm", [](Scanner& s) { s.range_accuracy_ppm = 10; }},
+    {"tilt_accuracy", [](Scanner& s) { s.tilt_accuracy = Angle::degrees(0.05); }, false},  // the registration's decides
     {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
-static_assert(member_count<Scanner>() == 19);
+static_assert(member_count<Scanner>() == 20);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
@@ -209,8 +210,9 @@ const std::vector<Change<SurveyProblem>> kRegistration{
     {"position_m", [](SurveyProblem& p) { p.registration.position_m = 0.1; }},
     {"heading", [](SurveyProblem& p) { p.registration.heading = Angle::degrees(1); }},
     {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }},
+    {"tilt_of_scanner", [](SurveyProblem& p) { p.registration.tilt_of_scanner = true; }},
     {"surfaces", [](SurveyProblem& p) { p.registration.surfaces = RegistrationSurfaces::all; }}};
-static_assert(member_count<RegistrationOptions>() == 5 && member_count<RegistrationModel>() == 2);
+static_assert(member_count<RegistrationOptions>() == 6 && member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},

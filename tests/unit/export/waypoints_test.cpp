@@ -43,9 +43,9 @@ TEST(Waypoints, AreInTheSitesSystemAndLookTheWayTheyAreReached) {
   const test::TemporaryFolder folder;
   write_waypoints(folder / "w.csv", walked(), scanners(), "EPSG:25832");
   EXPECT_EQ(test::content(folder / "w.csv"),
-            "day,crew,order,name,x,y,z,head_height,heading,first_column,dwell_s\n"
-            "1,1,1,S2,500010.123456789,5600000.25,100,1.800,0.00,-89.00,210.0\n"
-            "1,1,2,S1,500010.123456789,5600006.25,100.5,1.800,90.00,-59.00,270.0\n");
+            "day,crew,order,name,x,y,z,head_height,heading,first_column,dwell_s,wait_s\n"
+            "1,1,1,S2,500010.123456789,5600000.25,100,1.800,0.00,-89.00,210.0,0.0\n"
+            "1,1,2,S1,500010.123456789,5600006.25,100.5,1.800,90.00,-59.00,270.0,0.0\n");
   write_waypoints(folder / "w.json", walked(), scanners(), "EPSG:25832");
   const auto json = nlohmann::json::parse(test::content(folder / "w.json"));
   EXPECT_EQ(json["crs"], "EPSG:25832");

@@ -644,6 +644,119 @@ TEST(RegistrationError, WithTargetsIsThatOfAnAdjustmentWithTheirCentresAmongTheU
   }
 }
 
+// Two stations that share no surface, so that compensators and targets alone hold their scans.
+struct Levelled {
+  Made made{.heads = {{-6, 0, 0}, {6, 0, 0}}};
+  std::vector<RegistrationTarget> targets;
+  RegistrationOptions options{.model = model, .position_m = 0.03, .heading = Angle::degrees(0.2)};
+  explicit Levelled(Angle tilt) {
+    options.tilt = tilt;
+    for (const std::uint64_t who : {1, 2})
+      for (const double s : {-1.0, 1.0}) made.patch(Y * (s * 5) + X * (who == 1 ? -6 : 6), X * 4, Z * 2, 8, who);
+    for (const Vec3& centre : {Vec3{-3, 4, 0.3}, Vec3{2, -4, 0.1}, Vec3{4, 3, -0.2}, Vec3{0, 1, 0.6}})
+      targets.push_back({.centre = centre, .seen_by = {{0, 0.0003, 0.0005}, {1, 0.0004, 0.0006}}});
+  }
+  // Covariance of what the two scans differ by at a place.
+  Eigen::Matrix3d difference(const Vec3& place, bool with_targets) const {
+    const NetworkCounts counts = made.counts();
+    const RegistrationInputs inputs = registration_inputs(counts, counts.voxels, options, nullptr, 0);
+    const RegistrationAdjustment adjustment(
+        inputs.held_by, inputs.share, inputs.covered, options,
+        with_targets ? std::span<const RegistrationTarget>(targets) : std::span<const RegistrationTarget>());
+    const Eigen::MatrixXd at = adjustment.displacement_at(place);
+    Eigen::MatrixXd both(3, 2 * at.cols());
+    both << at, -at;
+    return both * adjustment.covariance() * both.transpose();
+  }
+};
+
+TEST(RegistrationError, OfLevelledScansGrowsWithTheirTiltsAndTheDistance) {
+  const double tilt = 3.0 / 60 * std::numbers::pi / 180;
+  const Levelled levelled(Angle::radians(tilt));
+  const Vec3 place{4, 9, 0};  // at the heads' height: two tilts move it up and down by its distances from them
+  double square = 2 * 0.03 * 0.03;
+  for (const Vec3& head : levelled.made.heads) square += tilt * tilt * dot(place - head, place - head);
+  EXPECT_NEAR(levelled.difference(place, false)(2, 2), square, 1e-6 * square);
+}
+
+// The linear adjustment of drawn poses and drawn sightings, by unknowns of its own: turns about the heads, in radians,
+// and shifts.
+double simulated_difference(const Levelled& levelled, const Vec3& place, int trials) {
+  const auto vector = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+  const auto moved = [&](const Vec3& p, std::size_t station) {
+    const Eigen::Vector3d q = vector(p - levelled.made.heads[station]);
+    Eigen::Matrix<double, 3, 6> j;
+    j << 0, q.z(), -q.y(), 1, 0, 0, -q.z(), 0, q.x(), 0, 1, 0, q.y(), -q.x(), 0, 0, 0, 1;
+    return j;
+  };
+  const RegistrationOptions& o = levelled.options;
+  const Eigen::Index unknowns = 12 + 3 * std::ssize(levelled.targets);
+  Eigen::VectorXd prior(12);
+  for (Eigen::Index k = 0; k < 12; ++k)
+    prior[k] = k % 6 < 2 ? o.tilt.in_radians() : k % 6 == 2 ? o.heading.in_radians() : o.position_m;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  double squares = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    Eigen::VectorXd truth(12), right = Eigen::VectorXd::Zero(unknowns);
+    for (Eigen::Index k = 0; k < 12; ++k) truth[k] = prior[k] * normal(random);
+    Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    for (Eigen::Index k = 0; k < 12; ++k) equations(k, k) = 1 / (prior[k] * prior[k]);
+    for (std::size_t t = 0; t < levelled.targets.size(); ++t)
+      for (const RegistrationTarget::Sighting& seen : levelled.targets[t].seen_by) {
+        const Vec3& centre = levelled.targets[t].centre;
+        const Eigen::Vector3d along = vector(centre - levelled.made.heads[seen.station]).normalized(),
+                              side = along.unitOrthogonal(), up = along.cross(side);
+        Eigen::MatrixXd row = Eigen::MatrixXd::Zero(3, unknowns);
+        const auto own = static_cast<Eigen::Index>(6 * seen.station);
+        row.middleCols(own, 6) = moved(centre, seen.station);
+        row.middleCols(12 + 3 * static_cast<Eigen::Index>(t), 3) = Eigen::Matrix3d::Identity();
+        for (const Eigen::Vector3d& axis : {along, side, up}) {
+          const double sigma = axis == along ? seen.along_m : seen.across_m;
+          const Eigen::VectorXd one = row.transpose() * axis;
+          equations += one * one.transpose() / (sigma * sigma);
+          right += one * (one.head(12).dot(truth) + sigma * normal(random)) / (sigma * sigma);
+        }
+      }
+    const Eigen::VectorXd error = equations.ldlt().solve(right).head(12) - truth;
+    squares += (moved(place, 0) * error.head(6) - moved(place, 1) * error.tail(6)).squaredNorm();
+  }
+  return std::sqrt(squares / trials);
+}
+
+TEST(RegistrationError, OfLevelledScansIsThatOfSimulatedAdjustments) {
+  const Vec3 place{4, 9, 0};
+  double levelled_mm = 0;
+  for (const double arcsec : {1.5, 15.0, 180.0, 18'000.0}) {
+    const Levelled levelled(Angle::degrees(arcsec / 3600));
+    const double predicted = std::sqrt(levelled.difference(place, true).trace());
+    const double simulated = simulated_difference(levelled, place, 2000);
+    EXPECT_NEAR(simulated, predicted, 0.05 * predicted) << arcsec;
+    EXPECT_GT(predicted, levelled_mm) << "a better compensator does not harm";
+    levelled_mm = predicted;
+  }
+}
+
+TEST(RegistrationError, TakesTheTiltOfTheScannersIfAsked) {
+  Scanner fine, coarse;
+  fine.name = "fine", fine.tilt_accuracy = Angle::degrees(1.5 / 3600);
+  coarse.name = "coarse", coarse.tilt_accuracy = Angle::degrees(180.0 / 3600);
+  const std::vector<Scanner> both{coarse, fine}, unknown{fine, Scanner()};
+  RegistrationOptions options;
+  EXPECT_EQ(levelled_by(options, unknown).tilt, RegistrationOptions().tilt) << "not asked for";
+  options.tilt_of_scanner = true;
+  EXPECT_EQ(levelled_by(options, {both.data() + 1, 1}).tilt, fine.tilt_accuracy);
+  EXPECT_EQ(levelled_by(options, both).tilt, coarse.tilt_accuracy);
+  EXPECT_FALSE(levelled_by(options, both).tilt_of_scanner);
+  EXPECT_THROW(levelled_by(options, unknown), Error);
+  const NetworkCounts counts = Levelled(Angle::degrees(1)).made.counts();
+  EXPECT_THROW(registration_error(counts, counts.voxels, options), Error) << "whose scanners?";
+  fine.tilt_accuracy = Angle::degrees(6);
+  EXPECT_THROW(fine.check(), Error);
+  // Presets state it, and no figure of a scan depends on it.
+  EXPECT_NEAR(load_scanner("rtc360").tilt_accuracy.in_degrees(), 0.05, 1e-12);
+}
+
 // So many stations along a corridor that most pairs see nothing together.
 TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
   for (const double tilt : {0.05, 0.0}) {

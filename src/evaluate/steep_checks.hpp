@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places for checks of the vertical index of an instrument, which level sights hide.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/evaluation.hpp"
+
+namespace vantage {
+
+// Whether the instrument, and not chance, makes most of the predicted registration error, so that it is to be checked.
+bool wants_steep_check(const Evaluation& evaluation);
+
+// A scanner's name without its setting: settings of one scanner are one instrument.
+std::string instrument_of(const Scanner& scanner);
+
+// Least elevation of a sight, above or below the head, and the longest one, of a check.
+inline constexpr double kLeastElevation_deg = 30, kLongestSight_m = 30;
+// Angle of a point above or below the level of a head, in degrees.
+double elevation_deg(const Vec3& head, const Vec3& point);
+
+// Adds to the targets one for each instrument (`Target::check`), where its check is wanted and two of its stations see
+// a surveyed surface from one side, steeply enough and not from farther away: the steepest up to 45°, and among these
+// the nearest. Tells the instruments that have no such place in `Evaluation::no_steep_check`. It looks at a sample of
+// the surveyed voxels.
+void add_steep_checks(Evaluation& evaluation, const Simulator& simulator, const ClashChecker& clash);
+
+}  // namespace vantage
