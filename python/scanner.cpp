@@ -29,6 +29,20 @@ NoiseTable noise_from(const py::object& given) {
   return {.distances_m = part("distances_m"), .reflectivities = part("reflectivities"), .sigma_m = part("sigma_m")};
 }
 
+py::array_t<double> degrees_of(const std::vector<Angle>& angles) {
+  py::array_t<double> degrees(static_cast<py::ssize_t>(angles.size()));
+  for (std::size_t k = 0; k < angles.size(); ++k) degrees.mutable_data()[k] = angles[k].in_degrees();
+  return degrees;
+}
+
+std::vector<Angle> angles_from(const py::object& degrees, const char* name) {
+  std::vector<Angle> angles;
+  if (degrees.is_none()) return angles;
+  const Doubles given = doubles_of(degrees, name);
+  for (py::ssize_t k = 0; k < given.size(); ++k) angles.push_back(Angle::degrees(given.data()[k]));
+  return angles;
+}
+
 Options<Scanner> scanner_options() {
   return Options<Scanner>("Scanner")
       .add("name", &Scanner::name, "Name of the model.")
@@ -38,6 +52,14 @@ Options<Scanner> scanner_options() {
       .add("zenith_start_deg", &Scanner::zenith_start, "First zenith, from straight up.")
       .add("azimuth_step_deg", &Scanner::azimuth_step, "Angle between columns.")
       .add("zenith_step_deg", &Scanner::zenith_step, "Angle between rows.")
+      .add<py::object>(
+          "row_zeniths_deg",
+          [](const Scanner& s) -> py::object {
+            return s.row_zeniths.empty() ? py::object(py::none()) : degrees_of(s.row_zeniths);
+          },
+          [](Scanner& s, const py::object& zeniths) { s.set_row_zeniths(angles_from(zeniths, "row_zeniths_deg")); },
+          "Zeniths of uneven rows, ascending, degrees (n,), in place of even ones; vertical_angle_deg, "
+          "zenith_start_deg and zenith_step_deg are then set to their field and mean step. None: even rows.")
       .add("height_m", &Scanner::height_m, "Height of the head above the search area.")
       .add("min_range_m", &Scanner::min_range_m, "d_min.")
       .add("max_range_m", &Scanner::max_range_m, "d_max.")

@@ -33,8 +33,8 @@ struct RayAngles {
 };
 
 /// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; 1e-9 guards both
-/// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh and direction (sin θ cos φ, sin θ
-/// sin φ, cos θ). Its index is i·columns + j everywhere.
+/// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, or `row_zeniths[i]` if there are any, azimuth heading − H/2 +
+/// (j + ½)·Δh and direction (sin θ cos φ, sin θ sin φ, cos θ). Its index is i·columns + j everywhere.
 struct Scanner {
   std::string name = "custom";
   Angle heading = Angle::degrees(0);             ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
@@ -45,10 +45,13 @@ struct Scanner {
   Angle zenith_start = Angle::degrees(0);
   Angle azimuth_step = Angle::degrees(0.1);  ///< Δh.
   Angle zenith_step = Angle::degrees(0.1);   ///< Δv.
-  double height_m = 1.85;                    ///< Height of the scanner's head above the search area.
-  double min_range_m = 0.1;                  ///< d_min.
-  double max_range_m = 130.0;                ///< d_max.
-  NoiseTable noise = {};                     ///< Empty: exact ranges.
+  /// Zeniths of uneven rows, ascending, such as those of a spinning multi-beam scanner. Empty: even rows. θ₀, V and Δv
+  /// are then their field and mean step, so set all by `set_row_zeniths()`.
+  std::vector<Angle> row_zeniths = {};
+  double height_m = 1.85;      ///< Height of the scanner's head above the search area.
+  double min_range_m = 0.1;    ///< d_min.
+  double max_range_m = 130.0;  ///< d_max.
+  NoiseTable noise = {};       ///< Empty: exact ranges.
   /// Full angle γ by which the beam widens far away, and its diameter D at the exit, both to 1/e² of the intensity on
   /// the axis. As of a Gaussian beam, the diameter at distance t is √(D² + γ² t²). Both 0: unknown.
   Angle beam_divergence = Angle::radians(0);
@@ -72,6 +75,11 @@ struct Scanner {
   std::uint32_t columns() const;  ///< Azimuth steps.
   std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }
   RayAngles angles(std::uint64_t ray) const;  ///< REQUIRES: ray < rays().
+  /// Takes other steps. Uneven rows stay where they are.
+  void set_steps(Angle azimuth, Angle zenith);
+  /// Takes rows at these zeniths, in ascending order: θ₀ is the first, θ₀ + V/2 the last, Δv their mean step. A single
+  /// row has the field of one azimuth step. None: even rows again, of the present θ₀, V and Δv.
+  void set_row_zeniths(std::vector<Angle> zeniths);
   /// Throws Error invalid_argument with the member and its value.
   void check() const;
 };

@@ -197,6 +197,7 @@ class Scanner:
         zenith_start_deg: float = 0.0,
         azimuth_step_deg: float = 0.1,
         zenith_step_deg: float = 0.1,
+        row_zeniths_deg: Optional[npt.ArrayLike] = None,
         height_m: float = 1.85,
         min_range_m: float = 0.1,
         max_range_m: float = 130.0,
@@ -219,6 +220,7 @@ class Scanner:
     zenith_start_deg: float
     azimuth_step_deg: float
     zenith_step_deg: float
+    row_zeniths_deg: Optional[Any]
     height_m: float
     min_range_m: float
     max_range_m: float

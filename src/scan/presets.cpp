@@ -98,6 +98,22 @@ Angle step_of(const Node& setting) {
   return Angle::radians(setting.member("spacing_mm").number() * 1e-3 / setting.member("at_m").number());
 }
 
+// Of rows that are listed by their elevations, from the top or from the bottom.
+std::vector<Angle> zeniths_of(const Node& node) {
+  node.only({"value", "source", "note"});
+  std::vector<double> elevations = node.sourced().member("value").numbers();
+  if (elevations.empty()) node.member("value").fail("must have an elevation for each row");
+  if (elevations.front() < elevations.back()) std::ranges::reverse(elevations);
+  std::vector<Angle> zeniths;
+  for (const double elevation : elevations) {
+    if (!(elevation >= -90 && elevation <= 90)) node.member("value").fail("elevations must be from -90 to 90");
+    if (!zeniths.empty() && !(zeniths.back() < Angle::degrees(90 - elevation)))
+      node.member("value").fail("elevations must all rise or all fall");
+    zeniths.push_back(Angle::degrees(90 - elevation));
+  }
+  return zeniths;
+}
+
 NoiseTable noise_of(const Node& node) {
   node.only({"distances_m", "reflectivities", "sigma_mm", "source", "note"});
   node.sourced();
@@ -162,8 +178,8 @@ std::string names_of(const Object& object) {
 Scanner read_scanner(const Document& document, const std::string& key, std::string setting) {
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
-  node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
-             "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
+  node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "elevations_deg",
+             "min_range_m", "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
              "default_setting", "noise", "detection", "angle_accuracy_arcsec", "range_accuracy_mm",
              "range_accuracy_ppm"});
   const Node listed = node.member("sources");
@@ -187,9 +203,15 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   Scanner scanner;
   scanner.name = node.member("name").text() + " @" + setting;
   scanner.horizontal_angle = Angle::degrees(node.member("horizontal_angle_deg").figure());
-  scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
-  if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
   scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
+  if (node.has("elevations_deg")) {
+    if (node.has("vertical_angle_deg") || node.has("zenith_start_deg"))
+      node.fail("\"elevations_deg\" say the vertical field: leave out \"vertical_angle_deg\" and \"zenith_start_deg\"");
+    scanner.set_row_zeniths(zeniths_of(node.member("elevations_deg")));
+  } else {
+    scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
+    if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
+  }
   // A setting's own figures take precedence over the scanner's.
   const auto own_or_common = [&](const char* name) {
     return chosen.has(name) ? chosen.member(name).number() : node.member(name).figure();
@@ -257,8 +279,9 @@ std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more) {
     if (std::any_of(list.begin(), list.end(), [&](const ScannerPreset& known) { return known.key == key; })) return;
     const Scanner scanner = read_scanner(document, key, "");
     char figures[160];
-    std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, ",
-                  scanner.horizontal_angle.in_degrees(), scanner.zenith_start.in_degrees(),
+    const std::string rows = scanner.row_zeniths.empty() ? "" : std::to_string(scanner.rows()) + " rows of ";
+    std::snprintf(figures, sizeof figures, ": %.4g° around, %szenith %.4g° to %.4g°, %.3g to %.4g m, ",
+                  scanner.horizontal_angle.in_degrees(), rows.c_str(), scanner.zenith_start.in_degrees(),
                   scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, scanner.min_range_m,
                   scanner.max_range_m);
     list.push_back({key, entry["name"].get<std::string>() + figures + describe(scanner.noise) + "; settings " +

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/scanner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <utility>
 
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
@@ -13,6 +16,7 @@ namespace {
 
 constexpr double floor_guard = 1e-9;      // makes 360° / 0.1° 3600 and not 3599
 constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may exceed 360° by rounding
+constexpr double step_guard = 1e-9;       // of a mean step that was written in degrees
 constexpr double max_steps = 16'777'216;  // 2^24 per direction: 0.00002° over a full turn
 
 double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + floor_guard); }
@@ -37,6 +41,34 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
     refuse(member + " in degrees", degrees,
            std::string("at most ") + sweep_name + ", " + ten_digits(sweep.in_degrees()));
   if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
+}
+
+// Of rows that are not all one step apart.
+double mean_step(const std::vector<Angle>& rows) {
+  return (rows.back().in_radians() - rows.front().in_radians()) / static_cast<double>(rows.size() - 1);
+}
+
+void check_rows(const Scanner& scanner) {
+  const std::vector<Angle>& rows = scanner.row_zeniths;
+  if (static_cast<double>(rows.size()) > max_steps)
+    refuse("the number of row_zeniths", static_cast<double>(rows.size()), "at most 2^24");
+  const double first = scanner.zenith_start.in_degrees(), last = first + scanner.vertical_angle.in_degrees() / 2;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double zenith = rows[i].in_degrees();
+    const std::string member = "row_zeniths[" + std::to_string(i) + "] in degrees";
+    if (!(zenith >= 0 && zenith <= 180)) refuse(member, zenith, "from 0 to 180");
+    if (i > 0 && !(rows[i - 1] < rows[i]))
+      refuse(member, zenith, "above the zenith before it, " + ten_digits(rows[i - 1].in_degrees()));
+  }
+  if (rows.front().in_degrees() < first - angle_guard_deg || rows.back().in_degrees() > last + angle_guard_deg)
+    throw Error(Errc::invalid_argument, "scanner: row_zeniths from " + ten_digits(rows.front().in_degrees()) + " to " +
+                                            ten_digits(rows.back().in_degrees()) +
+                                            " degrees must lie in the vertical field, " + ten_digits(first) + " to " +
+                                            ten_digits(last) + ", which set_row_zeniths() sets");
+  if (rows.size() > 1 && !(std::abs(mean_step(rows) / scanner.zenith_step.in_radians() - 1) <= step_guard))
+    refuse("zenith_step in degrees", scanner.zenith_step.in_degrees(),
+           "the mean step of row_zeniths, " + ten_digits(mean_step(rows) * 180 / std::numbers::pi) +
+               ", as set_row_zeniths() sets it");
 }
 
 void check_noise(const NoiseTable& noise) {
@@ -67,19 +99,43 @@ void check_noise(const NoiseTable& noise) {
 
 }  // namespace
 
-std::uint32_t Scanner::rows() const { return static_cast<std::uint32_t>(steps(zenith_sweep(*this), zenith_step)); }
+std::uint32_t Scanner::rows() const {
+  return row_zeniths.empty() ? static_cast<std::uint32_t>(steps(zenith_sweep(*this), zenith_step))
+                             : static_cast<std::uint32_t>(row_zeniths.size());
+}
 
 std::uint32_t Scanner::columns() const { return static_cast<std::uint32_t>(steps(horizontal_angle, azimuth_step)); }
 
 RayAngles Scanner::angles(std::uint64_t ray) const {
   const double row = static_cast<double>(ray / columns()), column = static_cast<double>(ray % columns());
-  return {Angle::radians(zenith_start.in_radians() + (row + 0.5) * zenith_step.in_radians()),
+  return {row_zeniths.empty() ? Angle::radians(zenith_start.in_radians() + (row + 0.5) * zenith_step.in_radians())
+                              : row_zeniths[ray / columns()],
           Angle::radians(heading.in_radians() - 0.5 * horizontal_angle.in_radians() +
                          (column + 0.5) * azimuth_step.in_radians())};
 }
 
+void Scanner::set_steps(Angle azimuth, Angle zenith) {
+  azimuth_step = azimuth;
+  if (row_zeniths.empty()) zenith_step = zenith;
+}
+
+void Scanner::set_row_zeniths(std::vector<Angle> zeniths) {
+  row_zeniths = std::move(zeniths);
+  if (row_zeniths.empty()) return;
+  zenith_start = row_zeniths.front();
+  vertical_angle = Angle::radians(2 * (row_zeniths.back().in_radians() - zenith_start.in_radians()));
+  if (row_zeniths.size() > 1) {
+    zenith_step = Angle::radians(mean_step(row_zeniths));
+  } else {
+    const double step = azimuth_step.in_radians();
+    zenith_start = Angle::radians(std::clamp(zenith_start.in_radians() - step / 2, 0.0, std::numbers::pi - step));
+    vertical_angle = Angle::radians(2 * step), zenith_step = azimuth_step;
+  }
+}
+
 void Scanner::check() const {
   if (!std::isfinite(heading.in_degrees())) refuse("heading in degrees", heading.in_degrees(), "finite");
+  if (!row_zeniths.empty()) check_rows(*this);
   const double horizontal = horizontal_angle.in_degrees(), vertical = vertical_angle.in_degrees();
   if (!(horizontal > 0 && horizontal <= 360 + angle_guard_deg))
     refuse("horizontal_angle in degrees", horizontal, "in (0, 360]");

@@ -26,6 +26,7 @@ Settings settings(const Scanner& scanner) {
                                            {"sigma_m", scanner.noise.sigma_m}})
       .add("beam_divergence_mrad", scanner.beam_divergence.in_radians() * 1e3, {"beam"})
       .add("exit_diameter_mm", scanner.exit_diameter_m * 1e3, {"beam"});
+  if (!scanner.row_zeniths.empty()) list.add("row_zeniths_deg", scanner.row_zeniths);
   if (scanner.angle_accuracy.in_radians() > 0 || scanner.range_accuracy_m > 0 || scanner.range_accuracy_ppm > 0)
     list.add("angle_accuracy_arcsec", scanner.angle_accuracy.in_degrees() * 3600, {"calibration"})
         .add("range_accuracy_mm", scanner.range_accuracy_m * 1e3, {"calibration"})

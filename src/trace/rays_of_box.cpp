@@ -24,6 +24,15 @@ constexpr double angle_pad = 0x1p-20;
           static_cast<std::uint32_t>(std::min(end, static_cast<double>(count)))};
 }
 
+// Rows whose zeniths lie in [low, high].
+[[gnu::always_inline]] inline RayRanges::Range rows_of(const RayPattern& pattern, double low, double high) {
+  if (pattern.zeniths.empty()) return indices(low, high, pattern.first_zenith, pattern.zenith_step, pattern.rows());
+  const auto begin = std::ranges::lower_bound(pattern.zeniths, low),
+             end = std::ranges::upper_bound(pattern.zeniths, high);
+  return {static_cast<std::uint32_t>(begin - pattern.zeniths.begin()),
+          static_cast<std::uint32_t>(end - pattern.zeniths.begin())};
+}
+
 // Columns whose azimuths lie in [begin, begin + width], modulo a turn.
 [[gnu::always_inline]] inline std::array<RayRanges::Range, 2> columns_of(const RayPattern& pattern, double begin,
                                                                          double width) {
@@ -72,8 +81,7 @@ void turn_back(const Turn& turn, BoxBatch& boxes) {
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
                        double width) {
   RayRanges ranges;
-  ranges.rows = indices(least_zenith - angle_pad, most_zenith + angle_pad, pattern.first_zenith, pattern.zenith_step,
-                        pattern.rows());
+  ranges.rows = rows_of(pattern, least_zenith - angle_pad, most_zenith + angle_pad);
   if (width + 2 * angle_pad >= 2 * std::numbers::pi) {
     ranges.columns[0] = {0, pattern.columns()};
   } else {
@@ -102,7 +110,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
     const double far = r + std::sqrt(hx * hx + hy * hy);
     const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
                  most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
-    ranges.rows = indices(least - angle_pad, most + angle_pad, pattern.first_zenith, pattern.zenith_step, rows);
+    ranges.rows = rows_of(pattern, least - angle_pad, most + angle_pad);
     return ranges;
   }
   // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
@@ -113,7 +121,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
   const double rise = (std::abs(cz) * radial + r * hz) / distance;
   if (depth > 0) {
     const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
-    ranges.rows = indices(zenith - half, zenith + half, pattern.first_zenith, pattern.zenith_step, rows);
+    ranges.rows = rows_of(pattern, zenith - half, zenith + half);
   } else {
     ranges.rows = {0, rows};
   }
@@ -127,7 +135,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
   return ranges;
 }
 
-// As rays_of_box() for boxes that neither surround the axis nor cross the seam; branch-free.
+// As rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
 VANTAGE_TARGET_CLONES
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -138,6 +146,10 @@ void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
     return static_cast<std::int32_t>(std::min(count, std::max(0.0, index)));
   };
   const std::uint32_t n = boxes.size;
+  if (!pattern.zeniths.empty()) {  // rows that must be looked up, one box after the other
+    std::fill_n(boxes.simple, n, 0);
+    return;
+  }
   for (std::uint32_t i = 0; i < n; ++i) {
     const double cx = boxes.x[i], cy = boxes.y[i], cz = boxes.z[i];
     const double hx = boxes.half_x[i], hy = boxes.half_y[i], hz = boxes.half_z[i];

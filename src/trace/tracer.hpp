@@ -30,10 +30,22 @@ struct RayPattern {
   std::vector<float> sin_azimuth, cos_azimuth;  // columns
   // rays start at min_range and end at max_range, as in the paper: anything nearer is ignored
   float min_range = 0, max_range = 0;
-  double zenith_step = 0, azimuth_step = 0;    // radians; used by the inverse, rays_of_box()
+  // Radians; used by the inverse, rays_of_box(). Rows that are not all one step apart have no zenith_step, and their
+  // zeniths, ascending, are listed.
+  double zenith_step = 0, azimuth_step = 0;
+  std::vector<double> zeniths = {};
   double first_zenith = 0, first_azimuth = 0;  // of ray (0, 0)
   std::uint32_t rows() const { return static_cast<std::uint32_t>(sin_zenith.size()); }
   std::uint32_t columns() const { return static_cast<std::uint32_t>(sin_azimuth.size()); }
+  // Angle between two rows.
+  double rows_apart(std::uint32_t upper, std::uint32_t lower) const {
+    return zeniths.empty() ? (lower - upper) * zenith_step : zeniths[lower] - zeniths[upper];
+  }
+  // Steps of zenith and azimuth, multiplied; those of uneven rows are taken as even.
+  double cell() const {
+    if (zeniths.size() < 2) return (zeniths.empty() ? zenith_step : azimuth_step) * azimuth_step;
+    return (zeniths.back() - zeniths.front()) / static_cast<double>(zeniths.size() - 1) * azimuth_step;
+  }
 };
 
 // Algorithm 1: σ by bilinear look-up over normalised distance (columns) and reflectivity (rows), both in [0, 1], step

@@ -16,6 +16,10 @@ TEST_P(RandomSitesConformance, EveryWayOfCountingAgreesWhereMeshesAreShared) {
   expect_every_way_agrees(GetParam().make, 1, 4, random_placed_site);
 }
 
+TEST_P(RandomSitesConformance, EveryWayOfCountingAgreesOnUnevenRows) {
+  expect_every_way_agrees(GetParam().make, 1, 3, random_uneven_site);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engines, RandomSitesConformance, testing::ValuesIn(engines_under_test()),
                          [](const auto& engine) { return engine.param.name; });
 

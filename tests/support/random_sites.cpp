@@ -167,6 +167,24 @@ RandomSite random_fine_site(std::uint64_t seed) {
   return with_scanner(random, seed, 0.2 * scale, builder.finish(), surveyed, place, 10);
 }
 
+RandomSite random_uneven_site(std::uint64_t seed) {
+  RandomStream random(seed, 3);
+  RandomSite site = random_site(seed);
+  const RayPattern& even = *site.scene.scanners.front().pattern;
+  Scanner scanner;
+  scanner.azimuth_step = Angle::degrees(0.5 + random.uniform());
+  scanner.horizontal_angle = Angle::degrees(seed % 2 == 0 ? 360 : 290);
+  scanner.heading = Angle::degrees(360 * random.uniform());
+  scanner.min_range_m = static_cast<double>(even.min_range);
+  scanner.max_range_m = static_cast<double>(even.max_range);
+  std::vector<Angle> zeniths;
+  for (double zenith = 30 * random.uniform(); zenith < 175; zenith += 0.01 + 3 * random.uniform() * random.uniform())
+    zeniths.push_back(Angle::degrees(zenith));
+  scanner.set_row_zeniths(zeniths);
+  site.scene.scanners.front().pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
+  return site;
+}
+
 RandomSite random_placed_site(std::uint64_t seed) {
   RandomStream random(seed, 2);
   const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;

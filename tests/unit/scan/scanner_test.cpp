@@ -62,6 +62,38 @@ TEST(Scanner, DefaultAndPaperScannersPass) {
   EXPECT_NO_THROW(scanner.check());
 }
 
+std::vector<Angle> degrees(std::initializer_list<double> values) {
+  std::vector<Angle> angles;
+  for (const double value : values) angles.push_back(Angle::degrees(value));
+  return angles;
+}
+
+TEST(Scanner, UnevenRowsHaveTheirZeniths) {
+  Scanner scanner = with_step(0.5);
+  scanner.set_row_zeniths(degrees({61, 62.5, 90, 105}));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rows(), 4u);
+  EXPECT_EQ(scanner.columns(), 720u);
+  EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees(), 61);
+  EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, 105);
+  EXPECT_NEAR(scanner.zenith_step.in_degrees(), 44.0 / 3, 1e-12);
+  EXPECT_DOUBLE_EQ(scanner.angles(2 * 720 + 5).zenith.in_degrees(), 90);
+  EXPECT_EQ(scanner.angles(2 * 720 + 5).azimuth, with_step(0.5).angles(5).azimuth);
+  scanner.set_steps(Angle::degrees(1), Angle::degrees(1));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rays(), 4u * 360);
+  // A single row, even at a pole.
+  for (const double zenith : {0.0, 90.0, 180.0}) {
+    scanner.set_row_zeniths(degrees({zenith}));
+    EXPECT_NO_THROW(scanner.check());
+    EXPECT_EQ(scanner.rows(), 1u);
+    EXPECT_DOUBLE_EQ(scanner.angles(0).zenith.in_degrees(), zenith);
+  }
+  scanner.set_row_zeniths({});
+  EXPECT_EQ(scanner.rows(), 1u);
+  EXPECT_TRUE(scanner.row_zeniths.empty());
+}
+
 TEST(Scanner, RefusesWhatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const struct {
@@ -80,6 +112,35 @@ TEST(Scanner, RefusesWhatCannotBe) {
       {"zenith_step in degrees is nan", [&](Scanner& s) { s.zenith_step = Angle::degrees(nan); }},
       {"zenith_step in degrees is 151", [](Scanner& s) { s.zenith_step = Angle::degrees(151); }},
       {"zenith_step in degrees is 1e-06", [](Scanner& s) { s.zenith_step = Angle::degrees(1e-6); }},
+      {"row_zeniths[1] in degrees is nan",
+       [&](Scanner& s) {
+         s.row_zeniths = degrees({10, nan});
+       }},
+      {"row_zeniths[1] in degrees is 10, but must be above the zenith before it, 10",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 10, 12});
+       }},
+      {"row_zeniths[2] in degrees is 9",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({8, 10, 9}));
+       }},
+      {"row_zeniths[0] in degrees is -1",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({-1, 10}));
+       }},
+      {"row_zeniths[1] in degrees is 181",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({3, 181}));
+       }},
+      {"row_zeniths from 10 to 170 degrees must lie in the vertical field, 0 to 150",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 170});
+       }},
+      {"zenith_step in degrees is 0.1, but must be the mean step of row_zeniths, 20",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 20, 50});
+       }},
+      {"number of row_zeniths is 16777217", [](Scanner& s) { s.row_zeniths.resize((1u << 24) + 1); }},
       {"height_m is -1", [](Scanner& s) { s.height_m = -1; }},
       {"min_range_m is -0.1", [](Scanner& s) { s.min_range_m = -0.1; }},
       {"max_range_m is 0.1", [](Scanner& s) { s.max_range_m = 0.1; }},
