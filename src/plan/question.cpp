@@ -126,7 +126,10 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
       const Scanner preset =
           load_scanner(preset_name.substr(0, preset_name.find('@')) + "@" + step, own_presets_file());
       scanner.name = preset.name;
-      scanner.set_steps(preset.azimuth_step, preset.zenith_step);
+      if (preset.directions.empty())
+        scanner.set_steps(preset.azimuth_step, preset.zenith_step);
+      else
+        scanner.set_directions(preset.directions, preset.times_s);
       scanner.points_per_second = preset.points_per_second;
     }
     const std::uint32_t place = site.place_of(scanner);

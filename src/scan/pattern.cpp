@@ -23,13 +23,24 @@ void fill(std::vector<float>& sines, std::vector<float>& cosines, std::uint32_t 
 RayPattern make_pattern(const Scanner& scanner) {
   RayPattern pattern;
   for (const Angle& zenith : scanner.row_zeniths) pattern.zeniths.push_back(zenith.in_radians());
-  if (pattern.zeniths.empty()) pattern.zenith_step = scanner.zenith_step.in_radians();
+  if (scanner.row_zeniths.empty() && scanner.directions.empty()) pattern.zenith_step = scanner.zenith_step.in_radians();
   pattern.azimuth_step = scanner.azimuth_step.in_radians();
   const RayAngles first = scanner.angles(0);
   pattern.first_zenith = first.zenith.in_radians();
   pattern.first_azimuth = first.azimuth.in_radians();
   pattern.min_range = static_cast<float>(scanner.min_range_m);
   pattern.max_range = static_cast<float>(scanner.max_range_m);
+  if (!scanner.directions.empty()) {
+    std::vector<double> zeniths, azimuths;
+    for (std::uint64_t ray = 0; ray < scanner.rays(); ++ray) {
+      const RayAngles angles = scanner.angles(ray);
+      zeniths.push_back(angles.zenith.in_radians()), azimuths.push_back(angles.azimuth.in_radians());
+    }
+    pattern.list = std::make_shared<const DirectionList>(zeniths, azimuths);
+    fill(pattern.sin_zenith, pattern.cos_zenith, scanner.rows(), [&](std::uint32_t row) { return zeniths[row]; });
+    pattern.sin_azimuth = {0}, pattern.cos_azimuth = {1};
+    return pattern;
+  }
   fill(pattern.sin_zenith, pattern.cos_zenith, scanner.rows(), [&](std::uint32_t row) {
     return pattern.zeniths.empty() ? pattern.first_zenith + row * pattern.zenith_step : pattern.zeniths[row];
   });

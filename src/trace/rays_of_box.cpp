@@ -47,6 +47,37 @@ constexpr double angle_pad = 0x1p-20;
   return {first, second};
 }
 
+// Angles of a box, widened.
+[[gnu::always_inline]] inline AngleWindow window_of_box(const Vec3& low, const Vec3& high) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
+  const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
+  const double r = std::sqrt(cx * cx + cy * cy);
+  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
+  const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
+  if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
+    if (low.z <= 0 && high.z >= 0) return {-angle_pad, std::numbers::pi + angle_pad, 0, kTurn};
+    const double far = r + std::sqrt(hx * hx + hy * hy);
+    const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
+                 most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
+    return {least - angle_pad, most + angle_pad, 0, kTurn};
+  }
+  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
+  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
+  const double radial = (along + across) / r;
+  const double distance = std::sqrt(r * r + cz * cz);
+  const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
+  const double rise = (std::abs(cz) * radial + r * hz) / distance;
+  AngleWindow window{-angle_pad, std::numbers::pi + angle_pad, 0, 0};
+  if (depth > 0) {
+    const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
+    window.least_zenith = zenith - half, window.most_zenith = zenith + half;
+  }
+  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + angle_pad;
+  window.azimuth = azimuth - half, window.width = 2 * half;
+  return window;
+}
+
 // Turns a box's middle into the scanner's frame, and the half extents into those of an enclosing box. Rounding of the
 // turn and of the direction moves a turned direction by less than 2^−21.
 void turn_box(const Turn& turn, Vec3& middle, Vec3& half) {
@@ -94,46 +125,20 @@ double rounding_pad(double reach) { return 0x1p-20 * reach; }
 
 VANTAGE_TARGET_CLONES
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high) {
-  const std::uint32_t rows = pattern.rows(), columns = pattern.columns();
-  const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
-  const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
-  const double r = std::sqrt(cx * cx + cy * cy);
-  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
-  const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
+  const AngleWindow window = window_of_box(low, high);
   RayRanges ranges;
-  if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
-    ranges.columns[0] = {0, columns};
-    if (low.z <= 0 && high.z >= 0) {
-      ranges.rows = {0, rows};
-      return ranges;
-    }
-    const double far = r + std::sqrt(hx * hx + hy * hy);
-    const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
-                 most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
-    ranges.rows = rows_of(pattern, least - angle_pad, most + angle_pad);
-    return ranges;
-  }
-  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
-  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
-  const double radial = (along + across) / r;
-  const double distance = std::sqrt(r * r + cz * cz);
-  const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
-  const double rise = (std::abs(cz) * radial + r * hz) / distance;
-  if (depth > 0) {
-    const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
-    ranges.rows = rows_of(pattern, zenith - half, zenith + half);
-  } else {
-    ranges.rows = {0, rows};
-  }
+  ranges.rows = rows_of(pattern, window.least_zenith, window.most_zenith);
   if (ranges.rows.empty()) return ranges;
-  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + angle_pad;
-  if (half >= std::numbers::pi) {
-    ranges.columns[0] = {0, columns};
+  if (window.width >= 2 * std::numbers::pi) {
+    ranges.columns[0] = {0, pattern.columns()};
   } else {
-    ranges.columns = columns_of(pattern, azimuth - half, 2 * half);
+    ranges.columns = columns_of(pattern, window.azimuth, window.width);
   }
   return ranges;
 }
+
+VANTAGE_TARGET_CLONES
+AngleWindow angles_of_box(const Vec3& low, const Vec3& high) { return window_of_box(low, high); }
 
 // As rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
 VANTAGE_TARGET_CLONES

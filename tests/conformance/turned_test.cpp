@@ -47,7 +47,7 @@ TraceScanner uneven_scanner(bool noisy) {
   TraceScanner scanner = second_scanner(noisy);
   Scanner rows;
   rows.horizontal_angle = Angle::degrees(311);
-  rows.azimuth_step = Angle::degrees(0.45);
+  rows.azimuth_step = Angle::degrees(0.5);
   rows.heading = Angle::degrees(75);
   rows.min_range_m = 0.3, rows.max_range_m = 11;
   std::vector<Angle> zeniths{Angle::degrees(4.5)};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -94,6 +96,47 @@ TEST(Scanner, UnevenRowsHaveTheirZeniths) {
   EXPECT_TRUE(scanner.row_zeniths.empty());
 }
 
+// Pairs of azimuth and zenith.
+std::vector<RayAngles> listed(std::initializer_list<std::array<double, 2>> pairs) {
+  std::vector<RayAngles> directions;
+  for (const auto& [azimuth, zenith] : pairs) directions.push_back({Angle::degrees(zenith), Angle::degrees(azimuth)});
+  return directions;
+}
+
+TEST(Scanner, AListOfDirectionsHasItsOrderAndTimes) {
+  Scanner scanner;
+  scanner.heading = Angle::degrees(100);
+  scanner.points_per_second = 10;
+  scanner.set_directions(listed({{350, 80}, {20, 60}, {-40, 95}, {20, 60}}));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rays(), 4u);
+  EXPECT_EQ(scanner.rows(), 4u);
+  EXPECT_EQ(scanner.columns(), 1u);
+  EXPECT_FALSE(scanner.one_step());
+  EXPECT_DOUBLE_EQ(scanner.angles(2).azimuth.in_degrees(), 60);
+  EXPECT_DOUBLE_EQ(scanner.angles(0).azimuth.in_degrees(), 450);
+  EXPECT_NEAR(scanner.zenith_start.in_degrees(), 60, 1e-12);
+  EXPECT_NEAR(scanner.vertical_angle.in_degrees(), 70, 1e-12);
+  EXPECT_NEAR(scanner.horizontal_angle.in_degrees(), 80, 1e-12) << "twice the largest distance from the heading";
+  EXPECT_NEAR(scanner.azimuth_step.in_degrees(), std::sqrt(35.0 * 80 / 4), 1e-9);
+  EXPECT_DOUBLE_EQ(scanner.seconds(), 0.4);
+  EXPECT_DOUBLE_EQ(scanner.time_s(3), 0.3);
+  EXPECT_THROW(scanner.set_steps(Angle::degrees(1), Angle::degrees(1)), Error);
+  scanner.set_directions(scanner.directions, {0, 0.5, 0.5, 2});
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.time_s(1), 0.5);
+  EXPECT_EQ(scanner.seconds(), 2);
+  // A point, and lines.
+  for (const auto& directions :
+       {listed({{0, 0}}), listed({{0, 180}}), listed({{180, 3}, {-180, 3}}), listed({{7, 3}, {7, 90}, {7, 180}})}) {
+    scanner.set_directions(directions);
+    EXPECT_NO_THROW(scanner.check());
+  }
+  scanner.set_directions({});
+  EXPECT_TRUE(scanner.times_s.empty());
+  EXPECT_NO_THROW(scanner.set_steps(Angle::degrees(1), Angle::degrees(1)));
+}
+
 TEST(Scanner, RefusesWhatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const struct {
@@ -141,6 +184,48 @@ TEST(Scanner, RefusesWhatCannotBe) {
          s.row_zeniths = degrees({10, 20, 50});
        }},
       {"number of row_zeniths is 16777217", [](Scanner& s) { s.row_zeniths.resize((1u << 24) + 1); }},
+      {"directions[1]: zenith in degrees is 181",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {0, 181}});
+       }},
+      {"directions[0]: zenith in degrees is nan",
+       [&](Scanner& s) {
+         s.directions = listed({{0, nan}});
+       }},
+      {"directions[1]: azimuth in degrees is 361",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {361, 4}});
+       }},
+      {"number of times_s is 1, but must be that of directions, 2",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {0});
+       }},
+      {"number of times_s is 2, but must be 0 without directions",
+       [](Scanner& s) {
+         s.times_s = {0, 1};
+       }},
+      {"times_s[1] is 0, but must be finite and at least the time before it, 1",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {1, 0});
+       }},
+      {"times_s[0] is -1",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {-1, 0});
+       }},
+      {"a step in degrees is 0.1, but must be the mean step of directions",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {5, 8}});
+       }},
+      {"directions must lie in the field",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}));
+         s.zenith_start = Angle::degrees(7);
+       }},
+      {"both directions and row_zeniths",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}));
+         s.row_zeniths = degrees({10, 20});
+       }},
       {"height_m is -1", [](Scanner& s) { s.height_m = -1; }},
       {"min_range_m is -0.1", [](Scanner& s) { s.min_range_m = -0.1; }},
       {"max_range_m is 0.1", [](Scanner& s) { s.max_range_m = 0.1; }},
