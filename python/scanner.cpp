@@ -29,6 +29,47 @@ NoiseTable noise_from(const py::object& given) {
   return {.distances_m = part("distances_m"), .reflectivities = part("reflectivities"), .sigma_m = part("sigma_m")};
 }
 
+py::array_t<double> numbers_of(const std::vector<double>& numbers) {
+  return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+
+std::vector<double> numbers_from(const py::object& given, const char* name) {
+  if (given.is_none()) return {};
+  const Doubles numbers = doubles_of(given, name);
+  return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+}
+
+py::array_t<double> zeniths_of(const Scanner& scanner) {
+  std::vector<double> degrees;
+  for (const Angle& zenith : scanner.row_zeniths) degrees.push_back(zenith.in_degrees());
+  return numbers_of(degrees);
+}
+
+std::vector<Angle> zeniths_from(const py::object& given) {
+  std::vector<Angle> zeniths;
+  for (const double degrees : numbers_from(given, "row_zeniths_deg")) zeniths.push_back(Angle::degrees(degrees));
+  return zeniths;
+}
+
+py::array_t<double> pairs_of(const std::vector<RayAngles>& directions) {
+  py::array_t<double> pairs(Shape{static_cast<py::ssize_t>(directions.size()), 2});
+  double* next = pairs.mutable_data();
+  for (const RayAngles& angles : directions)
+    *next++ = angles.azimuth.in_degrees(), *next++ = 90 - angles.zenith.in_degrees();
+  return pairs;
+}
+
+std::vector<RayAngles> directions_from(const py::object& pairs) {
+  std::vector<RayAngles> directions;
+  if (pairs.is_none()) return directions;
+  const Doubles given = doubles_of(pairs, "directions_deg");
+  if (given.ndim() != 2 || given.shape(1) != 2)
+    throw Error(Errc::invalid_argument, "directions_deg must have the shape (n, 2): azimuths and elevations");
+  for (py::ssize_t k = 0; k < given.shape(0); ++k)
+    directions.push_back({Angle::degrees(90 - given.data()[2 * k + 1]), Angle::degrees(given.data()[2 * k])});
+  return directions;
+}
+
 Options<Scanner> scanner_options() {
   return Options<Scanner>("Scanner")
       .add("name", &Scanner::name, "Name of the model.")
@@ -38,6 +79,27 @@ Options<Scanner> scanner_options() {
       .add("zenith_start_deg", &Scanner::zenith_start, "First zenith, from straight up.")
       .add("azimuth_step_deg", &Scanner::azimuth_step, "Angle between columns.")
       .add("zenith_step_deg", &Scanner::zenith_step, "Angle between rows.")
+      .add<py::object>(
+          "row_zeniths_deg",
+          [](const Scanner& s) -> py::object { return s.row_zeniths.empty() ? py::object(py::none()) : zeniths_of(s); },
+          [](Scanner& s, const py::object& zeniths) { s.set_row_zeniths(zeniths_from(zeniths)); },
+          "Zeniths of uneven rows, ascending, degrees (n,), in place of even ones; vertical_angle_deg, "
+          "zenith_start_deg and zenith_step_deg are then set to their field and mean step. None: even rows.")
+      .add<py::object>(
+          "directions_deg",
+          [](const Scanner& s) -> py::object {
+            return s.directions.empty() ? py::object(py::none()) : pairs_of(s.directions);
+          },
+          [](Scanner& s, const py::object& pairs) { s.set_directions(directions_from(pairs), std::move(s.times_s)); },
+          "Directions of a pattern that is no grid, in the order of its rays: azimuths from the heading and elevations "
+          "from the horizon, degrees (n, 2); angles and steps are then set to their field and mean step. None: a grid.")
+      .add<py::object>(
+          "times_s",
+          [](const Scanner& s) -> py::object {
+            return s.times_s.empty() ? py::object(py::none()) : numbers_of(s.times_s);
+          },
+          [](Scanner& s, const py::object& times) { s.times_s = numbers_from(times, "times_s"); },
+          "Seconds from the begin of a scan to each of the directions (n,). None: points_per_second tells them.")
       .add("height_m", &Scanner::height_m, "Height of the head above the search area.")
       .add("min_range_m", &Scanner::min_range_m, "d_min.")
       .add("max_range_m", &Scanner::max_range_m, "d_max.")
@@ -130,6 +192,17 @@ void add_scanners(py::module_& m) {
         return all;
       },
       py::arg("more") = "", "Pairs (key, summary) of the presets, those of the file `more` first.");
+  m.def(
+      "load_directions",
+      [](const std::filesystem::path& file) {
+        const DirectionTable table = load_directions(file);
+        return std::pair(pairs_of(table.directions),
+                         table.times_s.empty() ? py::object(py::none()) : py::object(numbers_of(table.times_s)));
+      },
+      py::arg("file"),
+      "Directions of a CSV file and their times, as Scanner takes them: azimuths and elevations, degrees (n, 2), and "
+      "seconds (n,) or None. The\nheader is azimuth_deg,elevation_deg or azimuth_deg,elevation_deg,time_s. Raises Error: "
+      "io, malformed_file with the line.");
 }
 
 }  // namespace vantage::python

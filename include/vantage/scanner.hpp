@@ -33,8 +33,8 @@ struct RayAngles {
 };
 
 /// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; 1e-9 guards both
-/// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh and direction (sin θ cos φ, sin θ
-/// sin φ, cos θ). Its index is i·columns + j everywhere.
+/// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, or `row_zeniths[i]` if there are any, azimuth heading − H/2 +
+/// (j + ½)·Δh and direction (sin θ cos φ, sin θ sin φ, cos θ). Its index is i·columns + j everywhere.
 struct Scanner {
   std::string name = "custom";
   Angle heading = Angle::degrees(0);             ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
@@ -45,10 +45,19 @@ struct Scanner {
   Angle zenith_start = Angle::degrees(0);
   Angle azimuth_step = Angle::degrees(0.1);  ///< Δh.
   Angle zenith_step = Angle::degrees(0.1);   ///< Δv.
-  double height_m = 1.85;                    ///< Height of the scanner's head above the search area.
-  double min_range_m = 0.1;                  ///< d_min.
-  double max_range_m = 130.0;                ///< d_max.
-  NoiseTable noise = {};                     ///< Empty: exact ranges.
+  /// Zeniths of uneven rows, ascending, such as those of a spinning multi-beam scanner. Empty: even rows. θ₀, V and Δv
+  /// are then their field and mean step, so set all by `set_row_zeniths()`.
+  std::vector<Angle> row_zeniths = {};
+  /// Directions of a pattern that is no grid, such as a rosette, in the order of its rays; azimuths are from `heading`.
+  /// Empty: rows and columns. H, V, θ₀ and both steps are then its field and mean step, so set all by
+  /// `set_directions()`. Such a pattern has one column.
+  std::vector<RayAngles> directions = {};
+  /// Seconds from the begin of a scan to each of the directions. Empty: `points_per_second` tells them.
+  std::vector<double> times_s = {};
+  double height_m = 1.85;      ///< Height of the scanner's head above the search area.
+  double min_range_m = 0.1;    ///< d_min.
+  double max_range_m = 130.0;  ///< d_max.
+  NoiseTable noise = {};       ///< Empty: exact ranges.
   /// Full angle γ by which the beam widens far away, and its diameter D at the exit, both to 1/e² of the intensity on
   /// the axis. As of a Gaussian beam, the diameter at distance t is √(D² + γ² t²). Both 0: unknown.
   Angle beam_divergence = Angle::radians(0);
@@ -75,6 +84,18 @@ struct Scanner {
   std::uint32_t columns() const;  ///< Azimuth steps.
   std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }
   RayAngles angles(std::uint64_t ray) const;  ///< REQUIRES: ray < rays().
+  double time_s(std::uint64_t ray) const;     ///< Seconds from the begin of a scan. REQUIRES: ray < rays().
+  double seconds() const;                     ///< Of a scan, without setting up.
+  /// Takes other steps. Uneven rows stay where they are. Throws Error invalid_argument if the scanner has a list of
+  /// directions.
+  void set_steps(Angle azimuth, Angle zenith);
+  /// Takes rows at these zeniths, in ascending order: θ₀ is the first, θ₀ + V/2 the last, Δv their mean step. A single
+  /// row has the field of one azimuth step. None: even rows again, of the present θ₀, V and Δv.
+  void set_row_zeniths(std::vector<Angle> zeniths);
+  /// Takes these directions; their times do not fall, or are empty. None: rows and columns again.
+  void set_directions(std::vector<RayAngles> directions, std::vector<double> times_s = {});
+  /// Whether rows and columns are the same step apart, which one number tells.
+  bool one_step() const { return directions.empty() && azimuth_step == zenith_step; }
   /// Throws Error invalid_argument with the member and its value.
   void check() const;
 };
@@ -108,6 +129,16 @@ NoiseTable rtc360_noise();
 /// metres>,…`, then a line of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file,
 /// invalid_argument.
 NoiseTable load_noise(const std::string& name);
+
+/// Directions of rays and their times, as `Scanner::set_directions()` takes them.
+struct DirectionTable {
+  std::vector<RayAngles> directions = {};
+  std::vector<double> times_s = {};
+};
+/// Reads directions from a CSV file: a header `azimuth_deg,elevation_deg` or `azimuth_deg,elevation_deg,time_s`, then a
+/// line for each ray, in the order of the scan. Azimuths grow from the heading towards the left, elevations from the
+/// horizon upwards; times are in seconds from the begin of the scan. Throws Error: io, malformed_file with the line.
+DirectionTable load_directions(const std::filesystem::path& file);
 
 /// One preset scanner.
 struct ScannerPreset {

@@ -197,6 +197,9 @@ class Scanner:
         zenith_start_deg: float = 0.0,
         azimuth_step_deg: float = 0.1,
         zenith_step_deg: float = 0.1,
+        row_zeniths_deg: Optional[npt.ArrayLike] = None,
+        directions_deg: Optional[npt.ArrayLike] = None,
+        times_s: Optional[npt.ArrayLike] = None,
         height_m: float = 1.85,
         min_range_m: float = 0.1,
         max_range_m: float = 130.0,
@@ -220,6 +223,9 @@ class Scanner:
     zenith_start_deg: float
     azimuth_step_deg: float
     zenith_step_deg: float
+    row_zeniths_deg: Optional[Any]
+    directions_deg: Optional[Any]
+    times_s: Optional[Any]
     height_m: float
     min_range_m: float
     max_range_m: float
@@ -260,6 +266,7 @@ class InstrumentErrors:
     range_offset_m: float
     range_scale_ppm: float
 
+def load_directions(file: Path) -> Tuple[npt.NDArray[np.float64], Optional[npt.NDArray[np.float64]]]: ...
 def scanners(more: Path = "") -> List[Tuple[str, str]]: ...
 
 class StationSetup:

@@ -23,6 +23,20 @@ uvec2 ray_in_window(RayWindow w, int columns, int k) {
   return uvec2(w.row0 + k / columns, column < run ? w.column0 + column : w.wrapped0 + column - run);
 }
 
+// Zenith of a row of a pattern without a step, whose zeniths ascend; and the first row above a zenith.
+float zenith_of(uint row) { return angle_of(parameters.sin_zenith.at[row], parameters.cos_zenith.at[row]); }
+int first_row_above(float zenith) {
+  uint first = 0u, end = parameters.rows;
+  while (first < end) {
+    const uint middle = (first + end) / 2u;
+    if (zenith_of(middle) > zenith)
+      end = middle;
+    else
+      first = middle + 1u;
+  }
+  return int(first);
+}
+
 // All rays from the coordinate origin that may meet the box [low, high], and few others.
 RayWindow rays_of_box(vec3 low, vec3 high) {
   const float rows = float(parameters.rows), columns = float(parameters.columns);
@@ -32,10 +46,15 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
   const float least = length(nearest), largest = length(farthest);
   const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
   const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
-  const float row_scale = 1.0 / parameters.zenith_step;
   RayWindow w;
-  w.row0 = int(max(ceil((zenith0 - parameters.first_zenith) * row_scale), 0.0));
-  w.row1 = int(min(floor((zenith1 - parameters.first_zenith) * row_scale), rows - 1.0));
+  if (parameters.zenith_step > 0.0) {
+    const float row_scale = 1.0 / parameters.zenith_step;
+    w.row0 = int(max(ceil((zenith0 - parameters.first_zenith) * row_scale), 0.0));
+    w.row1 = int(min(floor((zenith1 - parameters.first_zenith) * row_scale), rows - 1.0));
+  } else {
+    w.row0 = first_row_above(zenith0);
+    w.row1 = first_row_above(zenith1) - 1;
+  }
 
   float start = 0.0, width = 2.0 * pi;
   if (least > 0.0) {

@@ -117,7 +117,7 @@ struct TraceParameters {
   float noise_inverse_span;
   uint seed_low;
   uint seed_high;
-  float zenith_step;  // radians
+  float zenith_step;  // radians; 0: rows are not all one step apart
   float azimuth_step;
   float first_zenith;
   float first_azimuth;

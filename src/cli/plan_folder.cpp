@@ -19,9 +19,10 @@ namespace {
 // In the form of --keep.
 std::string typed(const Vec3& head, const StationSetup& setup, std::span<const Scanner> scanners, std::string name) {
   const Scanner& scanner = scanners[setup.scanner];
-  std::string text =
-      fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
-                  setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(), scanner.name);
+  std::string text = fmt::format("x={},y={},z={},heading={},tilt={}", head.x, head.y, head.z,
+                                 setup.heading.in_degrees(), setup.tilt.in_degrees());
+  if (scanner.directions.empty()) text += fmt::format(",step={}", scanner.azimuth_step.in_degrees());
+  text += ",scanner=" + scanner.name;
   nlohmann::json all;
   add_setup(all, setup, scanners);
   for (const char* key : {"zenith_step", "horizontal", "vertical", "zenith_start", "nearest", "farthest"})

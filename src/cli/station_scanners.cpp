@@ -80,8 +80,11 @@ Scanner scanner_text(Site& site, const StationText& station) {
   const auto take = [](auto& value, const auto& given) {
     if (given) value = *given;
   };
-  take(scanner.azimuth_step, station.step), take(scanner.zenith_step, station.step);
-  take(scanner.zenith_step, station.view.zenith_step);
+  if (station.step || station.view.zenith_step) {
+    const Angle azimuth = station.step.value_or(scanner.azimuth_step),
+                zenith = station.step.value_or(scanner.zenith_step);
+    scanner.set_steps(azimuth, station.view.zenith_step.value_or(zenith));
+  }
   take(scanner.horizontal_angle, station.view.horizontal), take(scanner.vertical_angle, station.view.vertical);
   take(scanner.zenith_start, station.view.zenith_start);
   take(scanner.min_range_m, station.view.nearest_m), take(scanner.max_range_m, station.view.farthest_m);

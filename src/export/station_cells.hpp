@@ -29,7 +29,7 @@ inline std::string setup_cells(const StationSetup& setup, std::span<const Scanne
   if (setup.scanner >= scanners.size()) return cells + ",,";
   const Scanner& scanner = scanners[setup.scanner];
   cells += "," + csv_cell(scanner.name) + ",";
-  return scanner.azimuth_step == scanner.zenith_step ? cells + number(scanner.azimuth_step.in_degrees()) : cells;
+  return scanner.one_step() ? cells + number(scanner.azimuth_step.in_degrees()) : cells;
 }
 
 // One cell for each column, separated by commas. A station in a hole has no position; its empty cells keep a reader

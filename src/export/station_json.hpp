@@ -32,8 +32,8 @@ Json station_json(const PlacedStation& station, const std::string& name) {
 template <class Json>
 void add_setup(Json& station, const StationSetup& setup, std::span<const Scanner> scanners) {
   const Scanner &scanner = scanners[setup.scanner], &first = scanners.front();
-  const bool one_step = scanner.azimuth_step == scanner.zenith_step;
-  const bool own_view = setup.scanner > 0 &&
+  const bool one_step = scanner.one_step();
+  const bool own_view = setup.scanner > 0 && scanner.directions.empty() &&
                         (!one_step || scanner.horizontal_angle != first.horizontal_angle ||
                          scanner.vertical_angle != first.vertical_angle || scanner.zenith_start != first.zenith_start ||
                          scanner.min_range_m != first.min_range_m || scanner.max_range_m != first.max_range_m);

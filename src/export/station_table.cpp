@@ -35,8 +35,7 @@ std::vector<TableColumn> setup_columns(std::span<const PlacedStation> stations, 
     tilt.cells.push_back(shortened(s.setup.tilt.in_degrees(), 1));
     const Scanner* own = s.setup.scanner < scanners.size() ? &scanners[s.setup.scanner] : nullptr;
     scanner.cells.push_back(own ? own->name : "");
-    step.cells.push_back(own && own->azimuth_step == own->zenith_step ? shortened(own->azimuth_step.in_degrees(), 4)
-                                                                      : "");
+    step.cells.push_back(own && own->one_step() ? shortened(own->azimuth_step.in_degrees(), 4) : "");
   }
   return {heading, tilt, scanner, step};
 }

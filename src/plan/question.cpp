@@ -118,7 +118,7 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
     Scanner scanner = site.scanner();
     const std::string preset_name = site.options().scanner.value_or("");
     if (const auto degrees = number_in(step)) {
-      scanner.azimuth_step = scanner.zenith_step = Angle::degrees(*degrees);
+      scanner.set_steps(Angle::degrees(*degrees), Angle::degrees(*degrees));
     } else if (preset_name.empty()) {
       throw Error(Errc::invalid_argument,
                   "search-step: '" + step + "' is no number of degrees; settings by name go with a scanner's preset");
@@ -126,7 +126,10 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
       const Scanner preset =
           load_scanner(preset_name.substr(0, preset_name.find('@')) + "@" + step, own_presets_file());
       scanner.name = preset.name;
-      scanner.azimuth_step = preset.azimuth_step, scanner.zenith_step = preset.zenith_step;
+      if (preset.directions.empty())
+        scanner.set_steps(preset.azimuth_step, preset.zenith_step);
+      else
+        scanner.set_directions(preset.directions, preset.times_s);
       scanner.points_per_second = preset.points_per_second;
     }
     const std::uint32_t place = site.place_of(scanner);

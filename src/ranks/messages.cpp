@@ -90,6 +90,7 @@ void add(Hash& hash, const TraceScanner& scanner) {
   const RayPattern& pattern = *scanner.pattern;
   for (const auto* table : {&pattern.sin_zenith, &pattern.cos_zenith, &pattern.sin_azimuth, &pattern.cos_azimuth})
     hash.add_all(*table);
+  if (pattern.list) hash.add_all(pattern.list->sin_azimuth), hash.add_all(pattern.list->cos_azimuth);
   hash.add(pattern.min_range), hash.add(pattern.max_range);
   hash.add(pattern.zenith_step), hash.add(pattern.azimuth_step);
   hash.add(pattern.first_zenith), hash.add(pattern.first_azimuth);

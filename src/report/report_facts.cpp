@@ -17,11 +17,15 @@ std::string degrees(const Angle& angle) { return number(std::round(1e4 * angle.i
 
 // "RTC360 (6 mm), a ray every 0.0344° …".
 std::string scanner_text(const Scanner& scanner) {
-  const std::string steps = scanner.azimuth_step == scanner.zenith_step
-                                ? degrees(scanner.azimuth_step)
-                                : degrees(scanner.azimuth_step) + " across and " + degrees(scanner.zenith_step) + " up";
-  return (scanner.name == Scanner().name ? "" : scanner.name + ": ") + "a ray every " + steps + ", " +
-         grouped(scanner.rays()) + " rays a scan, head " + fixed(scanner.height_m, 2) + " m over the ground, range " +
+  const std::string every =
+      scanner.one_step() ? "a ray every " + degrees(scanner.azimuth_step)
+      : !scanner.directions.empty()
+          ? "directions that are no grid, every " + degrees(scanner.azimuth_step) + " on average"
+      : !scanner.row_zeniths.empty()
+          ? std::to_string(scanner.rows()) + " uneven rows, a ray every " + degrees(scanner.azimuth_step) + " across"
+          : "a ray every " + degrees(scanner.azimuth_step) + " across and " + degrees(scanner.zenith_step) + " up";
+  return (scanner.name == Scanner().name ? "" : scanner.name + ": ") + every + ", " + grouped(scanner.rays()) +
+         " rays a scan, head " + fixed(scanner.height_m, 2) + " m over the ground, range " +
          number(scanner.min_range_m) + " to " + number(scanner.max_range_m) + " m, " + describe(scanner.noise);
 }
 

@@ -7,11 +7,12 @@
 namespace vantage {
 namespace {
 
-void fill(std::vector<float>& sines, std::vector<float>& cosines, double first, double step, std::uint32_t count) {
+template <class AngleOf>
+void fill(std::vector<float>& sines, std::vector<float>& cosines, std::uint32_t count, const AngleOf& angle_of) {
   sines.resize(count);
   cosines.resize(count);
   for (std::uint32_t k = 0; k < count; ++k) {
-    const double angle = first + k * step;
+    const double angle = angle_of(k);
     sines[k] = static_cast<float>(std::sin(angle));
     cosines[k] = static_cast<float>(std::cos(angle));
   }
@@ -21,15 +22,30 @@ void fill(std::vector<float>& sines, std::vector<float>& cosines, double first, 
 
 RayPattern make_pattern(const Scanner& scanner) {
   RayPattern pattern;
-  pattern.zenith_step = scanner.zenith_step.in_radians();
+  for (const Angle& zenith : scanner.row_zeniths) pattern.zeniths.push_back(zenith.in_radians());
+  if (scanner.row_zeniths.empty() && scanner.directions.empty()) pattern.zenith_step = scanner.zenith_step.in_radians();
   pattern.azimuth_step = scanner.azimuth_step.in_radians();
   const RayAngles first = scanner.angles(0);
   pattern.first_zenith = first.zenith.in_radians();
   pattern.first_azimuth = first.azimuth.in_radians();
   pattern.min_range = static_cast<float>(scanner.min_range_m);
   pattern.max_range = static_cast<float>(scanner.max_range_m);
-  fill(pattern.sin_zenith, pattern.cos_zenith, pattern.first_zenith, pattern.zenith_step, scanner.rows());
-  fill(pattern.sin_azimuth, pattern.cos_azimuth, pattern.first_azimuth, pattern.azimuth_step, scanner.columns());
+  if (!scanner.directions.empty()) {
+    std::vector<double> zeniths, azimuths;
+    for (std::uint64_t ray = 0; ray < scanner.rays(); ++ray) {
+      const RayAngles angles = scanner.angles(ray);
+      zeniths.push_back(angles.zenith.in_radians()), azimuths.push_back(angles.azimuth.in_radians());
+    }
+    pattern.list = std::make_shared<const DirectionList>(zeniths, azimuths);
+    fill(pattern.sin_zenith, pattern.cos_zenith, scanner.rows(), [&](std::uint32_t row) { return zeniths[row]; });
+    pattern.sin_azimuth = {0}, pattern.cos_azimuth = {1};
+    return pattern;
+  }
+  fill(pattern.sin_zenith, pattern.cos_zenith, scanner.rows(), [&](std::uint32_t row) {
+    return pattern.zeniths.empty() ? pattern.first_zenith + row * pattern.zenith_step : pattern.zeniths[row];
+  });
+  fill(pattern.sin_azimuth, pattern.cos_azimuth, scanner.columns(),
+       [&](std::uint32_t column) { return pattern.first_azimuth + column * pattern.azimuth_step; });
   return pattern;
 }
 

@@ -29,6 +29,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr double kMostSwept = 16'777'216;  // as Scanner::check() allows
+
 // A node of a presets file: its value, and its location for messages.
 class Node {
  public:
@@ -98,6 +100,22 @@ Angle step_of(const Node& setting) {
   return Angle::radians(setting.member("spacing_mm").number() * 1e-3 / setting.member("at_m").number());
 }
 
+// Of rows that are listed by their elevations, from the top or from the bottom.
+std::vector<Angle> zeniths_of(const Node& node) {
+  node.only({"value", "source", "note"});
+  std::vector<double> elevations = node.sourced().member("value").numbers();
+  if (elevations.empty()) node.member("value").fail("must have an elevation for each row");
+  if (elevations.front() < elevations.back()) std::ranges::reverse(elevations);
+  std::vector<Angle> zeniths;
+  for (const double elevation : elevations) {
+    if (!(elevation >= -90 && elevation <= 90)) node.member("value").fail("elevations must be from -90 to 90");
+    if (!zeniths.empty() && !(zeniths.back() < Angle::degrees(90 - elevation)))
+      node.member("value").fail("elevations must all rise or all fall");
+    zeniths.push_back(Angle::degrees(90 - elevation));
+  }
+  return zeniths;
+}
+
 NoiseTable noise_of(const Node& node) {
   node.only({"distances_m", "reflectivities", "sigma_mm", "source", "note"});
   node.sourced();
@@ -123,9 +141,12 @@ NoiseTable noise_of(const Node& node) {
 struct Document {
   Json json;
   std::string file;
+  std::filesystem::path folder;  // of the files that it names
 
   Document() : Document(built_in_presets, "the built-in presets") {}
-  explicit Document(const std::filesystem::path& path) : Document(text_of(path), path.string()) {}
+  explicit Document(const std::filesystem::path& path) : Document(text_of(path), path.string()) {
+    folder = path.parent_path();
+  }
   Document(const std::string& text, std::string name) : file(std::move(name)) {
     try {
       json = Json::parse(text);
@@ -158,14 +179,85 @@ std::string names_of(const Object& object) {
   return names;
 }
 
+// Directions along a line that turns and nods evenly, up and down between two elevations.
+DirectionTable swept(const Node& sweep, double seconds, double points_per_second) {
+  sweep.only({"turns_per_second", "nods_per_second", "elevations_deg", "source", "note"});
+  sweep.sourced();
+  const double turns = sweep.member("turns_per_second").number(), nods = sweep.member("nods_per_second").number();
+  const Node field = sweep.member("elevations_deg");
+  const std::vector<double> ends = field.numbers();
+  if (ends.size() != 2 || !(ends[0] >= -90 && ends[0] < ends[1] && ends[1] <= 90))
+    field.fail("must be a lower and an upper elevation, from -90 to 90");
+  if (!(turns > 0 && turns <= 1e4 && nods > 0 && nods <= 1e4))
+    sweep.fail("turns and nods must be above 0 and at most 1e4");
+  const double rays = std::floor(seconds * points_per_second);
+  if (!(rays >= 1 && rays <= kMostSwept))
+    sweep.fail("must have from 1 to 2^24 points, and has " + std::to_string(rays));
+  DirectionTable table;
+  for (double k = 0; k < rays; ++k) {
+    const double time = k / points_per_second, nod = time * nods - std::floor(time * nods);
+    const double elevation = ends[0] + (ends[1] - ends[0]) * (1 - std::abs(1 - 2 * nod));
+    table.directions.push_back(
+        {Angle::degrees(90 - elevation), Angle::degrees(360 * (time * turns - std::floor(time * turns)))});
+    table.times_s.push_back(time);
+  }
+  return table;
+}
+
+// Field and steps of a setting: a grid, uneven rows or a list of directions.
+void set_pattern(Scanner& scanner, const Document& document, const Node& node, const Node& chosen) {
+  const auto leave_out = [&](std::initializer_list<const char*> names, const std::string& why) {
+    for (const char* name : names)
+      if (node.has(name)) node.fail("leave out \"" + std::string(name) + "\": " + why);
+  };
+  const bool by_file = chosen.has("directions_csv");
+  if (by_file || chosen.has("seconds")) {
+    leave_out({"horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "elevations_deg"},
+              "directions tell the field");
+    for (const char* name : {"step_deg", "spacing_mm", "pixels_per_turn"})
+      if (chosen.has(name)) chosen.fail("directions have no \"" + std::string(name) + "\"");
+    if (by_file && chosen.has("seconds")) chosen.fail("needs one of \"directions_csv\", \"seconds\"");
+    DirectionTable table =
+        by_file ? load_directions(document.folder / chosen.member("directions_csv").text())
+                : swept(node.member("sweep"), chosen.member("seconds").number(), scanner.points_per_second);
+    scanner.set_directions(std::move(table.directions), std::move(table.times_s));
+    return;
+  }
+  scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
+  scanner.horizontal_angle = Angle::degrees(node.member("horizontal_angle_deg").figure());
+  if (node.has("elevations_deg")) {
+    leave_out({"vertical_angle_deg", "zenith_start_deg"}, "\"elevations_deg\" tell the vertical field");
+    scanner.set_row_zeniths(zeniths_of(node.member("elevations_deg")));
+  } else {
+    scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
+    if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
+  }
+}
+
 // The scanner `key` at `setting`; empty: its default setting.
 Scanner read_scanner(const Document& document, const std::string& key, std::string setting) {
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
-  node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
-             "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
-             "default_setting", "noise", "detection", "angle_accuracy_arcsec", "range_accuracy_mm",
-             "range_accuracy_ppm", "tilt_accuracy_arcsec"});
+  node.only({"name",
+             "sources",
+             "horizontal_angle_deg",
+             "vertical_angle_deg",
+             "zenith_start_deg",
+             "elevations_deg",
+             "sweep",
+             "min_range_m",
+             "max_range_m",
+             "points_per_second",
+             "beam_divergence_mrad",
+             "exit_diameter_mm",
+             "settings",
+             "default_setting",
+             "noise",
+             "detection",
+             "angle_accuracy_arcsec",
+             "range_accuracy_mm",
+             "range_accuracy_ppm",
+             "tilt_accuracy_arcsec"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -180,16 +272,12 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
                 "scanner \"" + key + "\" has no setting \"" + setting + "\"; it has " + names_of(settings.json()));
   }
   const Node chosen = settings.member(setting);
-  chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "points_per_second",
-               "detection_range_m", "noise_factor", "source", "note"});
+  chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "directions_csv", "seconds", "min_range_m",
+               "max_range_m", "points_per_second", "detection_range_m", "noise_factor", "source", "note"});
   chosen.sourced();
 
   Scanner scanner;
   scanner.name = node.member("name").text() + " @" + setting;
-  scanner.horizontal_angle = Angle::degrees(node.member("horizontal_angle_deg").figure());
-  scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
-  if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
-  scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
   // A setting's own figures take precedence over the scanner's.
   const auto own_or_common = [&](const char* name) {
     return chosen.has(name) ? chosen.member(name).number() : node.member(name).figure();
@@ -198,6 +286,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   scanner.max_range_m = own_or_common("max_range_m");
   if (chosen.has("points_per_second") || node.has("points_per_second"))
     scanner.points_per_second = own_or_common("points_per_second");
+  set_pattern(scanner, document, node, chosen);
   if (node.has("beam_divergence_mrad"))
     scanner.beam_divergence = Angle::radians(node.member("beam_divergence_mrad").figure() * 1e-3);
   if (node.has("exit_diameter_mm")) scanner.exit_diameter_m = node.member("exit_diameter_mm").figure() * 1e-3;
@@ -259,8 +348,11 @@ std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more) {
     if (std::any_of(list.begin(), list.end(), [&](const ScannerPreset& known) { return known.key == key; })) return;
     const Scanner scanner = read_scanner(document, key, "");
     char figures[160];
-    std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, ",
-                  scanner.horizontal_angle.in_degrees(), scanner.zenith_start.in_degrees(),
+    const std::string rows = !scanner.directions.empty()    ? std::to_string(scanner.rows()) + " directions, "
+                             : !scanner.row_zeniths.empty() ? std::to_string(scanner.rows()) + " rows, "
+                                                            : "";
+    std::snprintf(figures, sizeof figures, ": %.4g° around, %szenith %.4g° to %.4g°, %.3g to %.4g m, ",
+                  scanner.horizontal_angle.in_degrees(), rows.c_str(), scanner.zenith_start.in_degrees(),
                   scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, scanner.min_range_m,
                   scanner.max_range_m);
     list.push_back({key, entry["name"].get<std::string>() + figures + describe(scanner.noise) + "; settings " +

@@ -25,8 +25,7 @@ Vec3 reflected(const Vec3& d, const Vec3& normal) { return d - normal * (2 * dot
 
 Float3 direction_of(const RayPattern& pattern, const TraceStation& station, std::uint64_t ray) {
   const std::uint64_t row = ray / pattern.columns(), column = ray % pattern.columns();
-  const Float3 d{pattern.sin_zenith[row] * pattern.cos_azimuth[column],
-                 pattern.sin_zenith[row] * pattern.sin_azimuth[column], pattern.cos_zenith[row]};
+  const Float3 d = pattern.direction(row, column);
   return station.turn ? (*station.turn)(d) : d;
 }
 

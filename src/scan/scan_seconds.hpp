@@ -6,8 +6,6 @@
 namespace vantage {
 
 // Time of one scan, without setting up.
-inline double scan_seconds(const Scanner& scanner) {
-  return static_cast<double>(scanner.rays()) / scanner.points_per_second;
-}
+inline double scan_seconds(const Scanner& scanner) { return scanner.seconds(); }
 
 }  // namespace vantage

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/scanner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <utility>
 
 #include "core/parse.hpp"
 #include "core/site_reach.hpp"
@@ -13,6 +16,7 @@ namespace {
 
 constexpr double floor_guard = 1e-9;      // makes 360° / 0.1° 3600 and not 3599
 constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may exceed 360° by rounding
+constexpr double step_guard = 1e-9;       // of a mean step that was written in degrees
 constexpr double max_steps = 16'777'216;  // 2^24 per direction: 0.00002° over a full turn
 
 double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + floor_guard); }
@@ -37,6 +41,97 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
     refuse(member + " in degrees", degrees,
            std::string("at most ") + sweep_name + ", " + ten_digits(sweep.in_degrees()));
   if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
+}
+
+// Azimuth from the middle of the sweep, within half a turn.
+double from_middle(const RayAngles& angles) {
+  return std::remainder(angles.azimuth.in_radians(), 2 * std::numbers::pi);
+}
+
+// Least and largest zenith, and the largest distance of an azimuth from the middle of the sweep, in radians.
+struct ListedField {
+  double first = std::numbers::pi, last = 0, aside = 0;
+};
+ListedField field_of(const std::vector<RayAngles>& directions) {
+  ListedField field;
+  for (const RayAngles& angles : directions) {
+    field.first = std::min(field.first, angles.zenith.in_radians());
+    field.last = std::max(field.last, angles.zenith.in_radians());
+    field.aside = std::max(field.aside, std::abs(from_middle(angles)));
+  }
+  return field;
+}
+
+// Step of a grid with as many rays in the same field.
+double listed_step(const std::vector<RayAngles>& directions) {
+  constexpr double kNarrowest = 1e-4;  // radians; of fields that are a line or a point
+  const ListedField field = field_of(directions);
+  const double tall = std::max(field.last - field.first, kNarrowest), wide = std::max(2 * field.aside, kNarrowest);
+  return std::min({std::sqrt(tall * wide / static_cast<double>(directions.size())), tall, wide});
+}
+
+void check_directions(const Scanner& scanner) {
+  const std::vector<RayAngles>& directions = scanner.directions;
+  if (!scanner.row_zeniths.empty())
+    throw Error(Errc::invalid_argument,
+                "scanner: there are both directions and row_zeniths, but only one may be given");
+  if (static_cast<double>(directions.size()) > max_steps)
+    refuse("the number of directions", static_cast<double>(directions.size()), "at most 2^24");
+  if (!scanner.times_s.empty() && scanner.times_s.size() != directions.size())
+    refuse("the number of times_s", static_cast<double>(scanner.times_s.size()),
+           "that of directions, " + std::to_string(directions.size()) + ", or 0");
+  const auto member = [](const char* name, std::size_t k) { return name + ("[" + std::to_string(k) + "]"); };
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const double zenith = directions[k].zenith.in_degrees(), azimuth = directions[k].azimuth.in_degrees();
+    if (!(zenith >= 0 && zenith <= 180 + angle_guard_deg))
+      refuse(member("directions", k) + ": zenith in degrees", zenith, "from 0 to 180");
+    if (!(azimuth >= -360 - angle_guard_deg && azimuth <= 360 + angle_guard_deg))
+      refuse(member("directions", k) + ": azimuth in degrees", azimuth, "from -360 to 360");
+  }
+  for (std::size_t k = 0; k < scanner.times_s.size(); ++k) {
+    const double time = scanner.times_s[k], before = k > 0 ? scanner.times_s[k - 1] : 0;
+    if (!(std::isfinite(time) && time >= before))
+      refuse(member("times_s", k), time, "finite and at least the time before it, " + ten_digits(before));
+  }
+  const double step = listed_step(directions);
+  for (const Angle& own : {scanner.azimuth_step, scanner.zenith_step})
+    if (!(std::abs(own.in_radians() / step - 1) <= step_guard))
+      refuse("a step in degrees", own.in_degrees(),
+             "the mean step of directions, " + ten_digits(step * 180 / std::numbers::pi) +
+                 ", as set_directions() sets it");
+  const ListedField field = field_of(directions);
+  const double first = scanner.zenith_start.in_radians(), last = first + scanner.vertical_angle.in_radians() / 2;
+  if (field.first < first - angle_guard_deg || field.last > last + angle_guard_deg ||
+      2 * field.aside > scanner.horizontal_angle.in_radians() + angle_guard_deg)
+    throw Error(Errc::invalid_argument, "scanner: directions must lie in the field, which set_directions() sets");
+}
+
+// Of rows that are not all one step apart.
+double mean_step(const std::vector<Angle>& rows) {
+  return (rows.back().in_radians() - rows.front().in_radians()) / static_cast<double>(rows.size() - 1);
+}
+
+void check_rows(const Scanner& scanner) {
+  const std::vector<Angle>& rows = scanner.row_zeniths;
+  if (static_cast<double>(rows.size()) > max_steps)
+    refuse("the number of row_zeniths", static_cast<double>(rows.size()), "at most 2^24");
+  const double first = scanner.zenith_start.in_degrees(), last = first + scanner.vertical_angle.in_degrees() / 2;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double zenith = rows[i].in_degrees();
+    const std::string member = "row_zeniths[" + std::to_string(i) + "] in degrees";
+    if (!(zenith >= 0 && zenith <= 180 + angle_guard_deg)) refuse(member, zenith, "from 0 to 180");
+    if (i > 0 && !(rows[i - 1] < rows[i]))
+      refuse(member, zenith, "above the zenith before it, " + ten_digits(rows[i - 1].in_degrees()));
+  }
+  if (rows.front().in_degrees() < first - angle_guard_deg || rows.back().in_degrees() > last + angle_guard_deg)
+    throw Error(Errc::invalid_argument, "scanner: row_zeniths from " + ten_digits(rows.front().in_degrees()) + " to " +
+                                            ten_digits(rows.back().in_degrees()) +
+                                            " degrees must lie in the vertical field, " + ten_digits(first) + " to " +
+                                            ten_digits(last) + ", which set_row_zeniths() sets");
+  if (rows.size() > 1 && !(std::abs(mean_step(rows) / scanner.zenith_step.in_radians() - 1) <= step_guard))
+    refuse("zenith_step in degrees", scanner.zenith_step.in_degrees(),
+           "the mean step of row_zeniths, " + ten_digits(mean_step(rows) * 180 / std::numbers::pi) +
+               ", as set_row_zeniths() sets it");
 }
 
 void check_noise(const NoiseTable& noise) {
@@ -67,19 +162,72 @@ void check_noise(const NoiseTable& noise) {
 
 }  // namespace
 
-std::uint32_t Scanner::rows() const { return static_cast<std::uint32_t>(steps(zenith_sweep(*this), zenith_step)); }
+std::uint32_t Scanner::rows() const {
+  if (!directions.empty()) return static_cast<std::uint32_t>(directions.size());
+  return row_zeniths.empty() ? static_cast<std::uint32_t>(steps(zenith_sweep(*this), zenith_step))
+                             : static_cast<std::uint32_t>(row_zeniths.size());
+}
 
-std::uint32_t Scanner::columns() const { return static_cast<std::uint32_t>(steps(horizontal_angle, azimuth_step)); }
+std::uint32_t Scanner::columns() const {
+  return directions.empty() ? static_cast<std::uint32_t>(steps(horizontal_angle, azimuth_step)) : 1;
+}
 
 RayAngles Scanner::angles(std::uint64_t ray) const {
+  if (!directions.empty())
+    return {directions[ray].zenith, Angle::radians(heading.in_radians() + directions[ray].azimuth.in_radians())};
   const double row = static_cast<double>(ray / columns()), column = static_cast<double>(ray % columns());
-  return {Angle::radians(zenith_start.in_radians() + (row + 0.5) * zenith_step.in_radians()),
+  return {row_zeniths.empty() ? Angle::radians(zenith_start.in_radians() + (row + 0.5) * zenith_step.in_radians())
+                              : row_zeniths[ray / columns()],
           Angle::radians(heading.in_radians() - 0.5 * horizontal_angle.in_radians() +
                          (column + 0.5) * azimuth_step.in_radians())};
 }
 
+double Scanner::time_s(std::uint64_t ray) const {
+  return times_s.empty() ? static_cast<double>(ray) / points_per_second : times_s[ray];
+}
+
+double Scanner::seconds() const {
+  return times_s.empty() ? static_cast<double>(rays()) / points_per_second : times_s.back();
+}
+
+void Scanner::set_steps(Angle azimuth, Angle zenith) {
+  if (!directions.empty())
+    throw Error(Errc::invalid_argument, "the scanner \"" + name + "\" has a list of directions, which have no step");
+  azimuth_step = azimuth;
+  if (row_zeniths.empty()) zenith_step = zenith;
+}
+
+void Scanner::set_row_zeniths(std::vector<Angle> zeniths) {
+  row_zeniths = std::move(zeniths);
+  if (row_zeniths.empty()) return;
+  zenith_start = row_zeniths.front();
+  vertical_angle = Angle::radians(2 * (row_zeniths.back().in_radians() - zenith_start.in_radians()));
+  if (row_zeniths.size() > 1) {
+    zenith_step = Angle::radians(mean_step(row_zeniths));
+  } else {
+    const double step = azimuth_step.in_radians();
+    zenith_start = Angle::radians(std::clamp(zenith_start.in_radians() - step / 2, 0.0, std::numbers::pi - step));
+    vertical_angle = Angle::radians(2 * step), zenith_step = azimuth_step;
+  }
+}
+
+void Scanner::set_directions(std::vector<RayAngles> taken, std::vector<double> taken_s) {
+  directions = std::move(taken), times_s = std::move(taken_s);
+  if (directions.empty()) return;
+  const ListedField field = field_of(directions);
+  const double step = listed_step(directions), tall = std::max(field.last - field.first, step),
+               wide = std::max(2 * field.aside, step);
+  zenith_start = Angle::radians(std::clamp(field.first, 0.0, std::numbers::pi - tall));
+  vertical_angle = Angle::radians(2 * tall), horizontal_angle = Angle::radians(wide);
+  azimuth_step = zenith_step = Angle::radians(step);
+}
+
 void Scanner::check() const {
   if (!std::isfinite(heading.in_degrees())) refuse("heading in degrees", heading.in_degrees(), "finite");
+  if (directions.empty() && !times_s.empty())
+    refuse("the number of times_s", static_cast<double>(times_s.size()), "0 without directions");
+  if (!directions.empty()) check_directions(*this);
+  if (!row_zeniths.empty()) check_rows(*this);
   const double horizontal = horizontal_angle.in_degrees(), vertical = vertical_angle.in_degrees();
   if (!(horizontal > 0 && horizontal <= 360 + angle_guard_deg))
     refuse("horizontal_angle in degrees", horizontal, "in (0, 360]");

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "core/hash.hpp"
 #include "core/setting_list.hpp"
 #include "core/setting_table.hpp"
 #include "vantage/simulator.hpp"
@@ -26,6 +27,12 @@ Settings settings(const Scanner& scanner) {
                                            {"sigma_m", scanner.noise.sigma_m}})
       .add("beam_divergence_mrad", scanner.beam_divergence.in_radians() * 1e3, {"beam"})
       .add("exit_diameter_mm", scanner.exit_diameter_m * 1e3, {"beam"});
+  if (!scanner.row_zeniths.empty()) list.add("row_zeniths_deg", scanner.row_zeniths);
+  if (!scanner.directions.empty()) {  // too many to list
+    Hash hash;
+    hash.add_all(scanner.directions), hash.add_all(scanner.times_s);
+    list.add("directions", nlohmann::ordered_json{{"rays", scanner.directions.size()}, {"hash", hash.value()}});
+  }
   if (scanner.angle_accuracy.in_radians() > 0 || scanner.range_accuracy_m > 0 || scanner.range_accuracy_ppm > 0)
     list.add("angle_accuracy_arcsec", scanner.angle_accuracy.in_degrees() * 3600, {"calibration"})
         .add("range_accuracy_mm", scanner.range_accuracy_m * 1e3, {"calibration"})

@@ -53,7 +53,7 @@ Scanner site_scanner(const SiteOptions& options, double scale) {
     scanner = load_scanner(*options.scanner, own_presets_file());
     scanner.height_m = height;
   }
-  if (options.steps) scanner.azimuth_step = (*options.steps)[0], scanner.zenith_step = (*options.steps)[1];
+  if (options.steps) scanner.set_steps((*options.steps)[0], (*options.steps)[1]);
   const auto take = [](auto& value, const auto& given) {
     if (given) value = *given;
   };

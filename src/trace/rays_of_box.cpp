@@ -24,6 +24,15 @@ constexpr double angle_pad = 0x1p-20;
           static_cast<std::uint32_t>(std::min(end, static_cast<double>(count)))};
 }
 
+// Rows whose zeniths lie in [low, high].
+[[gnu::always_inline]] inline RayRanges::Range rows_of(const RayPattern& pattern, double low, double high) {
+  if (pattern.zeniths.empty()) return indices(low, high, pattern.first_zenith, pattern.zenith_step, pattern.rows());
+  const auto begin = std::ranges::lower_bound(pattern.zeniths, low),
+             end = std::ranges::upper_bound(pattern.zeniths, high);
+  return {static_cast<std::uint32_t>(begin - pattern.zeniths.begin()),
+          static_cast<std::uint32_t>(end - pattern.zeniths.begin())};
+}
+
 // Columns whose azimuths lie in [begin, begin + width], modulo a turn.
 [[gnu::always_inline]] inline std::array<RayRanges::Range, 2> columns_of(const RayPattern& pattern, double begin,
                                                                          double width) {
@@ -36,6 +45,37 @@ constexpr double angle_pad = 0x1p-20;
   // Both ends of nearly a full turn, or a pattern of more than a turn: one range.
   if (!first.empty() && second.end > first.begin) return {{{0, columns}, {}}};
   return {first, second};
+}
+
+// Angles of a box, widened.
+[[gnu::always_inline]] inline AngleWindow window_of_box(const Vec3& low, const Vec3& high) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
+  const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
+  const double r = std::sqrt(cx * cx + cy * cy);
+  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
+  const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
+  if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
+    if (low.z <= 0 && high.z >= 0) return {-angle_pad, std::numbers::pi + angle_pad, 0, kTurn};
+    const double far = r + std::sqrt(hx * hx + hy * hy);
+    const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
+                 most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
+    return {least - angle_pad, most + angle_pad, 0, kTurn};
+  }
+  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
+  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
+  const double radial = (along + across) / r;
+  const double distance = std::sqrt(r * r + cz * cz);
+  const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
+  const double rise = (std::abs(cz) * radial + r * hz) / distance;
+  AngleWindow window{-angle_pad, std::numbers::pi + angle_pad, 0, 0};
+  if (depth > 0) {
+    const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
+    window.least_zenith = zenith - half, window.most_zenith = zenith + half;
+  }
+  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + angle_pad;
+  window.azimuth = azimuth - half, window.width = 2 * half;
+  return window;
 }
 
 // Turns a box's middle into the scanner's frame, and the half extents into those of an enclosing box. Rounding of the
@@ -72,8 +112,7 @@ void turn_back(const Turn& turn, BoxBatch& boxes) {
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
                        double width) {
   RayRanges ranges;
-  ranges.rows = indices(least_zenith - angle_pad, most_zenith + angle_pad, pattern.first_zenith, pattern.zenith_step,
-                        pattern.rows());
+  ranges.rows = rows_of(pattern, least_zenith - angle_pad, most_zenith + angle_pad);
   if (width + 2 * angle_pad >= 2 * std::numbers::pi) {
     ranges.columns[0] = {0, pattern.columns()};
   } else {
@@ -86,48 +125,22 @@ double rounding_pad(double reach) { return 0x1p-20 * reach; }
 
 VANTAGE_TARGET_CLONES
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high) {
-  const std::uint32_t rows = pattern.rows(), columns = pattern.columns();
-  const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
-  const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
-  const double r = std::sqrt(cx * cx + cy * cy);
-  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
-  const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
+  const AngleWindow window = window_of_box(low, high);
   RayRanges ranges;
-  if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
-    ranges.columns[0] = {0, columns};
-    if (low.z <= 0 && high.z >= 0) {
-      ranges.rows = {0, rows};
-      return ranges;
-    }
-    const double far = r + std::sqrt(hx * hx + hy * hy);
-    const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
-                 most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
-    ranges.rows = indices(least - angle_pad, most + angle_pad, pattern.first_zenith, pattern.zenith_step, rows);
-    return ranges;
-  }
-  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
-  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
-  const double radial = (along + across) / r;
-  const double distance = std::sqrt(r * r + cz * cz);
-  const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
-  const double rise = (std::abs(cz) * radial + r * hz) / distance;
-  if (depth > 0) {
-    const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
-    ranges.rows = indices(zenith - half, zenith + half, pattern.first_zenith, pattern.zenith_step, rows);
-  } else {
-    ranges.rows = {0, rows};
-  }
+  ranges.rows = rows_of(pattern, window.least_zenith, window.most_zenith);
   if (ranges.rows.empty()) return ranges;
-  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + angle_pad;
-  if (half >= std::numbers::pi) {
-    ranges.columns[0] = {0, columns};
+  if (window.width >= 2 * std::numbers::pi) {
+    ranges.columns[0] = {0, pattern.columns()};
   } else {
-    ranges.columns = columns_of(pattern, azimuth - half, 2 * half);
+    ranges.columns = columns_of(pattern, window.azimuth, window.width);
   }
   return ranges;
 }
 
-// As rays_of_box() for boxes that neither surround the axis nor cross the seam; branch-free.
+VANTAGE_TARGET_CLONES
+AngleWindow angles_of_box(const Vec3& low, const Vec3& high) { return window_of_box(low, high); }
+
+// As rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
 VANTAGE_TARGET_CLONES
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -138,6 +151,10 @@ void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
     return static_cast<std::int32_t>(std::min(count, std::max(0.0, index)));
   };
   const std::uint32_t n = boxes.size;
+  if (!pattern.zeniths.empty()) {  // rows that must be looked up, one box after the other
+    std::fill_n(boxes.simple, n, 0);
+    return;
+  }
   for (std::uint32_t i = 0; i < n; ++i) {
     const double cx = boxes.x[i], cy = boxes.y[i], cz = boxes.z[i];
     const double hx = boxes.half_x[i], hy = boxes.half_y[i], hz = boxes.half_z[i];

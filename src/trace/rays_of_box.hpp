@@ -21,9 +21,12 @@ struct RayRanges {
   bool empty() const { return rows.empty() || (columns[0].empty() && columns[1].empty()); }
 };
 
-// `low` and `high`: corners of the box relative to the head. Bounds are widened by more than the rounding of
-// directions.
+// `low` and `high`: corners of the box relative to the head. REQUIRES: the pattern is no list. Bounds are widened by
+// more than the rounding of directions.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
+
+// As much, in angles: for patterns that are a list.
+AngleWindow angles_of_box(const Vec3& low, const Vec3& high);
 
 // Rays with a zenith between two and an azimuth in [azimuth, azimuth + width], radians; widened likewise.
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,

@@ -471,7 +471,7 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
     patch.point = {surface.point.x, surface.point.y, surface.point.z};
     patch.normal = {surface.normal.x, surface.normal.y, surface.normal.z};
     patch.diffuse = surface.diffuse;
-    patch.rays = static_cast<float>(surface.area / (pattern.zenith_step * pattern.azimuth_step));
+    patch.rays = static_cast<float>(surface.area / pattern.cell());
     patch.least = static_cast<float>(points_of_a_plane * surface.area / (model.patch_m * model.patch_m));
     if (surface.share >= least_share && surface.area >= least_area * face)
       patch.variance = static_cast<float>(floor / surface.area);

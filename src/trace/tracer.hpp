@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "trace/direction_list.hpp"
 #include "trace/pass_field.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/trace.hpp"
@@ -24,16 +25,34 @@ namespace vantage {
 
 // Directions of all rays in the scanner's frame, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
 // sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are computed in double and rounded once, so the result does
-// not depend on an engine's sine.
+// not depend on an engine's sine. Or a list of directions that are no grid, with a row for each and one column.
 struct RayPattern {
-  std::vector<float> sin_zenith, cos_zenith;    // rows
-  std::vector<float> sin_azimuth, cos_azimuth;  // columns
+  std::vector<float> sin_zenith, cos_zenith;       // rows
+  std::vector<float> sin_azimuth, cos_azimuth;     // columns
+  std::shared_ptr<const DirectionList> list = {};  // has the azimuths of a list's rays; null: a grid
   // rays start at min_range and end at max_range, as in the paper: anything nearer is ignored
   float min_range = 0, max_range = 0;
-  double zenith_step = 0, azimuth_step = 0;    // radians; used by the inverse, rays_of_box()
+  // Radians; used by the inverse, rays_of_box(). Rows that are not all one step apart have no zenith_step, and their
+  // zeniths, ascending, are listed.
+  double zenith_step = 0, azimuth_step = 0;
+  std::vector<double> zeniths = {};
   double first_zenith = 0, first_azimuth = 0;  // of ray (0, 0)
   std::uint32_t rows() const { return static_cast<std::uint32_t>(sin_zenith.size()); }
   std::uint32_t columns() const { return static_cast<std::uint32_t>(sin_azimuth.size()); }
+  Float3 direction(std::uint64_t row, std::uint64_t column) const {
+    const float sine = sin_zenith[row];
+    if (list) return {sine * list->cos_azimuth[row], sine * list->sin_azimuth[row], cos_zenith[row]};
+    return {sine * cos_azimuth[column], sine * sin_azimuth[column], cos_zenith[row]};
+  }
+  // Angle between two rows.
+  double rows_apart(std::uint32_t upper, std::uint32_t lower) const {
+    return zeniths.empty() ? (lower - upper) * zenith_step : zeniths[lower] - zeniths[upper];
+  }
+  // Steps of zenith and azimuth, multiplied; those of uneven rows and of lists are taken as even.
+  double cell() const {
+    if (zeniths.size() < 2) return (zenith_step > 0 ? zenith_step : azimuth_step) * azimuth_step;
+    return (zeniths.back() - zeniths.front()) / static_cast<double>(zeniths.size() - 1) * azimuth_step;
+  }
 };
 
 // Algorithm 1: σ by bilinear look-up over normalised distance (columns) and reflectivity (rows), both in [0, 1], step
@@ -205,7 +224,8 @@ class Tracer {
   double goal_density_ = 1;
 };
 
-// Builds the engine named by `engine`; choose_engine.hpp resolves `automatic`. A Vulkan engine that fails with its
+// Builds the engine named by `engine`; choose_engine.hpp resolves `automatic`, except that lists of directions are
+// traced on processors. A Vulkan engine that fails with its
 // device is set up anew, with a call to `warn`. Throws Error no_suitable_device with every refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn = {});

@@ -42,18 +42,35 @@ TraceScanner second_scanner(bool noisy) {
           std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711))};
 }
 
+// Uneven rows, one alone far above, several within a step of the others, and an asymmetric field.
+TraceScanner uneven_scanner(bool noisy) {
+  TraceScanner scanner = second_scanner(noisy);
+  Scanner rows;
+  rows.horizontal_angle = Angle::degrees(311);
+  rows.azimuth_step = Angle::degrees(0.5);
+  rows.heading = Angle::degrees(75);
+  rows.min_range_m = 0.3, rows.max_range_m = 11;
+  std::vector<Angle> zeniths{Angle::degrees(4.5)};
+  for (double zenith = 41; zenith < 161; zenith += 0.3 + 1.3 * std::abs(std::sin(zenith)))
+    zeniths.push_back(Angle::degrees(zenith));
+  rows.set_row_zeniths(zeniths);
+  scanner.pattern = std::make_shared<const RayPattern>(make_pattern(rows));
+  return scanner;
+}
+
 TraceScene scene_of(const TestSite& site, bool noisy) {
   TraceScene scene = site.trace_scene(noisy);
   scene.scanners.push_back(second_scanner(noisy));
+  scene.scanners.push_back(uneven_scanner(noisy));
   return scene;
 }
 
-// Upright and turned stations of both scanners.
+// Upright and turned stations of all scanners.
 std::vector<TraceStation> stations_of(const TestSite& site) {
   std::vector<TraceStation> stations = site.stations;
   stations.resize(4);
   stations[0].turn = turned(-20, 90);
-  stations[1].scanner = 1;
+  stations[1].scanner = 2;
   stations[2].turn = turned(37, 0);
   stations[3].scanner = 1;
   stations[3].turn = turned(200, 31);
@@ -70,7 +87,7 @@ std::vector<TraceStation> random_stations(const TestSite& site, std::uint32_t n,
   std::vector<TraceStation> stations;
   for (std::uint32_t i = 0; i < n; ++i) {
     TraceStation station{
-        {within(box.min.x, box.max.x), within(box.min.y, box.max.y), within(box.min.z, box.max.z)}, i, i % 2};
+        {within(box.min.x, box.max.x), within(box.min.y, box.max.y), within(box.min.z, box.max.z)}, i, i % 3};
     if (i % 5 != 4) station.turn = turned(360 * random.uniform(), 180 * random.uniform());
     stations.push_back(station);
   }

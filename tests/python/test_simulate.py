@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 import gc
+import pickle
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 import vantage
@@ -148,6 +151,64 @@ class Scans(unittest.TestCase):
         with self.assertRaises(vantage.Error) as raised:
             simulator.scan((np.nan, 0, 0))
         self.assertEqual(raised.exception.code, "invalid_argument")
+
+
+class OwnPatterns(unittest.TestCase):
+    def scan(self, **members):
+        scene = vantage.Scene.from_triangles(*wall(), diffuse=DIFFUSE)
+        scanner = vantage.Scanner(**members)
+        return scanner, vantage.Simulator(scene, scanner, engine="embree").scan([0, 0, 0], ["position"])
+
+    def check(self, azimuth, zenith, scan):
+        """Against the closed form: a ray hits the plane y = 3 at 3 / (sin zenith sin azimuth)."""
+        rays = np.column_stack([np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)])
+        with np.errstate(divide="ignore"):
+            at = 3 / rays[:, 1]
+        points = rays * at[:, None]
+        hits = (at > 0) & (np.abs(points[:, 0]) <= 2) & (np.abs(points[:, 2]) <= 1)
+        self.assertGreater(hits.sum(), 20)
+        np.testing.assert_allclose(scan.position, points[hits], atol=1e-5)
+        return np.nonzero(hits)[0]
+
+    def test_uneven_rows(self):
+        zeniths = [71.3, 72, 77, 88.9, 89, 89.2, 104, 130]
+        scanner, scan = self.scan(azimuth_step_deg=0.5, row_zeniths_deg=zeniths)
+        self.assertEqual((scanner.rows, scanner.columns), (8, 720))
+        self.assertAlmostEqual(scanner.zenith_start_deg, 71.3)
+        self.assertAlmostEqual(scanner.zenith_step_deg, 58.7 / 7)
+        np.testing.assert_allclose(scanner.row_zeniths_deg, zeniths)
+        azimuth, zenith = np.meshgrid(np.radians(-180 + (np.arange(720) + 0.5) * 0.5), np.radians(zeniths))
+        rays = self.check(azimuth.ravel(), zenith.ravel(), scan)
+        np.testing.assert_array_equal(scan.row, rays // 720)
+        with self.assertRaisesRegex(vantage.Error, "above the zenith before it"):
+            vantage.Scanner(row_zeniths_deg=[3, 2]).check()
+
+    def test_directions_in_their_order(self):
+        angle = 0.37 * np.arange(5000)
+        directions = np.column_stack([90 + 40 * np.sin(angle), 30 * np.sin(0.713 * angle)])
+        times = 1e-5 * np.arange(5000)
+        scanner, scan = self.scan(directions_deg=directions, times_s=times)
+        self.assertEqual((scanner.rows, scanner.columns), (5000, 1))
+        np.testing.assert_allclose(scanner.directions_deg, directions)
+        rays = self.check(np.radians(directions[:, 0]), np.radians(90 - directions[:, 1]), scan)
+        np.testing.assert_array_equal(scan.row, rays)
+        copy = pickle.loads(pickle.dumps(scanner))
+        np.testing.assert_array_equal(copy.times_s, times)
+        np.testing.assert_allclose(copy.directions_deg, directions)
+        for wrong, says in [({"directions_deg": [1, 2]}, "shape"), ({"times_s": [1.0]}, "without directions"),
+                            ({"directions_deg": [[0, 91]]}, "zenith in degrees is -1")]:
+            with self.assertRaisesRegex(vantage.Error, says):
+                vantage.Scanner(**wrong).check()
+
+    def test_a_file_of_directions(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "rosette.csv"
+            file.write_text("azimuth_deg,elevation_deg,time_s\n1,2,0\n3,-4,0.5\n")
+            directions, times = vantage.load_directions(file)
+            np.testing.assert_allclose(directions, [[1, 2], [3, -4]])
+            np.testing.assert_array_equal(times, [0, 0.5])
+            file.write_text("azimuth_deg,elevation_deg\n1,2\n")
+            self.assertIsNone(vantage.load_directions(file)[1])
 
 
 class Scanners(unittest.TestCase):

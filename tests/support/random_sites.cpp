@@ -167,6 +167,56 @@ RandomSite random_fine_site(std::uint64_t seed) {
   return with_scanner(random, seed, 0.2 * scale, builder.finish(), surveyed, place, 10);
 }
 
+namespace {
+
+// A scanner of the same ranges as the site's.
+Scanner scanner_of_ranges(const RandomSite& site) {
+  const RayPattern& pattern = *site.scene.scanners.front().pattern;
+  Scanner scanner;
+  scanner.min_range_m = static_cast<double>(pattern.min_range);
+  scanner.max_range_m = static_cast<double>(pattern.max_range);
+  return scanner;
+}
+
+}  // namespace
+
+RandomSite random_uneven_site(std::uint64_t seed) {
+  RandomStream random(seed, 3);
+  RandomSite site = random_site(seed);
+  Scanner scanner = scanner_of_ranges(site);
+  scanner.azimuth_step = Angle::degrees(0.5 + random.uniform());
+  scanner.horizontal_angle = Angle::degrees(seed % 2 == 0 ? 360 : 290);
+  scanner.heading = Angle::degrees(360 * random.uniform());
+  std::vector<Angle> zeniths;
+  for (double zenith = 30 * random.uniform(); zenith < 175; zenith += 0.01 + 3 * random.uniform() * random.uniform())
+    zeniths.push_back(Angle::degrees(zenith));
+  scanner.set_row_zeniths(zeniths);
+  site.scene.scanners.front().pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
+  return site;
+}
+
+RandomSite random_listed_site(std::uint64_t seed) {
+  RandomStream random(seed, 4);
+  RandomSite site = random_site(seed);
+  Scanner scanner = scanner_of_ranges(site);
+  scanner.heading = Angle::degrees(360 * random.uniform());
+  constexpr std::size_t kRays = 40'000;
+  std::vector<RayAngles> directions;
+  for (std::size_t k = 0; k < kRays; ++k) {
+    const double turn = static_cast<double>(k) * 0.0379;
+    RayAngles angles{Angle::radians(0.5 * std::numbers::pi * (1 - 0.96 * std::sin(0.617 * turn))),
+                     Angle::radians(std::remainder(turn, 2 * std::numbers::pi))};
+    if (k % 7 == 0)
+      angles = {Angle::radians(std::acos(2 * random.uniform() - 1)), Angle::degrees(720 * random.uniform() - 360)};
+    if (k % 11 == 0 && k > 0) angles = directions[random.bits() % directions.size()];
+    directions.push_back(angles);
+  }
+  directions[5] = {Angle::degrees(0), Angle::degrees(0)}, directions[6] = {Angle::degrees(180), Angle::degrees(10)};
+  scanner.set_directions(directions);
+  site.scene.scanners.front().pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
+  return site;
+}
+
 RandomSite random_placed_site(std::uint64_t seed) {
   RandomStream random(seed, 2);
   const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;

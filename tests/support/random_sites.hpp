@@ -18,6 +18,10 @@ struct RandomSite {
 // Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; seven heads
 // anywhere, also on surfaces.
 RandomSite random_site(std::uint64_t seed);
+// The same, seen by a scanner of uneven rows.
+RandomSite random_uneven_site(std::uint64_t seed);
+// The same, seen by a scanner whose rays form no grid: some aim anywhere, most along a curve, some twice.
+RandomSite random_listed_site(std::uint64_t seed);
 // A room with boards and slats, and a scanner of which thousands of rays may cross a voxel; some with normals that
 // lean.
 RandomSite random_fine_site(std::uint64_t seed);

@@ -230,8 +230,7 @@ std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) con
     for (std::uint32_t i = block / wide * block_side; i < std::min(rows, (block / wide + 1) * block_side); ++i) {
       for (std::uint32_t j = block % wide * block_side; j < std::min(columns, (block % wide + 1) * block_side); ++j) {
         // The float products are the definition of a direction, turned or not.
-        Float3 d{pattern.sin_zenith[i] * pattern.cos_azimuth[j], pattern.sin_zenith[i] * pattern.sin_azimuth[j],
-                 pattern.cos_zenith[i]};
+        Float3 d = pattern.direction(i, j);
         if (station.turn) d = turned(*station.turn, d);
         rays.emplace_back(std::uint64_t{i} * columns + j, widen(d));
         axis = axis + widen(d);

@@ -129,8 +129,10 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     const bool crosses_equator = pattern.cos_zenith[row_begin] > 0 && pattern.cos_zenith[row_end - 1] < 0;
     const double longest =
         crosses_equator ? 1 : std::max(pattern.sin_zenith[row_begin], pattern.sin_zenith[row_end - 1]);
-    const double radius = std::max(middle_row - row_begin, row_end - 1 - middle_row) * pattern.zenith_step +
-                          std::max(middle - begin, end - 1 - middle) * pattern.azimuth_step * longest + kConeDoubt;
+    const double tall =
+        std::max(pattern.rows_apart(row_begin, middle_row), pattern.rows_apart(middle_row, row_end - 1));
+    const double radius =
+        tall + std::max(middle - begin, end - 1 - middle) * pattern.azimuth_step * longest + kConeDoubt;
     const SeenCone cone{{d.x, d.y, d.z}, radius};
     const auto hide = [&] {
       for (std::uint32_t r = row; r < row + size; ++r)

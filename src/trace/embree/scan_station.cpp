@@ -166,8 +166,32 @@ void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std
   const RayPattern& pattern = rays.pattern();
   const auto first_row = static_cast<std::uint32_t>(first_ray / pattern.columns()),
              end_row = first_row + static_cast<std::uint32_t>(ray_count / pattern.columns());
-  const Picture::Tiles tiles{first_row / RayTile::side, (end_row - 1) / RayTile::side + 1};
+  const std::uint32_t rows = RayTile::rows_of(pattern);
+  const Picture::Tiles tiles{first_row / rows, (end_row - 1) / rows + 1};
   const Wanted wanted{chunk, outputs, first_ray};
+  const auto trace = [&](std::uint32_t a, std::uint32_t b, const Picture::Strip* strip, RayBundle& bundle,
+                         VoxelLookup& voxels) {
+    RayTile tile = tile_at(pattern, a, b);
+    const std::uint32_t end = std::min(tile.row + tile.rows, end_row);
+    tile.row = std::max(tile.row, first_row);
+    tile.rows = end - tile.row;
+    rays.gather(station, tile, pattern.max_range, bundle);
+    if (strip) {
+      picture->fill(*strip, tile, bundle);
+    } else {
+      rays.caster().cast(bundle);
+    }
+    fill_tile(rays, station, tile, bundle, voxels, wanted);
+  };
+  if (pattern.list) {  // one column of tiles
+    parallel::for_all(tbb::blocked_range<std::uint32_t>(tiles.first, tiles.end), [&](const auto& range) {
+      VoxelLookup voxels = rays.voxels();
+      RayBundle bundle;
+      for (std::uint32_t a = range.begin(); a < range.end(); ++a) trace(a, 0, nullptr, bundle, voxels);
+    });
+    if (end_row == pattern.rows()) view_.reset();
+    return;
+  }
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   parallel::for_all(tbb::blocked_range<std::uint32_t>(0, view_->ends.wide), [&](const auto& range) {
     VoxelLookup voxels = rays.voxels();
@@ -175,19 +199,7 @@ void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std
     Picture::Strip& strip = strips.local();
     for (std::uint32_t b = range.begin(); b < range.end(); ++b) {
       if (picture) picture->draw(b, tiles, strip);
-      for (std::uint32_t a = tiles.first; a < tiles.end; ++a) {
-        RayTile tile = tile_at(pattern, a, b);
-        const std::uint32_t end = std::min(tile.row + tile.rows, end_row);
-        tile.row = std::max(tile.row, first_row);
-        tile.rows = end - tile.row;
-        rays.gather(station, tile, pattern.max_range, bundle);
-        if (picture) {
-          picture->fill(strip, tile, bundle);
-        } else {
-          rays.caster().cast(bundle);
-        }
-        fill_tile(rays, station, tile, bundle, voxels, wanted);
-      }
+      for (std::uint32_t a = tiles.first; a < tiles.end; ++a) trace(a, b, picture ? &strip : nullptr, bundle, voxels);
     }
   });
   if (end_row == pattern.rows()) view_.reset();

@@ -22,11 +22,12 @@
 
 namespace vantage {
 
-// Rays that are traced together: at most `side` rows of as many columns.
+// Rays that are traced together: at most `side` rows of as many columns, or as many rows of a list.
 struct RayTile {
   static constexpr std::uint32_t side = 16;
   static_assert(side * side <= RayBundle::capacity);
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
+  static std::uint32_t rows_of(const RayPattern& pattern) { return pattern.list ? side * side : side; }
 };
 
 // The scene, common to all scanners.
@@ -102,8 +103,12 @@ class StationRays {
     rays.origin = station.origin;
     rays.start = p.min_range;
     rays.size = tile.rows * tile.columns;
-    const float *const cosines = p.cos_azimuth.data() + tile.column, *const sines = p.sin_azimuth.data() + tile.column;
+    const bool listed = p.list != nullptr;  // one column, whose azimuth is that of the row
+    const std::vector<float>&all_cosines = listed ? p.list->cos_azimuth : p.cos_azimuth,
+          &all_sines = listed ? p.list->sin_azimuth : p.sin_azimuth;
     for (std::uint32_t i = 0; i < tile.rows; ++i) {
+      const std::uint32_t azimuth = listed ? tile.row + i : tile.column;
+      const float *const cosines = all_cosines.data() + azimuth, *const sines = all_sines.data() + azimuth;
       const float sine = p.sin_zenith[tile.row + i], cosine = p.cos_zenith[tile.row + i];
       float* __restrict const x = rays.x + i * tile.columns;
       float* __restrict const y = rays.y + i * tile.columns;

@@ -10,7 +10,8 @@
 namespace vantage {
 namespace {
 
-std::uint32_t tiles_across(std::uint32_t rays) { return (rays + RayTile::side - 1) / RayTile::side; }
+std::uint32_t tiles_across(std::uint32_t rays, std::uint32_t side = RayTile::side) { return (rays + side - 1) / side; }
+std::uint32_t tiles_down(const RayPattern& pattern) { return tiles_across(pattern.rows(), RayTile::rows_of(pattern)); }
 
 void raise(float& value, float to) {
   const std::atomic_ref<float> shared(value);
@@ -22,14 +23,15 @@ void raise(float& value, float to) {
 }  // namespace
 
 RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b) {
-  RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
-  tile.rows = std::min(RayTile::side, pattern.rows() - tile.row);
+  const std::uint32_t rows = RayTile::rows_of(pattern);
+  RayTile tile{a * rows, b * RayTile::side, 0, 0};
+  tile.rows = std::min(rows, pattern.rows() - tile.row);
   tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
   return tile;
 }
 
 TileEnds all_tiles(const RayPattern& pattern) {
-  TileEnds ends{tiles_across(pattern.rows()), tiles_across(pattern.columns()), {}};
+  TileEnds ends{tiles_down(pattern), tiles_across(pattern.columns()), {}};
   ends.end.assign(std::size_t{ends.tall} * ends.wide, pattern.max_range);
   return ends;
 }
@@ -38,10 +40,11 @@ TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station)
   const RayPattern& pattern = rays.pattern();
   const VoxelGrid& grid = rays.grid();
   const double reach = static_cast<double>(rays.noise().reach());
+  if (pattern.list) return all_tiles(pattern);  // neighbours in a list may look anywhere
   // If noise may carry a point through the head to its other side, the rays of that side are needed.
   if (reach > 0 && reach >= static_cast<double>(pattern.min_range)) return all_tiles(pattern);
 
-  TileEnds tiles{tiles_across(pattern.rows()), tiles_across(pattern.columns()), {}};
+  TileEnds tiles{tiles_down(pattern), tiles_across(pattern.columns()), {}};
   const std::uint32_t wide = tiles.wide;
   std::vector<float>& ends = tiles.end;
   ends.assign(std::size_t{tiles.tall} * wide, 0.0f);

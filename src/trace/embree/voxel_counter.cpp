@@ -90,6 +90,10 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     find_windows();
     for (std::size_t k = 0; k < looks_.size(); ++k) {
       const Look& each = looks_[k];
+      if (rays_->pattern().list) {
+        list_directions(k);
+        continue;
+      }
       const RayRanges window = window_of(k);
       if (window.empty()) continue;
       // What stands before the middle mostly hides more than that.
@@ -189,7 +193,10 @@ bool SampledVoxelCounter::hides(std::uint32_t triangle, const Box& box) {
 bool SampledVoxelCounter::any_ray_near(const Vec3& point, double radius) const {
   Vec3 low = point - Vec3{radius, radius, radius}, high = point + Vec3{radius, radius, radius};
   if (station_->turn) turn_back(*station_->turn, low, high);
-  return !rays_of_box(rays_->pattern(), low, high).empty();
+  if (!rays_->pattern().list) return !rays_of_box(rays_->pattern(), low, high).empty();
+  bool any = false;
+  rays_->pattern().list->each_near(angles_of_box(low, high), [&](std::span<const std::uint32_t>) { any = true; });
+  return any;
 }
 
 bool SampledVoxelCounter::is_hidden(const SeenBox& box) {
@@ -231,7 +238,7 @@ void SampledVoxelCounter::find_windows() {
     along(z_[i], hits.min.z, hits.max.z, reach, boxes_.z[k], boxes_.half_z[k]);
   }
   if (station_->turn) turn_back(*station_->turn, boxes_);
-  rays_of_boxes(rays_->pattern(), boxes_);
+  if (!rays_->pattern().list) rays_of_boxes(rays_->pattern(), boxes_);
 }
 
 RayRanges SampledVoxelCounter::window_of(std::size_t k) const {
@@ -480,6 +487,33 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   }
   fill_nearest(planes, cube);
   list_batch(rays);
+  end_rays(rays);
+}
+
+// Lists the rays of a list of directions that may leave a point in the voxel of looks_[k].
+void SampledVoxelCounter::list_directions(std::size_t k) {
+  const RayPattern& pattern = rays_->pattern();
+  const Look& look = looks_[k];
+  const std::span<const Ahead> planes = planes_of(look);
+  VoxelRays rays{.voxel = look.voxel,
+                 .begin = listed_size_,
+                 .farthest = std::min(look.cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
+                 .occluder = look.occluder};
+  const auto list_some = [&] {
+    fill_nearest(planes, look.cube);
+    list_batch(rays);
+  };
+  const Vec3 middle{boxes_.x[k], boxes_.y[k], boxes_.z[k]}, half{boxes_.half_x[k], boxes_.half_y[k], boxes_.half_z[k]};
+  pattern.list->each_near(angles_of_box(middle - half, middle + half), [&](std::span<const std::uint32_t> near) {
+    for (const std::uint32_t ray : near) {
+      const Float3 d = pattern.direction(ray, 0);
+      const std::uint32_t slot = batch_.size++;
+      batch_.x[slot] = d.x, batch_.y[slot] = d.y, batch_.z[slot] = d.z;
+      batch_.row[slot] = ray, batch_.column[slot] = 0;
+      if (batch_.size == RayBatch::capacity) list_some();
+    }
+  });
+  list_some();
   end_rays(rays);
 }
 

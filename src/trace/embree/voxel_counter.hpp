@@ -124,6 +124,7 @@ class SampledVoxelCounter {
   std::uint32_t wanted(std::uint32_t i) const;
   RayRanges window_of(std::size_t k) const;
   void list_rays(Rest rest, std::uint32_t enough);
+  void list_directions(std::size_t k);
   Tiles find_hidden(const Look& look, const RayRanges& window);
   std::span<const Ahead> planes_of(const Look& look);
   void fill_nearest(std::span<const Ahead> planes, const Cube& cube);

@@ -19,6 +19,9 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       set_(device, block_, structure) {
   const RayPattern& pattern = *scanner.pattern;
+  if (pattern.list)
+    throw Error(Errc::invalid_argument,
+                "the scanner's directions are a list, which this engine cannot count: use the engine embree");
   if (pattern.rows() > most_groups * block_rows || std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1}
                                                                                                             << 31)
     throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(pattern.rows()) + " x " +

@@ -12,8 +12,8 @@ namespace vantage::vulkan {
 
 class DeviceScanner {
  public:
-  // Throws Error invalid_argument if the pattern has 2^31 rays or more. `structure`: acceleration structure for ray
-  // queries, or null; it must outlive this.
+  // Throws Error invalid_argument if the pattern is a list, or has 2^31 rays or more. `structure`: acceleration
+  // structure for ray queries, or null; it must outlive this.
   DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
                 const TraceScanner& scanner);
 

@@ -59,6 +59,19 @@ const std::vector<Change<Scanner>> kScanner{
     {"zenith_start", [](Scanner& s) { s.zenith_start = Angle::degrees(30); }},
     {"azimuth_step", [](Scanner& s) { s.azimuth_step = Angle::degrees(4); }},
     {"zenith_step", [](Scanner& s) { s.zenith_step = Angle::degrees(4); }},
+    {"row_zeniths",
+     [](Scanner& s) {
+       s.row_zeniths = {Angle::degrees(70), Angle::degrees(80)};
+     }},
+    {"directions",
+     [](Scanner& s) {
+       s.directions = {{Angle::degrees(70), Angle::degrees(3)}};
+     }},
+    {"times_s",
+     [](Scanner& s) {
+       s.directions = {{Angle::degrees(70), Angle::degrees(3)}};
+       s.times_s = {0.5};
+     }},
     {"height_m", [](Scanner& s) { s.height_m = 2; }},
     {"min_range_m", [](Scanner& s) { s.min_range_m = 0.2; }},
     {"max_range_m", [](Scanner& s) { s.max_range_m = 99; }},
@@ -72,7 +85,7 @@ const std::vector<Change<Scanner>> kScanner{
     {"range_accuracy_ppm", [](Scanner& s) { s.range_accuracy_ppm = 10; }},
     {"tilt_accuracy", [](Scanner& s) { s.tilt_accuracy = Angle::degrees(0.05); }, false},  // the registration's decides
     {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
-static_assert(member_count<Scanner>() == 20);
+static_assert(member_count<Scanner>() == 23);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{

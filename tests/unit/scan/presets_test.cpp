@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "scan/noise_model.hpp"
@@ -30,11 +32,15 @@ TEST(Presets, HoldTheScannersOfTheTrade) {
     }
     const auto tells = [&](const char* text) { return preset.summary.find(text) != std::string::npos; };
     EXPECT_EQ(tells("no noise table: exact ranges"), preset.key == "zf5016") << preset.summary;
-    EXPECT_EQ(tells("one figure of noise"), preset.key == "x7" || preset.key == "vz-400i") << preset.summary;
+    const std::set<std::string> by_one_figure{"x7", "vz-400i", "mid-360", "os1", "vlp-16", "xt32"};
+    EXPECT_EQ(tells("one figure of noise"), by_one_figure.contains(preset.key)) << preset.summary;
+    EXPECT_EQ(tells("128 rows, zenith 67.5° to 112.5°"), preset.key == "os1") << preset.summary;
+    EXPECT_EQ(tells("600000 directions, zenith 38° to 97°"), preset.key == "mid-360") << preset.summary;
     EXPECT_EQ(tells("noise of 5 distances and 3 reflectivities"), preset.key == "rtc360") << preset.summary;
     EXPECT_NO_THROW(load_scanner(preset.key, presets).check());
   }
-  EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "measured-p-class", "rtc360", "vz-400i", "x7", "zf5016"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "measured-p-class", "mid-360", "os1", "rtc360", "vlp-16",
+                                            "vz-400i", "x7", "xt32", "zf5016"}));
 }
 
 // The table of the field check is its fit, and near what was measured: white at 5, 11 and 20 m, black at 5 and 20 m.
@@ -100,14 +106,99 @@ TEST(Presets, PixelsPerTurn) {
   EXPECT_EQ(load_scanner("zf5016@high", presets).columns(), 10000u);
 }
 
+// Rows are those of their makers' tables, of 360° around.
+TEST(Presets, SpinningScannersHaveUnevenRows) {
+  const struct {
+    const char* key;
+    std::uint32_t rows, columns;
+    double top, bottom;  // elevations
+  } cases[] = {{"vlp-16", 16, 1808, 15, -15},     {"vlp-16@5hz", 16, 3616, 15, -15}, {"vlp-16@20hz", 16, 904, 15, -15},
+               {"xt32", 32, 2000, 15, -16},       {"xt32@5hz", 32, 4000, 15, -16},   {"os1", 128, 2048, 22.5, -22.5},
+               {"os1@512", 128, 512, 22.5, -22.5}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.key);
+    const Scanner scanner = load_scanner(c.key, presets);
+    EXPECT_EQ(scanner.rows(), c.rows);
+    EXPECT_EQ(scanner.columns(), c.columns);
+    ASSERT_EQ(scanner.row_zeniths.size(), c.rows);
+    EXPECT_NEAR(90 - scanner.row_zeniths.front().in_degrees(), c.top, 1e-9);
+    EXPECT_NEAR(90 - scanner.row_zeniths.back().in_degrees(), c.bottom, 1e-9);
+    EXPECT_NEAR(scanner.zenith_start.in_degrees(), 90 - c.top, 1e-9);
+    EXPECT_NEAR(scanner.vertical_angle.in_degrees() / 2, c.top - c.bottom, 1e-9);
+    EXPECT_DOUBLE_EQ(scanner.horizontal_angle.in_degrees(), 360);
+  }
+  const Scanner puck = load_scanner("vlp-16", presets);
+  for (std::size_t k = 0; k < 16; ++k)
+    EXPECT_NEAR(puck.row_zeniths[k].in_degrees(), 75 + 2.0 * static_cast<double>(k), 1e-9);
+}
+
+TEST(Presets, ASweepIsAListOfDirectionsWithTimes) {
+  for (const double seconds : {1.0, 3.0}) {
+    const Scanner scanner = load_scanner(seconds == 1 ? "mid-360@1s" : "mid-360", presets);
+    const auto rays = static_cast<std::uint64_t>(2e5 * seconds);
+    ASSERT_EQ(scanner.rays(), rays);
+    EXPECT_EQ(scanner.columns(), 1u);
+    EXPECT_NEAR(scanner.seconds(), seconds, 1e-5);
+    EXPECT_DOUBLE_EQ(scanner.time_s(1000), 0.005);
+    double least = 90, most = -90, even = 0;
+    for (std::uint64_t ray = 0; ray < rays; ++ray) {
+      const double elevation = 90 - scanner.angles(ray).zenith.in_degrees();
+      least = std::min(least, elevation), most = std::max(most, elevation);
+      even += elevation < 22.5 ? 1 : 0;
+    }
+    EXPECT_NEAR(least, -7, 0.05);
+    EXPECT_NEAR(most, 52, 0.05);
+    EXPECT_NEAR(even / static_cast<double>(rays), 0.5, 0.01);
+    EXPECT_NEAR(scanner.horizontal_angle.in_degrees(), 360, 0.1);
+  }
+}
+
+TEST(Presets, DirectionsMayBeInAFileBesideTheScanners) {
+  std::ifstream in(presets);
+  auto document = nlohmann::json::parse(in);
+  auto mine = document["scanners"]["mid-360"];
+  mine["settings"] = {{"file", {{"directions_csv", "rosette.csv"}, {"source", "assumed"}}}};
+  mine["default_setting"] = "file";
+  document["scanners"] = {{"mine", mine}};
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "scanners.json") << document;
+  const auto load = [&](const std::string& table) {
+    std::ofstream(folder / "rosette.csv") << table;
+    return load_scanner("mine", folder / "scanners.json");
+  };
+  const Scanner scanner = load("# mine\r\nazimuth_deg, elevation_deg,time_s\r\n10,-5,0\n\n-30.5,45,0.25\n");
+  ASSERT_EQ(scanner.rays(), 2u);
+  EXPECT_DOUBLE_EQ(scanner.angles(1).zenith.in_degrees(), 45);
+  EXPECT_DOUBLE_EQ(scanner.angles(1).azimuth.in_degrees(), -30.5);
+  EXPECT_EQ(scanner.seconds(), 0.25);
+  EXPECT_EQ(load("azimuth_deg,elevation_deg\n350,90\n").seconds(), 1 / 200'000.0);
+  const std::pair<const char*, const char*> broken[] = {
+      {"azimuth,elevation\n1,2\n", "line 1: the header must be azimuth_deg,elevation_deg"},
+      {"azimuth_deg,elevation_deg\n", "holds no direction"},
+      {"azimuth_deg,elevation_deg\n1,2\n3\n", "line 3: must have 2 cells"},
+      {"azimuth_deg,elevation_deg\n1,nan\n", "line 2"},
+      {"azimuth_deg,elevation_deg\n1,91\n", "line 2"},
+      {"azimuth_deg,elevation_deg\n-361,1\n", "line 2"},
+      {"azimuth_deg,elevation_deg,time_s\n1,2,3\n1,2,2\n", "line 3: times must not fall"}};
+  for (const auto& [table, says] : broken) {
+    try {
+      load(table);
+      ADD_FAILURE() << "passed, but should say: " << says;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
+    }
+  }
+}
+
 // The beam of every preset is known, or marked as assumed.
 TEST(Presets, HaveABeam) {
   for (const ScannerPreset& preset : list_scanners(presets)) {
     const Scanner scanner = load_scanner(preset.key, presets);
     EXPECT_GT(scanner.beam_divergence.in_radians(), 1e-4) << preset.key;
-    EXPECT_LT(scanner.beam_divergence.in_radians(), 1e-3) << preset.key;
+    const bool grid = scanner.row_zeniths.empty() && scanner.directions.empty();
+    EXPECT_LT(scanner.beam_divergence.in_radians(), grid ? 1e-3 : 6e-3) << preset.key;
     EXPECT_GT(scanner.exit_diameter_m, 0.002) << preset.key;
-    EXPECT_LT(scanner.exit_diameter_m, 0.01) << preset.key;
+    EXPECT_LE(scanner.exit_diameter_m, 0.01) << preset.key;
   }
 }
 
@@ -135,7 +226,7 @@ TEST(Presets, NamesThatAreNotThereListWhatIs) {
     }
     return std::string("no error");
   };
-  EXPECT_NE(message("rtc3600").find("rtc360, vz-400i"), std::string::npos);
+  EXPECT_NE(message("rtc3600").find("rtc360, vlp-16, vz-400i"), std::string::npos);
   EXPECT_NE(message("rtc360@7mm").find("12mm, 3mm, 6mm"), std::string::npos);
   EXPECT_NE(message("rtc360@").find("must follow the @"), std::string::npos);
 }
@@ -163,6 +254,10 @@ TEST(Presets, BrokenFilesSayWhere) {
   const auto good = nlohmann::json::parse(in);
   const test::TemporaryFolder folder;
   const auto file = folder / "scanners.json";
+  const auto give_rows = [](nlohmann::json& d, const nlohmann::json& elevations) {
+    d["scanners"]["rtc360"].erase("vertical_angle_deg");
+    d["scanners"]["rtc360"]["elevations_deg"] = {{"value", elevations}, {"source", "assumed"}};
+  };
   const struct {
     const char* says;
     std::function<void(nlohmann::json&)> spoil;
@@ -182,6 +277,28 @@ TEST(Presets, BrokenFilesSayWhere) {
       {"noise_factor / value: must be above 0",
        [](auto& d) {
          d["scanners"]["rtc360"]["settings"]["6mm"]["noise_factor"] = {{"value", 0}, {"source", "assumed"}};
+       }},
+      {"leave out \"vertical_angle_deg\"",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["elevations_deg"] = {{"value", {1, 2}}, {"source", "assumed"}};
+       }},
+      {"must all rise or all fall",
+       [&](auto& d) {
+         give_rows(d, {1, 3, 2});
+       }},
+      {"must all rise or all fall",
+       [&](auto& d) {
+         give_rows(d, {3, 3});
+       }},
+      {"must be from -90 to 90",
+       [&](auto& d) {
+         give_rows(d, {3, 95});
+       }},
+      {"must have an elevation for each row", [&](auto& d) { give_rows(d, nlohmann::json::array()); }},
+      {"must be an array of numbers", [&](auto& d) { give_rows(d, {"high"}); }},
+      {"directions tell the field",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["settings"]["6mm"] = {{"directions_csv", "any.csv"}, {"source", "sheet"}};
        }},
       {"vertical_angle in degrees is 720",
        [](auto& d) { d["scanners"]["rtc360"]["vertical_angle_deg"]["value"] = 720; }},

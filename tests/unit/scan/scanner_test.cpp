@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -62,6 +64,79 @@ TEST(Scanner, DefaultAndPaperScannersPass) {
   EXPECT_NO_THROW(scanner.check());
 }
 
+std::vector<Angle> degrees(std::initializer_list<double> values) {
+  std::vector<Angle> angles;
+  for (const double value : values) angles.push_back(Angle::degrees(value));
+  return angles;
+}
+
+TEST(Scanner, UnevenRowsHaveTheirZeniths) {
+  Scanner scanner = with_step(0.5);
+  scanner.set_row_zeniths(degrees({61, 62.5, 90, 105}));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rows(), 4u);
+  EXPECT_EQ(scanner.columns(), 720u);
+  EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees(), 61);
+  EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, 105);
+  EXPECT_NEAR(scanner.zenith_step.in_degrees(), 44.0 / 3, 1e-12);
+  EXPECT_DOUBLE_EQ(scanner.angles(2 * 720 + 5).zenith.in_degrees(), 90);
+  EXPECT_EQ(scanner.angles(2 * 720 + 5).azimuth, with_step(0.5).angles(5).azimuth);
+  scanner.set_steps(Angle::degrees(1), Angle::degrees(1));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rays(), 4u * 360);
+  // A single row, even at a pole.
+  for (const double zenith : {0.0, 90.0, 180.0}) {
+    scanner.set_row_zeniths(degrees({zenith}));
+    EXPECT_NO_THROW(scanner.check());
+    EXPECT_EQ(scanner.rows(), 1u);
+    EXPECT_DOUBLE_EQ(scanner.angles(0).zenith.in_degrees(), zenith);
+  }
+  scanner.set_row_zeniths({});
+  EXPECT_EQ(scanner.rows(), 1u);
+  EXPECT_TRUE(scanner.row_zeniths.empty());
+}
+
+// Pairs of azimuth and zenith.
+std::vector<RayAngles> listed(std::initializer_list<std::array<double, 2>> pairs) {
+  std::vector<RayAngles> directions;
+  for (const auto& [azimuth, zenith] : pairs) directions.push_back({Angle::degrees(zenith), Angle::degrees(azimuth)});
+  return directions;
+}
+
+TEST(Scanner, AListOfDirectionsHasItsOrderAndTimes) {
+  Scanner scanner;
+  scanner.heading = Angle::degrees(100);
+  scanner.points_per_second = 10;
+  scanner.set_directions(listed({{350, 80}, {20, 60}, {-40, 95}, {20, 60}}));
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.rays(), 4u);
+  EXPECT_EQ(scanner.rows(), 4u);
+  EXPECT_EQ(scanner.columns(), 1u);
+  EXPECT_FALSE(scanner.one_step());
+  EXPECT_DOUBLE_EQ(scanner.angles(2).azimuth.in_degrees(), 60);
+  EXPECT_DOUBLE_EQ(scanner.angles(0).azimuth.in_degrees(), 450);
+  EXPECT_NEAR(scanner.zenith_start.in_degrees(), 60, 1e-12);
+  EXPECT_NEAR(scanner.vertical_angle.in_degrees(), 70, 1e-12);
+  EXPECT_NEAR(scanner.horizontal_angle.in_degrees(), 80, 1e-12) << "twice the largest distance from the heading";
+  EXPECT_NEAR(scanner.azimuth_step.in_degrees(), std::sqrt(35.0 * 80 / 4), 1e-9);
+  EXPECT_DOUBLE_EQ(scanner.seconds(), 0.4);
+  EXPECT_DOUBLE_EQ(scanner.time_s(3), 0.3);
+  EXPECT_THROW(scanner.set_steps(Angle::degrees(1), Angle::degrees(1)), Error);
+  scanner.set_directions(scanner.directions, {0, 0.5, 0.5, 2});
+  EXPECT_NO_THROW(scanner.check());
+  EXPECT_EQ(scanner.time_s(1), 0.5);
+  EXPECT_EQ(scanner.seconds(), 2);
+  // A point, and lines.
+  for (const auto& directions :
+       {listed({{0, 0}}), listed({{0, 180}}), listed({{180, 3}, {-180, 3}}), listed({{7, 3}, {7, 90}, {7, 180}})}) {
+    scanner.set_directions(directions);
+    EXPECT_NO_THROW(scanner.check());
+  }
+  scanner.set_directions({});
+  EXPECT_TRUE(scanner.times_s.empty());
+  EXPECT_NO_THROW(scanner.set_steps(Angle::degrees(1), Angle::degrees(1)));
+}
+
 TEST(Scanner, RefusesWhatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const struct {
@@ -80,6 +155,77 @@ TEST(Scanner, RefusesWhatCannotBe) {
       {"zenith_step in degrees is nan", [&](Scanner& s) { s.zenith_step = Angle::degrees(nan); }},
       {"zenith_step in degrees is 151", [](Scanner& s) { s.zenith_step = Angle::degrees(151); }},
       {"zenith_step in degrees is 1e-06", [](Scanner& s) { s.zenith_step = Angle::degrees(1e-6); }},
+      {"row_zeniths[1] in degrees is nan",
+       [&](Scanner& s) {
+         s.row_zeniths = degrees({10, nan});
+       }},
+      {"row_zeniths[1] in degrees is 10, but must be above the zenith before it, 10",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 10, 12});
+       }},
+      {"row_zeniths[2] in degrees is 9",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({8, 10, 9}));
+       }},
+      {"row_zeniths[0] in degrees is -1",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({-1, 10}));
+       }},
+      {"row_zeniths[1] in degrees is 181",
+       [](Scanner& s) {
+         s.set_row_zeniths(degrees({3, 181}));
+       }},
+      {"row_zeniths from 10 to 170 degrees must lie in the vertical field, 0 to 150",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 170});
+       }},
+      {"zenith_step in degrees is 0.1, but must be the mean step of row_zeniths, 20",
+       [](Scanner& s) {
+         s.row_zeniths = degrees({10, 20, 50});
+       }},
+      {"number of row_zeniths is 16777217", [](Scanner& s) { s.row_zeniths.resize((1u << 24) + 1); }},
+      {"directions[1]: zenith in degrees is 181",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {0, 181}});
+       }},
+      {"directions[0]: zenith in degrees is nan",
+       [&](Scanner& s) {
+         s.directions = listed({{0, nan}});
+       }},
+      {"directions[1]: azimuth in degrees is 361",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {361, 4}});
+       }},
+      {"number of times_s is 1, but must be that of directions, 2",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {0});
+       }},
+      {"number of times_s is 2, but must be 0 without directions",
+       [](Scanner& s) {
+         s.times_s = {0, 1};
+       }},
+      {"times_s[1] is 0, but must be finite and at least the time before it, 1",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {1, 0});
+       }},
+      {"times_s[0] is -1",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}), {-1, 0});
+       }},
+      {"a step in degrees is 0.1, but must be the mean step of directions",
+       [&](Scanner& s) {
+         s.directions = listed({{0, 3}, {5, 8}});
+       }},
+      {"directions must lie in the field",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}));
+         s.zenith_start = Angle::degrees(7);
+       }},
+      {"both directions and row_zeniths",
+       [&](Scanner& s) {
+         s.set_directions(listed({{0, 3}, {5, 8}}));
+         s.row_zeniths = degrees({10, 20});
+       }},
       {"height_m is -1", [](Scanner& s) { s.height_m = -1; }},
       {"min_range_m is -0.1", [](Scanner& s) { s.min_range_m = -0.1; }},
       {"max_range_m is 0.1", [](Scanner& s) { s.max_range_m = 0.1; }},

@@ -46,8 +46,13 @@ bool holds(const RayRanges& ranges, std::uint32_t row, std::uint32_t column) {
 
 TEST(RaysOfBox, NoCrossingRayIsLeftOut) {
   RandomStream random(42);
+  Scanner uneven = scanner_of(340, 300, 0.8, 40);
+  std::vector<Angle> zeniths;
+  for (double zenith = 0.5; zenith < 180; zenith += 0.1 + 2.5 * random.uniform())
+    zeniths.push_back(Angle::degrees(zenith));
+  uneven.set_row_zeniths(zeniths);
   const Scanner scanners[] = {scanner_of(360, 300, 1.0, 0), scanner_of(360, 360, 0.7, 123),
-                              scanner_of(200, 180, 0.9, -170), scanner_of(33, 90, 0.5, 90)};
+                              scanner_of(200, 180, 0.9, -170), scanner_of(33, 90, 0.5, 90), uneven};
   for (const Scanner& scanner : scanners) {
     const RayPattern pattern = make_pattern(scanner);
     std::uint64_t listed = 0, crossing = 0;

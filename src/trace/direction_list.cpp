@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/direction_list.hpp"
+
+#include <numeric>
+
+namespace vantage {
+
+DirectionList::DirectionList(std::span<const double> zeniths, std::span<const double> azimuths) {
+  const std::size_t rays = zeniths.size();
+  const auto [low, high] = std::ranges::minmax_element(zeniths);
+  const double tall = *high - *low;
+  // As many bands as make their parts with one ray about square, on a full turn.
+  constexpr double kMostBands = 65'536;
+  const double many = std::clamp(std::round(std::sqrt(static_cast<double>(rays) * tall / kTurn)), 1.0, kMostBands);
+  first_zenith_ = *low;
+  // Rounding puts no ray beyond the last band.
+  band_ = tall > 0 ? tall / many * (1 + 0x1p-40) : 1;
+
+  std::vector<std::uint32_t> band(rays);
+  std::vector<double> azimuth(rays);
+  offset_.assign(static_cast<std::size_t>(many) + 1, 0);
+  for (std::size_t k = 0; k < rays; ++k) {
+    band[k] = static_cast<std::uint32_t>(std::min(band_at(zeniths[k]), many - 1));
+    azimuth[k] = turned_once(azimuths[k]);
+    sin_azimuth.push_back(static_cast<float>(std::sin(azimuths[k])));
+    cos_azimuth.push_back(static_cast<float>(std::cos(azimuths[k])));
+    ++offset_[band[k] + 1];
+  }
+  std::partial_sum(offset_.begin(), offset_.end(), offset_.begin());
+  rays_.resize(rays);
+  std::iota(rays_.begin(), rays_.end(), 0u);
+  std::ranges::sort(rays_, [&](std::uint32_t a, std::uint32_t b) {
+    if (band[a] != band[b]) return band[a] < band[b];
+    return azimuth[a] != azimuth[b] ? azimuth[a] < azimuth[b] : a < b;
+  });
+  for (const std::uint32_t ray : rays_) azimuth_.push_back(azimuth[ray]);
+}
+
+}  // namespace vantage

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions of a scanner whose rays form no grid, such as a rosette, and those of them that lie near a direction: the
+// rays are sorted into bands of zenith, and in each band by azimuth.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace vantage {
+
+// Zeniths between two, and azimuths in [azimuth, azimuth + width], in radians; all azimuths from a width of a full turn
+// on.
+struct AngleWindow {
+  double least_zenith = 0, most_zenith = 0, azimuth = 0, width = 0;
+};
+
+class DirectionList {
+ public:
+  // Angles of each ray, radians. REQUIRES: at least one and fewer than 2^32 rays; finite angles.
+  DirectionList(std::span<const double> zeniths, std::span<const double> azimuths);
+
+  // Of each ray, computed in double and rounded once, as RayPattern has them of rows and columns.
+  std::vector<float> sin_azimuth, cos_azimuth;
+
+  // Calls visit(rays) with spans of rays. Each ray in the window is in exactly one of them; so may others be.
+  template <class Visit>
+  void each_near(const AngleWindow& window, const Visit& visit) const {
+    const double first = band_at(window.least_zenith), last = band_at(window.most_zenith);
+    if (last < 0 || first >= static_cast<double>(bands())) return;
+    const auto begin = static_cast<std::size_t>(std::max(first, 0.0)),
+               end = static_cast<std::size_t>(std::min(last + 1, static_cast<double>(bands())));
+    const double low = turned_once(window.azimuth), high = low + window.width;
+    for (std::size_t band = begin; band < end; ++band) {
+      if (window.width >= kTurn) {
+        visit(rays_between(offset_[band], offset_[band + 1]));
+        continue;
+      }
+      const std::size_t from = place_of(band, low, false), to = place_of(band, high, true);
+      if (from < to) visit(rays_between(from, to));
+      if (high < kTurn) continue;
+      const std::size_t wrapped = std::min(place_of(band, high - kTurn, true), from);
+      if (wrapped > offset_[band]) visit(rays_between(offset_[band], wrapped));
+    }
+  }
+
+ private:
+  static constexpr double kTurn = 2 * std::numbers::pi;
+
+  static double turned_once(double azimuth) { return azimuth - std::floor(azimuth / kTurn) * kTurn; }
+  std::size_t bands() const { return offset_.size() - 1; }
+  double band_at(double zenith) const { return std::floor((zenith - first_zenith_) / band_); }
+  // Place in rays_ of the first ray of a band at the azimuth or above it; `beyond`: above it.
+  std::size_t place_of(std::size_t band, double azimuth, bool beyond) const {
+    const auto begin = azimuth_.begin() + static_cast<std::ptrdiff_t>(offset_[band]),
+               end = azimuth_.begin() + static_cast<std::ptrdiff_t>(offset_[band + 1]);
+    const auto found = beyond ? std::upper_bound(begin, end, azimuth) : std::lower_bound(begin, end, azimuth);
+    return static_cast<std::size_t>(found - azimuth_.begin());
+  }
+  std::span<const std::uint32_t> rays_between(std::size_t from, std::size_t to) const {
+    return std::span(rays_).subspan(from, to - from);
+  }
+
+  std::vector<std::uint32_t> rays_;     // by band, then by azimuth
+  std::vector<double> azimuth_;         // of rays_, in a full turn from 0
+  std::vector<std::size_t> offset_;     // [band] in rays_, and an end
+  double first_zenith_ = 0, band_ = 1;  // radians
+};
+
+}  // namespace vantage
