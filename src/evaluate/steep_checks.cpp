@@ -14,15 +14,19 @@ namespace vantage {
 namespace {
 
 constexpr std::uint64_t kLookedAt = 20'000;  // voxels
-constexpr double kSteep_deg = 45;            // a sight that is steeper checks no better, and is hard to reach
 constexpr double kLeastCosine = 0.5;         // of the incidence: a target on the surface shows its face up to 60°
 constexpr double kOffSurface_m = 0.02;       // rays end before the surface that they are to meet
 
 // A station that may sight a place, as far as angles and lengths tell.
 struct SteepSight {
   std::size_t station = 0;
-  double elevation_deg = 0, range_m = 0;
+  double height_m = 0, range_m = 0;  // above or below the head
 };
+
+// An error of the index moves a sight sideways by itself times the height: by that, to a decimetre, then by the range.
+std::tuple<double, double> rank_of(const SteepSight& sight) {
+  return {-std::round(10 * sight.height_m), sight.range_m};
+}
 
 std::vector<SteepSight> sights_of(const VoxelPatch& patch, const Evaluation& evaluation,
                                   const std::vector<std::size_t>& stations, std::span<const Scanner> scanners,
@@ -34,15 +38,13 @@ std::vector<SteepSight> sights_of(const VoxelPatch& patch, const Evaluation& eva
     const Vec3 level = patch.point - station.position;
     const double range = std::sqrt(dot(level, level));
     if (range < scanner.min_range_m || range > std::min(kLongestSight_m, scanner.max_range_m)) continue;
-    const double elevation = elevation_deg(station.position, patch.point);
-    if (elevation <= kLeastElevation_deg || -side * dot(level, patch.normal) < kLeastCosine * range) continue;
+    if (elevation_deg(station.position, patch.point) <= kLeastElevation_deg) continue;
+    if (-side * dot(level, patch.normal) < kLeastCosine * range) continue;
     const std::array<Vec3, 3> turn = station.setup.survey_from_scanner();
     if (in_field_of_view(scanner, turn[0] * level.x + turn[1] * level.y + turn[2] * level.z, range))
-      sights.push_back({k, std::min(elevation, kSteep_deg), range});
+      sights.push_back({k, std::abs(level.z), range});
   }
-  std::ranges::stable_sort(sights, [](const SteepSight& a, const SteepSight& b) {
-    return std::tuple(-a.elevation_deg, a.range_m) < std::tuple(-b.elevation_deg, b.range_m);
-  });
+  std::ranges::stable_sort(sights, {}, rank_of);
   return sights;
 }
 
@@ -51,7 +53,7 @@ struct SteepPlace {
   double side = 1;
   std::vector<SteepSight> sights;
   // The second best sight decides, since a check takes two.
-  std::tuple<double, double> rank() const { return {-sights[1].elevation_deg, sights[1].range_m}; }
+  std::tuple<double, double> rank() const { return rank_of(sights[1]); }
 };
 
 // Stations that see the best place, with its centre; none if there is no place.
@@ -75,7 +77,7 @@ Target best_place(const std::vector<VoxelPatch>& patches, const Evaluation& eval
     for (const SteepSight& sight : place.sights)
       if (clash.sees(evaluation.stations[sight.station].position, before)) seen.push_back(sight);
     if (seen.size() < 2) continue;
-    const std::tuple rank{-seen[1].elevation_deg, seen[1].range_m};
+    const std::tuple rank = rank_of(seen[1]);
     if (!best.stations.empty() && rank >= least) continue;
     least = rank;
     best.centre = patch.point;

@@ -22,9 +22,10 @@ inline constexpr double kLeastElevation_deg = 30, kLongestSight_m = 30;
 double elevation_deg(const Vec3& head, const Vec3& point);
 
 // Adds to the targets one for each instrument (`Target::check`), where its check is wanted and two of its stations see
-// a surveyed surface from one side, steeply enough and not from farther away: the steepest up to 45°, and among these
-// the nearest. Tells the instruments that have no such place in `Evaluation::no_steep_check`. It looks at a sample of
-// the surveyed voxels.
+// a surveyed surface from one side, steeply enough and not from farther away: where the second of them is farthest
+// below or above it, since an error of the index moves a sight sideways by itself times that, to a decimetre, and among
+// these the nearest. Tells the instruments that have no such place in `Evaluation::no_steep_check`. It looks at a
+// sample of the surveyed voxels.
 void add_steep_checks(Evaluation& evaluation, const Simulator& simulator, const ClashChecker& clash);
 
 }  // namespace vantage

@@ -65,7 +65,8 @@ TEST(SteepChecks, AreThePlacesThatNoOtherBeats) {
   std::vector<std::uint32_t> voxels(site.simulator().voxel_count());
   std::iota(voxels.begin(), voxels.end(), 0u);
   for (std::size_t c = 0; c < own.size(); ++c) {
-    // Second best elevation, up to 45°, and its range, of the stations that see a surface from its front or back.
+    // Second largest height above or below the head, in decimetres, and its range, of the stations that see a surface
+    // from its front or back.
     const auto rank_of = [&](const Vec3& p, const Vec3& normal) -> std::optional<std::tuple<double, double>> {
       std::optional<std::tuple<double, double>> best;
       for (const double side : {-1.0, 1.0}) {
@@ -76,7 +77,7 @@ TEST(SteepChecks, AreThePlacesThatNoOtherBeats) {
           const bool facing = -side * dot(line, normal) >= 0.5 * range;
           if (steep * 180 / std::numbers::pi > 30 && range < 30 && facing &&
               site.clash().sees(network.stations[k].position, p + normal * (0.02 * side)))
-            sights.emplace_back(-std::min(steep * 180 / std::numbers::pi, 45.0), range);
+            sights.emplace_back(-std::round(10 * std::abs(line.z)), range);
         }
         std::ranges::sort(sights);
         if (sights.size() > 1 && (!best || sights[1] < *best)) best = sights[1];
@@ -98,7 +99,7 @@ TEST(SteepChecks, AreThePlacesThatNoOtherBeats) {
     ASSERT_TRUE(rank) << "on a surveyed surface";
     constexpr double kSame = 1e-6;
     EXPECT_NEAR(std::get<0>(*rank), std::get<0>(*least), kSame);
-    if (std::get<0>(*least) == -45) {
+    if (std::get<0>(*rank) == std::get<0>(*least)) {
       EXPECT_NEAR(std::get<1>(*rank), std::get<1>(*least), kSame);
     }
     ASSERT_GE(found.stations.size(), 2u);
