@@ -225,7 +225,9 @@ Options<SurveyProblem> problem_options() {
            "With `fewest`: what each station has to capture besides the others, m². The required `capture` is the "
            "least.")
       .add("pays_share", &SurveyProblem::pays_share,
-           "The same as a share of what the stations before it capture on average; the larger of both counts.")
+           "The same as a share of what the stations before it capture on average, of fewer than ten as if they were "
+           "ten; "
+           "the larger of both counts.")
       .add("attainable", &SurveyProblem::attainable,
            "Attainable coverage, the denominator of `capture`; a plan finds it.")
       .add<py::iterable>(

@@ -60,7 +60,8 @@ struct SurveyProblem {
   /// stations that links need stay as far as they pay, too. Where `stations_max` or a limit on the time on site ends it
   /// before, it requires no more than its answer has.
   std::optional<double> pays_m2 = {};
-  /// The same as a share of what the stations before it capture on average, each; the larger of both counts.
+  /// The same as a share of what the stations before it capture on average, of few as if they were
+  /// `few_for_average`; the larger of both counts.
   double pays_share = 0;
   /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
   /// `capture` is asked for. A plan finds it anew, whatever is given.
@@ -170,6 +171,10 @@ struct PlanIteration {
   std::vector<std::vector<double>> front;
   double seconds = 0;  ///< Since the start; not reproducible.
 };
+
+/// So many stations at least share what is captured where `SurveyProblem::pays_share` is of their average: each of
+/// fewer captures much, and a share of that would be much.
+inline constexpr std::size_t few_for_average = 10;
 
 /// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
 struct StationsThatPay {

@@ -645,8 +645,9 @@ std::string planned_text(const PlanResult& result) {
   text += "; a further one would add some " + surface_text(m2) + " in " + duration(60 * std::max(minutes, 1.0));
   if (!result.pays || m2 >= result.pays->least_m2) return text;
   text += ", and has to add " + surface_text(result.pays->least_m2);
-  if (result.pays->least_m2 > result.problem.pays_m2.value_or(0))
-    text += ", " + fixed(100 * result.problem.pays_share, 0) + " % of what each of these captures on average";
+  if (result.problem.pays_share > 0 && result.pays->least_m2 > result.problem.pays_m2.value_or(0))
+    text += ", " + percent(result.problem.pays_share / static_cast<double>(std::max(few_for_average, placed + kept))) +
+            " of what all of these capture";
   return text;
 }
 

@@ -105,8 +105,8 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2
       const std::size_t next = looked_at_after(n), last = std::min(n + next, all);
       if (n + next > all && !ended) break;
       found.next_m2 = last > n ? (captured[last] - captured[n]) / static_cast<double>(last - n) : 0;
-      const auto before = static_cast<double>(std::max<std::size_t>(kept + n, 1));
-      found.least_m2 = std::max(least.m2, least.share * captured[n] / before);
+      found.least_m2 =
+          std::max(least.m2, least.share * captured[n] / static_cast<double>(std::max(few_for_average, kept + n)));
       if (found.next_m2 >= found.least_m2) continue;
       std::vector<std::size_t> chosen(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept + n));
       const std::vector<std::size_t> own =

@@ -34,7 +34,7 @@ std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const Sta
                                          double least_m2);
 
 // What a further station has to capture: so many m², and such a share of what the stations before it capture on
-// average.
+// average, or of a tenth of all that they do if these are fewer than ten.
 struct LeastGain {
   double m2 = 0, share = 0;
 };

@@ -205,6 +205,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"fewest", [](SurveyProblem& p) { p.fewest = true; }},
     {"attainable", [](SurveyProblem& p) { p.attainable = 0.7; }},
     {"pays_m2", [](SurveyProblem& p) { p.pays_m2 = 25; }},
+    {"pays_share", [](SurveyProblem& p) { p.pays_share = 0.2; }},
     {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }},
     // Targets are of the answer, and decide nothing in its search.
     {"targets", [](SurveyProblem& p) { p.targets = 4; }, false},
@@ -215,7 +216,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
      },
      false},
     {"target", [](SurveyProblem& p) { p.target.diameter_m = 0.2; }, false}};
-static_assert(member_count<SurveyProblem>() == 19);
+static_assert(member_count<SurveyProblem>() == 20);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},

@@ -283,6 +283,8 @@ TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
   EXPECT_EQ(planned_text(result),
             "16 stations capture 86.2 % of what is attainable; a further one would add some 22 m² in 4 min, and has to "
             "add 25 m²");
+  result.problem.pays_m2 = 20, result.problem.pays_share = 0.1;
+  EXPECT_TRUE(planned_text(result).ends_with(", and has to add 25 m², 0.6 % of what all of these capture"));
   result.further = {.m2 = 27, .minutes = 3.7};
   EXPECT_TRUE(planned_text(result).ends_with("; a further one would add some 27 m² in 4 min"));
   result.further = {.m2 = 0, .minutes = 3.7};

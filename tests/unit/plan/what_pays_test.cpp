@@ -39,13 +39,19 @@ TEST(WhatPays, EndsWhereAFurtherStationCapturesLess) {
 }
 
 TEST(WhatPays, AsksForAShareOfTheAverageWhereThatIsMore) {
-  const CoverageMatrix matrix = apart({100, 60, 9, 4});
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5}).stations, 3u);
-  // 9 of 80 and 4 of 56 on average.
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5, .share = 0.12}).stations, 2u);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 1, .share = 0.1}).stations, 3u);
-  EXPECT_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 1, .share = 0.05}).stations, 4u);
-  EXPECT_DOUBLE_EQ(stations_that_pay({.matrix = matrix, .most = 9}, 1, {.m2 = 5, .share = 0.12}).least_m2, 0.12 * 80);
+  std::vector<std::uint32_t> sizes(12, 100);
+  sizes.insert(sizes.end(), {9, 9, 9, 4, 4, 4, 4});
+  const CoverageMatrix matrix = apart(sizes);
+  const auto pays = [&](const LeastGain& least) { return stations_that_pay({.matrix = matrix, .most = 40}, 1, least); };
+  EXPECT_EQ(pays({.m2 = 5}).stations, 15u);
+  EXPECT_EQ(pays({.m2 = 5, .share = 0.1}).stations, 12u) << "9 is less than a tenth of 100";
+  EXPECT_DOUBLE_EQ(pays({.m2 = 5, .share = 0.1}).least_m2, 10);
+  EXPECT_EQ(pays({.m2 = 5, .share = 0.05}).stations, 15u);
+  EXPECT_EQ(pays({.m2 = 1, .share = 0.01}).stations, 19u);
+  // Two stations count as ten: 9 of 200.
+  const CoverageMatrix few = apart({100, 100, 9});
+  EXPECT_EQ(stations_that_pay({.matrix = few, .most = 9}, 1, {.m2 = 1, .share = 0.1}).stations, 3u);
+  EXPECT_EQ(stations_that_pay({.matrix = few, .most = 9}, 1, {.m2 = 1, .share = 0.5}).stations, 2u);
 }
 
 TEST(WhatPays, TakesOneStationWhereNoneDoes) {
