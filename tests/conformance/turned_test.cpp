@@ -47,9 +47,9 @@ TraceScanner uneven_scanner(bool noisy) {
   TraceScanner scanner = second_scanner(noisy);
   Scanner rows;
   rows.horizontal_angle = Angle::degrees(311);
-  rows.azimuth_step = Angle::degrees(0.5);
+  rows.azimuth_step = Angle::degrees(0.9);
   rows.heading = Angle::degrees(75);
-  rows.min_range_m = 0.3, rows.max_range_m = 11;
+  rows.min_range_m = 0.3, rows.max_range_m = 9;
   std::vector<Angle> zeniths{Angle::degrees(4.5)};
   for (double zenith = 41; zenith < 161; zenith += 0.3 + 1.3 * std::abs(std::sin(zenith)))
     zeniths.push_back(Angle::degrees(zenith));

@@ -61,16 +61,15 @@ const std::vector<Change<Scanner>> kScanner{
     {"zenith_step", [](Scanner& s) { s.zenith_step = Angle::degrees(4); }},
     {"row_zeniths",
      [](Scanner& s) {
-       s.row_zeniths = {Angle::degrees(70), Angle::degrees(80)};
+       s.row_zeniths = {Angle::degrees(70), Angle::degrees(75)};
      }},
     {"directions",
      [](Scanner& s) {
-       s.directions = {{Angle::degrees(70), Angle::degrees(3)}};
+       s.set_directions({{Angle::degrees(70), Angle::degrees(3)}});
      }},
     {"times_s",
      [](Scanner& s) {
-       s.directions = {{Angle::degrees(70), Angle::degrees(3)}};
-       s.times_s = {0.5};
+       s.set_directions({{Angle::degrees(70), Angle::degrees(3)}}, {0.5});
      }},
     {"height_m", [](Scanner& s) { s.height_m = 2; }},
     {"min_range_m", [](Scanner& s) { s.min_range_m = 0.2; }},
