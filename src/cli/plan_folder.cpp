@@ -40,6 +40,7 @@ void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
   nlohmann::json further = nlohmann::json::array();
   for (const char* own : {"capture", "link", "apart"}) options[own] = 0;
   if (problem.pays_m2) options.erase("capture");
+  if (problem.pays_share > 0) options.erase("pays");  // the default, which goes by the average too
   for (const Requirement& requirement : problem.requirements) {
     const std::string& name = requirement.objective.name;
     if (options.contains(name) && requirement.bound == Requirement::Bound::at_least)

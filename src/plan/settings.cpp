@@ -77,7 +77,7 @@ Settings settings(const SurveyProblem& problem) {
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
   if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
   if (problem.pays_m2) setups.add("pays_m2", *problem.pays_m2, {"pays"});
-  if (problem.pays_share > 0) setups.add("pays_share", problem.pays_share, {"pays"});
+  if (problem.pays_share > 0) setups.add("pays_share", problem.pays_share);
   // Targets are proposed for the answer of a search, and decide nothing in it.
   if (problem.targets) setups.add("targets", *problem.targets, {"targets", false});
   if (!problem.existing_targets.empty())
