@@ -201,7 +201,8 @@ void add_scanners(py::module_& m) {
       },
       py::arg("file"),
       "Directions of a CSV file and their times, as Scanner takes them: azimuths and elevations, degrees (n, 2), and "
-      "seconds (n,) or None. The\nheader is azimuth_deg,elevation_deg or azimuth_deg,elevation_deg,time_s. Raises Error: "
+      "seconds (n,) or None. The\nheader is azimuth_deg,elevation_deg or azimuth_deg,elevation_deg,time_s. Raises "
+      "Error: "
       "io, malformed_file with the line.");
 }
 

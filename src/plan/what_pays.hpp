@@ -46,8 +46,8 @@ struct LeastGain {
 StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, const LeastGain& least,
                                   std::span<const std::vector<std::size_t>> units = {});
 
-// What further stations of a problem add to those that exist, a fifth of `stations` together and at least one: new surface of each
-// on average, and the candidates.
+// What further stations of a problem add to those that exist, a fifth of `stations` together and at least one: new
+// surface of each on average, and the candidates.
 struct FurtherStations {
   std::vector<std::size_t> candidates = {};
   double each_m2 = 0;

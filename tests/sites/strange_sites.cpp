@@ -179,7 +179,8 @@ void vault(RandomSite& made, const Draws& draw) {
   constexpr int kFacets = 12, kRises = 18;
   constexpr double kGoing = 0.28, kWide = 1.4, t = 0.4;
   const double x1 = draw.uniform(5, 7), y1 = draw.uniform(9, 16), depth = draw.uniform(3.2, 3.5), spring = 1.5;
-  const double rise = draw.uniform(0.9, 1.3), a = x1 / 2 - kWide / 2, b = a + kWide, y2 = y1 + t + kGoing * (kRises - 1);
+  const double rise = draw.uniform(0.9, 1.3), a = x1 / 2 - kWide / 2, b = a + kWide,
+               y2 = y1 + t + kGoing * (kRises - 1);
   carve(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
         {block(-6, x1 + 6, -4, y2 + 6, -0.3, 0)}, {block(a, b, y1 + t, y2, -0.3, 0)});
   carve(add_part(made.site, draw.name("floor"), sites::kConcrete, Surface::floor),
