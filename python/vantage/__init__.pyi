@@ -1049,6 +1049,8 @@ class Site:
         walking: Setting = None,
         day: Setting = None,
         crews: Setting = None,
+        day_start: Setting = None,
+        window: Setting = None,
         registration_rho: Setting = None,
         registration_patch: Setting = None,
         registration_position: Setting = None,
