@@ -33,15 +33,21 @@ py::array_t<double> numbers_of(const std::vector<double>& numbers) {
   return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
 
+// An array of what a list holds; None of an empty one.
+template <class List, class Array>
+py::object or_none(const List& list, const Array& array) {
+  return list.empty() ? py::object(py::none()) : py::object(array(list));
+}
+
 std::vector<double> numbers_from(const py::object& given, const char* name) {
   if (given.is_none()) return {};
   const Doubles numbers = doubles_of(given, name);
   return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
 }
 
-py::array_t<double> zeniths_of(const Scanner& scanner) {
+py::array_t<double> zeniths_of(const std::vector<Angle>& zeniths) {
   std::vector<double> degrees;
-  for (const Angle& zenith : scanner.row_zeniths) degrees.push_back(zenith.in_degrees());
+  for (const Angle& zenith : zeniths) degrees.push_back(zenith.in_degrees());
   return numbers_of(degrees);
 }
 
@@ -80,24 +86,17 @@ Options<Scanner> scanner_options() {
       .add("azimuth_step_deg", &Scanner::azimuth_step, "Angle between columns.")
       .add("zenith_step_deg", &Scanner::zenith_step, "Angle between rows.")
       .add<py::object>(
-          "row_zeniths_deg",
-          [](const Scanner& s) -> py::object { return s.row_zeniths.empty() ? py::object(py::none()) : zeniths_of(s); },
+          "row_zeniths_deg", [](const Scanner& s) { return or_none(s.row_zeniths, zeniths_of); },
           [](Scanner& s, const py::object& zeniths) { s.set_row_zeniths(zeniths_from(zeniths)); },
           "Zeniths of uneven rows, ascending, degrees (n,), in place of even ones; vertical_angle_deg, "
           "zenith_start_deg and zenith_step_deg are then set to their field and mean step. None: even rows.")
       .add<py::object>(
-          "directions_deg",
-          [](const Scanner& s) -> py::object {
-            return s.directions.empty() ? py::object(py::none()) : pairs_of(s.directions);
-          },
+          "directions_deg", [](const Scanner& s) { return or_none(s.directions, pairs_of); },
           [](Scanner& s, const py::object& pairs) { s.set_directions(directions_from(pairs), std::move(s.times_s)); },
           "Directions of a pattern that is no grid, in the order of its rays: azimuths from the heading and elevations "
           "from the horizon, degrees (n, 2); angles and steps are then set to their field and mean step. None: a grid.")
       .add<py::object>(
-          "times_s",
-          [](const Scanner& s) -> py::object {
-            return s.times_s.empty() ? py::object(py::none()) : numbers_of(s.times_s);
-          },
+          "times_s", [](const Scanner& s) { return or_none(s.times_s, numbers_of); },
           [](Scanner& s, const py::object& times) { s.times_s = numbers_from(times, "times_s"); },
           "Seconds from the begin of a scan to each of the directions (n,). None: points_per_second tells them.")
       .add("height_m", &Scanner::height_m, "Height of the head above the search area.")
@@ -196,8 +195,7 @@ void add_scanners(py::module_& m) {
       "load_directions",
       [](const std::filesystem::path& file) {
         const DirectionTable table = load_directions(file);
-        return std::pair(pairs_of(table.directions),
-                         table.times_s.empty() ? py::object(py::none()) : py::object(numbers_of(table.times_s)));
+        return std::pair(pairs_of(table.directions), or_none(table.times_s, numbers_of));
       },
       py::arg("file"),
       "Directions of a CSV file and their times, as Scanner takes them: azimuths and elevations, degrees (n, 2), and "

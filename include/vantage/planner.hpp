@@ -172,8 +172,8 @@ struct PlanIteration {
   double seconds = 0;  ///< Since the start; not reproducible.
 };
 
-/// So many stations at least share what is captured where `SurveyProblem::pays_share` is of their average: each of
-/// fewer captures much, and a share of that would be much.
+/// `SurveyProblem::pays_share` divides what is captured among this many stations at least: each of fewer captures much,
+/// and a share of that would be much.
 inline constexpr std::size_t few_for_average = 10;
 
 /// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.

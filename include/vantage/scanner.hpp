@@ -94,7 +94,7 @@ struct Scanner {
   void set_row_zeniths(std::vector<Angle> zeniths);
   /// Takes these directions; their times do not fall, or are empty. None: rows and columns again.
   void set_directions(std::vector<RayAngles> directions, std::vector<double> times_s = {});
-  /// Whether rows and columns are the same step apart, which one number tells.
+  /// Returns true if rows and columns are the same step apart, which one number tells.
   bool one_step() const { return directions.empty() && azimuth_step == zenith_step; }
   /// Throws Error invalid_argument with the member and its value.
   void check() const;

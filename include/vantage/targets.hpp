@@ -43,7 +43,7 @@ struct Target {
   /// scans in any prediction.
   bool check = false;
 };
-/// Whether any of them ties scans, and is not for checks alone.
+/// Returns true if any of them ties scans, and is not for checks alone.
 bool any_ties(std::span<const Target> targets) noexcept;
 
 /// Needs of a scan that measures a target, and places for new ones.

@@ -21,8 +21,8 @@ std::string closest_name(std::string_view typed, std::span<const std::string> na
 // "; did you mean NAME?", or empty if no name is near.
 std::string did_you_mean(std::string_view typed, std::span<const std::string> names);
 
-// What follows a pattern of names (`*`, `?`, `!`, `|`) that none of `names` has: the same for a near one, or "; there
-// are A, B" with the first of them and how many more.
+// The end of a message on a pattern of names (`*`, `?`, `!`, `|`) that none of `names` has: the same for a near one, or
+// "; there are A, B" with the first of them and how many more.
 std::string names_there_are(std::string_view pattern, std::span<const std::string> names);
 
 }  // namespace vantage

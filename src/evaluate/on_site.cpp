@@ -23,7 +23,6 @@
 #include "evaluate/cut_round.hpp"
 #include "evaluate/timed_sessions.hpp"
 #include "evaluate/ways.hpp"
-#include "scan/scan_seconds.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -353,7 +352,7 @@ struct OnSite::Impl {
   Ways ways;
 };
 
-static double minutes_of_scan(const Scanner& scanner) { return scan_seconds(scanner) / 60; }
+static double minutes_of_scan(const Scanner& scanner) { return scanner.seconds() / 60; }
 
 void check_day(const OnSiteOptions& options, std::span<const Scanner> scanners) {
   if (options.crews > 1 && !options.day_min)

@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// Whether the instrument, and not chance, makes most of the predicted registration error, so that it is to be checked.
+// True if the instrument, and not chance, makes most of the predicted registration error, so that it is to be checked.
 bool wants_steep_check(const Evaluation& evaluation);
 
 // A scanner's name without its setting: settings of one scanner are one instrument.

@@ -13,7 +13,6 @@
 #include "evaluate/known_points.hpp"
 #include "evaluate/steep_checks.hpp"
 #include "plan/answer.hpp"
-#include "scan/scan_seconds.hpp"
 #include "scene/room_floors.hpp"
 
 namespace vantage {
@@ -262,7 +261,9 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
 std::vector<SummaryLine> check_lines(const Evaluation& evaluation, const std::vector<std::string>& names) {
   std::vector<SummaryLine> lines;
   if (!wants_steep_check(evaluation)) return lines;
-  const std::string why = ": level sights hide an error of the scanner's vertical index";
+  const std::string why = ": level sights hide an error of the scanner's vertical index",
+                    wanted = "a target more than " + fixed(kLeastElevation_deg, 0) +
+                             "° above or below the heads of two stations";
   for (const Target& target : evaluation.targets) {
     if (!target.check) continue;
     double least = 90;
@@ -274,12 +275,10 @@ std::vector<SummaryLine> check_lines(const Evaluation& evaluation, const std::ve
                                      listed(target.stations, names) + why});
   }
   for (const std::string& instrument : evaluation.no_steep_check)
-    lines.push_back({"to check", "a target more than 30° above or below the heads of two stations of " + instrument +
-                                     why +
-                                     "; no surveyed surface is so steep for two of them within 30 m: check it "
-                                     "elsewhere"});
-  if (lines.empty())
-    lines.push_back({"to check", "a target more than 30° above or below the heads of two stations" + why});
+    lines.push_back({"to check", wanted + " of " + instrument + why +
+                                     "; no surveyed surface is so steep for two of them within " +
+                                     fixed(kLongestSight_m, 0) + " m: check it elsewhere"});
+  if (lines.empty()) lines.push_back({"to check", wanted + why});
   return lines;
 }
 
@@ -585,7 +584,7 @@ std::string ended_by(const PlanResult& result, const PlanEntry& entry, const Est
 
 // "Leica RTC360 @6mm, 23 s a scan"
 std::string scanner_text(const Scanner& scanner) {
-  const double seconds = scan_seconds(scanner);
+  const double seconds = scanner.seconds();
   return scanner.name + ", " + (seconds < 100 ? fixed(seconds, 0) + " s" : fixed(seconds / 60, 0) + " min") + " a scan";
 }
 

@@ -6,16 +6,16 @@
 
 namespace vantage {
 
-// Whether a point of the survey frame has walls on both sides of it, as between the jambs of a door.
+// True if a point of the survey frame has walls on both sides of it, as between the jambs of a door.
 bool in_passage(const ClashChecker& clash, const Vec3& at);
 
-// Whether the leaf of a door may swing there: a passage in free view is as near as a leaf is wide.
+// True if the leaf of a door may swing there: a passage in free view is as near as a leaf is wide.
 bool in_swing(const ClashChecker& clash, const Vec3& at);
 
-// Whether a point of the ground lies on a stair or by its top step: from there the ground falls by steps on a side.
+// True if a point of the ground lies on a stair or by its top step: from there the ground falls by steps on a side.
 bool on_steps(const ClashChecker& clash, const Vec3& ground);
 
-// Whether a tripod on a point of the ground bars a door or a stair.
+// True if a tripod on a point of the ground bars a door or a stair.
 bool in_the_way(const ClashChecker& clash, const Vec3& ground);
 
 }  // namespace vantage

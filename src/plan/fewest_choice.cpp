@@ -86,6 +86,8 @@ std::vector<std::size_t> for_meshes(const FewestChoice& choice) {
   const StationGraph& graph = choice.table.graph();
   std::vector<std::size_t> all = choice.network.chosen, found;
   std::vector<double> points = points_of(matrix, all);
+  const CoverProblem problem = cover_problem(choice);
+  Joinable joinable(problem, all);
   std::vector<const AskedOfMeshes*> open;
   for (const AskedOfMeshes& asked : choice.of_meshes) open.push_back(&asked);
   while (!open.empty()) {
@@ -99,8 +101,7 @@ std::vector<std::size_t> for_meshes(const FewestChoice& choice) {
     bool best_linked = false;
     for (std::size_t k = 0; k < matrix.candidates(); ++k) {
       const double gain = gain_of(matrix.column(k), **worst, choice.attainable, points);
-      const auto barred = [&](std::size_t other) { return other == k || graph.excluded(k, other); };
-      if (!(gain > 0) || (best_linked && gain <= most) || std::ranges::any_of(all, barred)) continue;
+      if (!(gain > 0) || (best_linked && gain <= most) || !joinable.may_stand(k)) continue;
       const bool linked = choice.asked.link <= 0 || std::ranges::any_of(all, [&](std::size_t other) {
                             return graph.linked(k, other, choice.asked.link);
                           });
@@ -111,6 +112,7 @@ std::vector<std::size_t> for_meshes(const FewestChoice& choice) {
       continue;
     }
     for (const CoverageMatrix::Entry& entry : matrix.column(*best)) points[entry.element] += entry.amount;
+    joinable.add(*best);
     all.push_back(*best), found.push_back(*best);
   }
   return found;
@@ -414,21 +416,17 @@ CoverSolution with_other(const FewestChoice& choice, std::size_t at, std::size_t
 }
 
 // The network with a candidate that is not in the way in place of the station at `at`: of those that serve as well, the
-// one that adds most to the others, whose points are `rest`.
-std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::size_t at, const PartialCover& rest,
+// one that adds most to the others, whose points are `others`.
+std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::size_t at, const PartialCover& others,
                                             const PlacementOracle& oracle) {
   const std::vector<PlacedStation>& stations = choice.table.stations();
-  const std::vector<std::size_t>& chosen = choice.network.chosen;
-  const auto barred = [&](std::size_t k) {
-    for (std::size_t other = 0; other < chosen.size(); ++other)
-      if (chosen[other] == k || (other != at && choice.table.graph().excluded(chosen[other], k))) return true;
-    return false;
-  };
+  const CoverProblem problem = cover_problem(choice);
+  const Joinable joinable(problem, without(choice.network.chosen, at));
   std::vector<std::pair<double, std::size_t>> near;  // by gain, negative
   for (std::size_t k = choice.asked.existing; k < stations.size(); ++k)
-    if (const Vec3 apart = stations[k].ground - stations[chosen[at]].ground;
-        dot(apart, apart) <= kAside_m * kAside_m && !barred(k))
-      near.emplace_back(-rest.gain(k), k);
+    if (const Vec3 apart = stations[k].ground - stations[choice.network.chosen[at]].ground;
+        dot(apart, apart) <= kAside_m * kAside_m && joinable.may_stand(k))
+      near.emplace_back(-others.gain(k), k);
   std::ranges::sort(near);
   for (const auto& [gain, k] : near) {
     if (oracle.in_the_way(stations[k].ground)) continue;
@@ -449,13 +447,13 @@ bool stand_aside(FewestChoice& choice, const PlacementOracle& oracle, const std:
     const std::size_t station = choice.network.chosen[at];
     const PlacedStation placed = choice.table.stations()[station];
     if (!oracle.in_the_way(placed.ground)) continue;
-    const std::vector<std::size_t> rest = without(choice.network.chosen, at);
-    std::optional<CoverSolution> aside = with_one_aside(choice, at, PartialCover(choice.table.matrix(), rest), oracle);
+    const PartialCover others(choice.table.matrix(), without(choice.network.chosen, at));
+    std::optional<CoverSolution> aside = with_one_aside(choice, at, others, oracle);
     if (!aside) {
       std::vector<PlacedStation> around = positions_around(oracle, std::span(&placed, 1), kAsideAround, kAside_m);
       std::erase_if(around, [&](const PlacedStation& one) { return oracle.in_the_way(one.ground); });
       if (around.empty() || !choice.table.add(around, {.report = {}, .stop = stop})) continue;
-      aside = with_one_aside(choice, at, PartialCover(choice.table.matrix(), rest), oracle);
+      aside = with_one_aside(choice, at, others, oracle);
     }
     if (!aside) continue;
     std::ranges::replace(choice.visiting, station, aside->chosen[at]);

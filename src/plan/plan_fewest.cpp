@@ -248,16 +248,17 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
     if (out_of_reach(choice)) choose_anew(choice, kLeastHelp, watch.stop);
   }
   keep_to_stairs(choice, watch.stop);
-  if (context.pays && keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
-    require_no_more(choice, context, simulator, watch);
+  const auto keep_only_what_pays = [&] {
+    if (context.pays && keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
+      require_no_more(choice, context, simulator, watch);
+  };
+  keep_only_what_pays();
   calibrate(choice, context, simulator, watch);
   check_links(choice, context, simulator, watch);
   if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
   if (capture_meshes(choice, watch.stop)) check_links(choice, context, simulator, watch);
   if (context.pays && add_what_pays(choice, *context.pays, watch.stop)) {
-    // Swaps may have gained so much that the last one does not pay any more.
-    if (keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
-      require_no_more(choice, context, simulator, watch);
+    keep_only_what_pays();  // swaps may have gained so much that the last one does not pay any more
     check_links(choice, context, simulator, watch);
   }
   if (stand_aside(choice, context.oracle(), watch.stop)) check_links(choice, context, simulator, watch);
@@ -380,7 +381,8 @@ std::optional<FurtherStation> further_station(const PlanResult& result, const Fe
   if (!choice.asked.captured || !chosen || result.front.empty()) return std::nullopt;
   const std::vector<PlacedStation>& stations = result.front[answer(result)].stations;
   const CoverProblem asked = cover_problem(choice);
-  CoverProblem problem{.matrix = asked.matrix};
+  const CoverageMatrix even = with_even_weights(asked.matrix);
+  CoverProblem problem{.matrix = even};
   for (const PlacedStation& station : stations) problem.existing.push_back(choice.table.nearest(station));
   if (components_of(asked, problem.existing, asked.link).count <= 1)
     problem.graph = asked.graph, problem.link = asked.link;

@@ -136,12 +136,13 @@ bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std:
   if (!choice.to_visit || choice.asked.minutes || out_of_reach(choice)) return false;
   CoverProblem problem = cover_problem(choice);
   problem.coverage = 1;  // as much as there is
+  const CoverageMatrix even = with_even_weights(problem.matrix);
   std::optional<ColumnIndex> columns;
   bool any = false;
   while (choice.placed() < choice.asked.most && !stop.stop_requested()) {
-    CoverProblem further = problem;
-    further.existing = choice.network.chosen;
-    const FurtherStations more = further_stations(further, choice.placed(), choice.to_visit->element_m2);
+    const FurtherStations more = further_stations(
+        {.matrix = even, .graph = problem.graph, .existing = choice.network.chosen, .link = problem.link},
+        choice.placed(), choice.to_visit->element_m2);
     if (more.candidates.empty() || more.each_m2 < pays.least_m2) break;
     std::vector<std::size_t> network = choice.network.chosen;
     network.push_back(more.candidates.front());

@@ -17,16 +17,6 @@ namespace {
 constexpr std::size_t kLookedAtTogether = 5;
 constexpr std::size_t kFirstChoice = 64;  // stations; then twice as many
 
-// Square metres are those of all surfaces alike, whatever their voxels weigh.
-CoverageMatrix with_even_weights(const CoverageMatrix& matrix) {
-  CoverageMatrix even(std::vector<std::uint32_t>(matrix.elements(), 1), matrix.goal());
-  std::vector<double> goals(matrix.elements());
-  for (std::size_t e = 0; e < goals.size(); ++e) goals[e] = matrix.weight(e) > 0 ? matrix.goal(e) : 0;
-  even.set_goals(goals);
-  for (std::size_t k = 0; k < matrix.candidates(); ++k) even.add(matrix.column(k));
-  return even;
-}
-
 std::size_t looked_at_after(std::size_t stations) { return std::max<std::size_t>(1, stations / kLookedAtTogether); }
 
 // Surface that the existing stations of a greedy choice capture, and all of them after each further one.
@@ -43,6 +33,15 @@ std::vector<double> captured_m2(const CoverProblem& even, std::span<const std::s
 }
 
 }  // namespace
+
+CoverageMatrix with_even_weights(const CoverageMatrix& matrix) {
+  CoverageMatrix even(std::vector<std::uint32_t>(matrix.elements(), 1), matrix.goal());
+  std::vector<double> goals(matrix.elements());
+  for (std::size_t e = 0; e < goals.size(); ++e) goals[e] = matrix.weight(e) > 0 ? matrix.goal(e) : 0;
+  even.set_goals(goals);
+  for (std::size_t k = 0; k < matrix.candidates(); ++k) even.add(matrix.column(k));
+  return even;
+}
 
 double new_surface_m2(const CoverageMatrix& matrix, const PartialCover& network, std::size_t candidate,
                       double element_m2) {
@@ -120,16 +119,10 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2
   }
 }
 
-FurtherStations further_stations(const CoverProblem& problem, std::size_t stations, double element_m2) {
-  const CoverageMatrix matrix = with_even_weights(problem.matrix);
-  const CoverProblem even{.matrix = matrix,
-                          .graph = problem.graph,
-                          .existing = problem.existing,
-                          .most = looked_at_after(stations),
-                          .link = problem.link};
+FurtherStations further_stations(CoverProblem even, std::size_t stations, double element_m2) {
+  even.most = looked_at_after(stations);
   const std::vector<std::size_t> order = greedy(even);
-  FurtherStations found{
-      .candidates = {order.begin() + static_cast<std::ptrdiff_t>(problem.existing.size()), order.end()}};
+  FurtherStations found{.candidates = {order.begin() + static_cast<std::ptrdiff_t>(even.existing.size()), order.end()}};
   if (found.candidates.empty()) return found;
   const std::vector<double> captured = captured_m2(even, order, element_m2);
   found.each_m2 = (captured.back() - captured.front()) / static_cast<double>(found.candidates.size());

@@ -46,13 +46,17 @@ struct LeastGain {
 StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2, const LeastGain& least,
                                   std::span<const std::vector<std::size_t>> units = {});
 
-// What further stations of a problem add to those that exist, a fifth of `stations` together and at least one: new
-// surface of each on average, and the candidates.
+// The same columns and goals without weights: square metres are those of all surfaces alike, whatever their voxels
+// weigh.
+CoverageMatrix with_even_weights(const CoverageMatrix& matrix);
+
+// What further stations add to those that exist, a fifth of `stations` together and at least one: new surface of each
+// on average, and the candidates. They are linked where the problem asks for links. REQUIRES: even weights.
 struct FurtherStations {
   std::vector<std::size_t> candidates = {};
   double each_m2 = 0;
 };
-FurtherStations further_stations(const CoverProblem& problem, std::size_t stations, double element_m2);
+FurtherStations further_stations(CoverProblem even, std::size_t stations, double element_m2);
 
 // Area of all surveyed meshes, in square metres.
 double surveyed_area_m2(const Scene& scene);

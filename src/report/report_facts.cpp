@@ -7,7 +7,6 @@
 #include "core/text.hpp"
 #include "report/report.hpp"
 #include "report/station_facts.hpp"
-#include "scan/scan_seconds.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -62,7 +61,7 @@ std::string each_text(const Evaluation& network, std::span<const Scanner> scanne
     const bool used =
         std::ranges::any_of(network.stations, [&](const PlacedStation& s) { return s.setup.scanner == k; });
     if (!used) continue;
-    const double scan = scan_seconds(scanners[k]) / 60;
+    const double scan = scanners[k].seconds() / 60;
     const double rest = (visit.set_up_min + visit.photos_min) / stops;
     text += (text.empty() ? "" : "; ") + (scanners.size() > 1 ? scanners[k].name + ": " : std::string()) +
             minutes_text(scan + rest) + ": scan " + minutes_text(scan) + ", setting up " +

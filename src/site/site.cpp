@@ -18,7 +18,6 @@
 #include "placement/nearest_place.hpp"
 #include "placement/no_ground.hpp"
 #include "placement/place_head.hpp"
-#include "scan/scan_seconds.hpp"
 #include "scene/scene_data.hpp"
 #include "scene/told_by_name.hpp"
 #include "site/room_windows.hpp"
@@ -217,7 +216,7 @@ struct Site::Impl {
     scanners = {site_scanner(options, scale)};
     if (!open) return;
     choose("scanner", usual_scanner, "no scanner was named");
-    log("scanner: none was named, so a " + scanners[0].name + " is assumed, " + rounded(scan_seconds(scanners[0]), 2) +
+    log("scanner: none was named, so a " + scanners[0].name + " is assumed, " + rounded(scanners[0].seconds(), 2) +
         " s a scan");
   }
 

@@ -47,6 +47,19 @@ constexpr double angle_pad = 0x1p-20;
   return {first, second};
 }
 
+// Rays whose angles lie in a window.
+[[gnu::always_inline]] inline RayRanges rays_in(const RayPattern& pattern, const AngleWindow& window) {
+  RayRanges ranges;
+  ranges.rows = rows_of(pattern, window.least_zenith, window.most_zenith);
+  if (ranges.rows.empty()) return ranges;
+  if (window.width >= 2 * std::numbers::pi) {
+    ranges.columns[0] = {0, pattern.columns()};
+  } else {
+    ranges.columns = columns_of(pattern, window.azimuth, window.width);
+  }
+  return ranges;
+}
+
 // Angles of a box, widened.
 [[gnu::always_inline]] inline AngleWindow window_of_box(const Vec3& low, const Vec3& high) {
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -111,30 +124,15 @@ void turn_back(const Turn& turn, BoxBatch& boxes) {
 
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
                        double width) {
-  RayRanges ranges;
-  ranges.rows = rows_of(pattern, least_zenith - angle_pad, most_zenith + angle_pad);
-  if (width + 2 * angle_pad >= 2 * std::numbers::pi) {
-    ranges.columns[0] = {0, pattern.columns()};
-  } else {
-    ranges.columns = columns_of(pattern, azimuth - angle_pad, width + 2 * angle_pad);
-  }
-  return ranges;
+  return rays_in(pattern,
+                 {least_zenith - angle_pad, most_zenith + angle_pad, azimuth - angle_pad, width + 2 * angle_pad});
 }
 
 double rounding_pad(double reach) { return 0x1p-20 * reach; }
 
 VANTAGE_TARGET_CLONES
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high) {
-  const AngleWindow window = window_of_box(low, high);
-  RayRanges ranges;
-  ranges.rows = rows_of(pattern, window.least_zenith, window.most_zenith);
-  if (ranges.rows.empty()) return ranges;
-  if (window.width >= 2 * std::numbers::pi) {
-    ranges.columns[0] = {0, pattern.columns()};
-  } else {
-    ranges.columns = columns_of(pattern, window.azimuth, window.width);
-  }
-  return ranges;
+  return rays_in(pattern, window_of_box(low, high));
 }
 
 VANTAGE_TARGET_CLONES
