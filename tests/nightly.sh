@@ -6,8 +6,8 @@
 #   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked; random drawings and clouds;
 #              the sweep of docs/evidence/sweep.md
 #   faults     every n of the faults of device, disk and process, and every number for every option
-#   address, undefined, thread
-#              every suite under that sanitizer (tests/sanitizers/check.sh)
+#   address, thread
+#              every suite under these sanitizers (tests/sanitizers/check.sh)
 #   machine    all tests under each instruction set of Embree and each width of lavapipe's vectors
 #   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
 #              (needs root, a mirror, lintian and mmdebstrap)
@@ -50,7 +50,6 @@ faults() {
 }
 
 address() { tests/sanitizers/check.sh address; }
-undefined() { tests/sanitizers/check.sh undefined; }
 thread() { tests/sanitizers/check.sh thread; }
 machine() { tests/machine/every_machine.sh build/release; }
 packages() {
@@ -103,10 +102,10 @@ mutation() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(sites faults address undefined thread machine packages docs readers writers fuzz mutation)
+[ $# -gt 0 ] || parts=(sites faults address thread machine packages docs readers writers fuzz mutation)
 for part in "${parts[@]}"; do
   case $part in
-    sites | faults | address | undefined | thread | machine | packages | docs | readers | writers | fuzz | mutation) "$part" ;;
+    sites | faults | address | thread | machine | packages | docs | readers | writers | fuzz | mutation) "$part" ;;
     *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
   esac
 done
