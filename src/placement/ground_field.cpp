@@ -669,8 +669,11 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
       entries_.push_back(place(parts_[part].first));
     }
   }
+  const std::vector<Step> steps = steps_between_parts();
+  // Nobody stops at a gap between a slab and the ground before it, as of a threshold that is not drawn.
+  for_parts_by_steps(steps, climb_, [&](const Step& step) { access_[step.to] = Access::reached; });
   tell_apart();
-  look_beyond_high_steps();
+  look_beyond_high_steps(steps);
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) {
       climbs_ = climbs(tree);
@@ -706,52 +709,69 @@ void GroundField::tell_apart() {
       access_[i] = Access::sealed;
 }
 
-// Reports steps that keep a person from a hall, but not steps onto a bed. Each tread of a stair that is too steep is a
-// part of its own, so the search goes from part to part.
-void GroundField::look_beyond_high_steps() {
-  struct Edge {
-    std::uint32_t from, to;
-    double step;
-  };
-  const double highest = 2 * climb_, hall = 10 * room();
+// True if nothing but floor with room lies between a sample and a column so many columns away: there is none in a gap.
+bool GroundField::is_gap(std::uint32_t sample, std::uint32_t to, std::int64_t columns) const {
+  const std::int64_t from = column_[sample], one = (std::int64_t{to} - from) / columns;
+  for (std::int64_t k = 1; k < columns; ++k) {
+    const auto column = static_cast<std::size_t>(from + k * one);
+    for (std::uint32_t m = first_[column]; m < first_[column + 1]; ++m)
+      if (!has_room(m) && std::abs(double{z_[m]} - z_[sample]) <= 2 * climb_) return false;
+  }
+  return true;
+}
+
+std::vector<GroundField::Step> GroundField::steps_between_parts() const {
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
-  tbb::enumerable_thread_specific<std::vector<Edge>> found;
+  tbb::enumerable_thread_specific<std::vector<Step>> found;
   parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
     if (part_[s] == nowhere) return;
     for_columns_beside(column_[s], across, [&](std::uint32_t other) {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
-        const double step = std::abs(double{z_[n]} - z_[s]);
-        if (part_[n] != nowhere && part_[n] != part_[s] && step > climb_ && step <= highest)
-          found.local().push_back({part_[s], part_[n], step});
+        if (part_[n] == nowhere || part_[n] == part_[s]) continue;
+        const double rise = std::abs(double{z_[n]} - z_[s]);
+        if (rise > 2 * climb_ || (rise <= climb_ && !is_gap(s, other, across))) continue;
+        found.local().push_back({part_[s], part_[n], rise});
       }
     });
   });
-  std::vector<Edge> edges;
-  for (const std::vector<Edge>& some : found) edges.insert(edges.end(), some.begin(), some.end());
-  const auto by_parts = [](const Edge& a, const Edge& b) {
-    return std::tie(a.from, a.to, a.step) < std::tie(b.from, b.to, b.step);
-  };
-  parallel::sort(edges.begin(), edges.end(), by_parts);
-  edges.erase(std::unique(edges.begin(), edges.end(),
-                          [](const Edge& a, const Edge& b) { return a.from == b.from && a.to == b.to; }),
-              edges.end());
+  std::vector<Step> steps;
+  for (const std::vector<Step>& some : found) steps.insert(steps.end(), some.begin(), some.end());
+  parallel::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+    return std::tie(a.from, a.to, a.rise) < std::tie(b.from, b.to, b.rise);
+  });
+  steps.erase(std::unique(steps.begin(), steps.end(),
+                          [](const Step& a, const Step& b) { return a.from == b.from && a.to == b.to; }),
+              steps.end());
+  return steps;
+}
+
+template <class Visit>
+void GroundField::for_parts_by_steps(std::span<const Step> steps, double highest, Visit&& visit) const {
   std::vector<char> seen(parts_.size(), 0);
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (access_[i] == Access::reached) seen[i] = 1, open.push_back(i);
-  HighSteps beyond;
   while (!open.empty()) {
     const std::uint32_t from = open.back();
     open.pop_back();
-    for (auto e = std::lower_bound(edges.begin(), edges.end(), Edge{from, 0, 0}, by_parts);
-         e != edges.end() && e->from == from; ++e) {
-      if (seen[e->to]) continue;
-      seen[e->to] = 1;
-      open.push_back(e->to);
-      beyond.highest_m = std::max(beyond.highest_m, e->step);
-      if (parts_[e->to].area(cell_) >= hall) beyond.area_m2 += parts_[e->to].area(cell_);
+    for (auto step = std::ranges::lower_bound(steps, from, {}, &Step::from); step != steps.end() && step->from == from;
+         ++step) {
+      if (seen[step->to] || step->rise > highest) continue;
+      seen[step->to] = 1;
+      open.push_back(step->to);
+      visit(*step);
     }
   }
+}
+
+// Reports steps that keep a person from a hall, but not steps onto a bed. Each tread of a stair that is too steep is a
+// part of its own, so the search goes from part to part.
+void GroundField::look_beyond_high_steps(std::span<const Step> steps) {
+  HighSteps beyond;
+  for_parts_by_steps(steps, 2 * climb_, [&](const Step& step) {
+    beyond.highest_m = std::max(beyond.highest_m, step.rise);
+    if (const double area = parts_[step.to].area(cell_); area >= 10 * room()) beyond.area_m2 += area;
+  });
   if (beyond.area_m2 > 0) high_steps_ = beyond;
 }
 

@@ -168,7 +168,18 @@ class GroundField {
   bool may_be_told(std::uint32_t part) const;
   bool has_room(std::uint32_t sample) const;
   void tell_apart();
-  void look_beyond_high_steps();
+  // The lowest step between samples of two parts that lie as far apart as a gap in the floor is wide which a person
+  // steps across: half a passage. Both ways, sorted by their parts.
+  struct Step {
+    std::uint32_t from, to;
+    double rise;  // up or down
+  };
+  std::vector<Step> steps_between_parts() const;
+  bool is_gap(std::uint32_t sample, std::uint32_t to, std::int64_t columns) const;
+  // Visits a step to each part that steps of this height lead to from what is reached, perhaps by other parts.
+  template <class Visit>
+  void for_parts_by_steps(std::span<const Step> steps, double highest, Visit&& visit) const;
+  void look_beyond_high_steps(std::span<const Step> steps);
 
   glm::dvec2 middle(std::uint32_t column) const {
     return {corner_.x + (column % columns_ + 0.5) * cell_, corner_.y + (column / columns_ + 0.5) * cell_};

@@ -237,14 +237,18 @@ TEST(ClosedParts, APlateauLargerThanThePitInItIsTold) {
 
 // A gap that one steps over has no height; of steps that lead to a part, the lowest is told.
 TEST(ClosedParts, OneStepsOverAGapAndTheLowestStepIsTold) {
-  Builder gap;
-  slab(gap, 0, 0, 10, 8, 0);
-  slab(gap, 10.25, 0, 16, 8, 0);
-  const SearchArea over = SearchArea::build(gap.scene());
-  EXPECT_TRUE(holds(over, 13, 4, 0));
-  ASSERT_EQ(over.entered().size(), 1u);
-  EXPECT_EQ(over.entered()[0].bar, Bar::step);
-  EXPECT_EQ(over.entered()[0].height_m, 0);
+  const auto with_gap = [](double width, double drop) {
+    Builder gap;
+    slab(gap, 0, 0, 10, 8, 0);
+    slab(gap, 10 + width, 0, 16, 8, -drop);
+    return SearchArea::build(gap.scene());
+  };
+  for (const double drop : {0.0, 0.12, 0.2}) {
+    const SearchArea over = with_gap(0.25, drop);
+    EXPECT_TRUE(holds(over, 13, 4, -drop));
+    EXPECT_TRUE(over.entered().empty() && over.not_entered().empty()) << drop;
+  }
+  EXPECT_EQ(with_gap(0.7, 0).entered().size(), 1u);
   Builder step;
   slab(step, 0, 0, 10, 8, 0);
   step.box({10, 0, -0.2}, {16, 8, 0.8}).box({9, 3, 0}, {10, 5, 0.4});
