@@ -168,7 +168,8 @@ bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
 
 }  // namespace
 
-GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane)
+GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::span<const std::uint32_t> turned,
+                         std::optional<Plane> plane)
     : radius_(0.5 * options.passage_width_m),
       climb_(options.climb_m * (1 + tolerance_share)),
       height_(options.passage_height_m * (1 - tolerance_share)),
@@ -176,7 +177,7 @@ GroundField::GroundField(const SceneData& scene, const WalkableOptions& options,
       opaque_(scene.opaque_count()),
       border_(plane.has_value()) {
   lay_grid(scene, plane);
-  find_samples(scene, plane);
+  find_samples(scene, turned, plane);
   find_room(scene);
   find_parts();
 }
@@ -192,7 +193,8 @@ void GroundField::lay_grid(const SceneData& scene, std::optional<Plane> plane) {
   rows_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(depth / cell_)));
 }
 
-void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plane) {
+void GroundField::find_samples(const SceneData& scene, std::span<const std::uint32_t> turned,
+                               std::optional<Plane> plane) {
   const Grid grid{corner_, cell_, columns_, rows_};
   const std::size_t count = std::size_t{columns_} * rows_;
   top_.assign(count, -std::numeric_limits<float>::infinity());
@@ -210,9 +212,10 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
       const Corners t = corners_of(scene, i);
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       if (n.z == 0) continue;
-      const bool walkable = !plane && n.z >= least_up * length(n) && !water[scene.mesh_of(i)];
+      const double up = n.z < 0 && std::ranges::binary_search(turned, i) ? -n.z : n.z;
+      const bool walkable = !plane && up >= least_up * length(n) && !water[scene.mesh_of(i)];
       // Bars of a grating lie between the middles of columns: they carry where they pass a column, at its height there.
-      const bool narrow = walkable && n.z < cell_ * longest_edge(t);
+      const bool narrow = walkable && up < cell_ * longest_edge(t);
       if (narrow) {
         const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
         const auto [lowest, highest] = std::minmax({t[0].z, t[1].z, t[2].z});

@@ -46,8 +46,10 @@ class GroundField {
     double reach = 0, z = 0;
   };
 
+  // `turned`: triangles that face down and carry a person nevertheless, rising (sheets_facing_down()).
   // REQUIRES: the scene has triangles. Doors do not block.
-  GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane = {});
+  GroundField(const SceneData& scene, const WalkableOptions& options, std::span<const std::uint32_t> turned,
+              std::optional<Plane> plane = {});
 
   // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
   // where people enter. That is the largest ground under the sky, at any height; without one, the lowest large parts
@@ -124,7 +126,7 @@ class GroundField {
   static constexpr double kStoops = 0.8;                                   // of the height of a passage: 1.5 m
 
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
-  void find_samples(const SceneData& scene, std::optional<Plane> plane);
+  void find_samples(const SceneData& scene, std::span<const std::uint32_t> turned, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
   // The first of the samples that each one is connected with, by neighbours of which the bits of `taken` are clear;
   // itself for those of which they are not.

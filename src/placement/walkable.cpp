@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@
 #include "placement/mesh_tree.hpp"
 #include "placement/no_ground.hpp"
 #include "placement/plan_hull.hpp"
+#include "placement/sheets_facing_down.hpp"
 #include "placement/surface_pieces.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
@@ -218,6 +220,12 @@ bool is_upward(const std::array<Float3, 3>& p, double least_up) {
   return unit_normal(to_glm(p[0]), to_glm(p[1]), to_glm(p[2])).z >= least_up;
 }
 
+// Has a triangle that was drawn face down show its face.
+template <class Corner>
+void turn_if(std::array<Corner, 3>& corners, std::uint32_t triangle, std::span<const std::uint32_t> turned) {
+  if (std::ranges::binary_search(turned, triangle)) std::swap(corners[1], corners[2]);
+}
+
 // Meshes whose surfaces may be stood on.
 std::vector<MeshRange> standing_meshes(const SceneData& scene, bool station_area) {
   std::vector<MeshRange> meshes;
@@ -227,19 +235,24 @@ std::vector<MeshRange> standing_meshes(const SceneData& scene, bool station_area
 }
 
 // Into the scene's positions. REQUIRES: it shares no meshes.
-std::vector<Triangle> upward_triangles(const SceneData& scene, const WalkableOptions& options, bool station_area) {
+std::vector<Triangle> upward_triangles(const SceneData& scene, std::span<const std::uint32_t> turned,
+                                       const WalkableOptions& options, bool station_area) {
   const double least_up = std::cos(options.max_slope.in_radians());
   std::vector<Triangle> upward;
   for (const MeshRange& range : standing_meshes(scene, station_area))
-    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i)
-      if (is_upward(scene.corners(i), least_up)) upward.push_back(scene.triangles[i]);
+    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i) {
+      std::array<Float3, 3> p = scene.corners(i);
+      turn_if(p, i, turned);
+      if (!is_upward(p, least_up)) continue;
+      turn_if(upward.emplace_back(scene.triangles[i]), i, turned);
+    }
   return upward;
 }
 
 // The same where nodes share meshes, with their corners in `points`. Of shared ones, only those that somebody may
 // reach, or that are as wide as the pieces that are told apart: those of many machines' tops would fill the memory.
-std::vector<Triangle> reached_triangles(const SceneData& scene, const GroundField& field,
-                                        const WalkableOptions& options, bool station_area,
+std::vector<Triangle> reached_triangles(const SceneData& scene, std::span<const std::uint32_t> turned,
+                                        const GroundField& field, const WalkableOptions& options, bool station_area,
                                         std::vector<glm::dvec3>& points) {
   constexpr std::uint32_t kBlock = 1 << 16;
   const double least_up = std::cos(options.max_slope.in_radians());
@@ -255,9 +268,12 @@ std::vector<Triangle> reached_triangles(const SceneData& scene, const GroundFiel
     std::vector<std::vector<glm::dvec3>> found((range.triangle_count + kBlock - 1) / kBlock);
     parallel::for_all(std::size_t{0}, found.size(), [&](std::size_t block) {
       const auto first = range.first_triangle + static_cast<std::uint32_t>(block) * kBlock;
-      for (std::uint32_t t = first; t < std::min(range.first_triangle + range.triangle_count, first + kBlock); ++t)
-        if (const auto p = scene.corners(t); is_upward(p, least_up) && wanted(t, p))
+      for (std::uint32_t t = first; t < std::min(range.first_triangle + range.triangle_count, first + kBlock); ++t) {
+        std::array<Float3, 3> p = scene.corners(t);
+        turn_if(p, t, turned);
+        if (is_upward(p, least_up) && wanted(t, p))
           for (const Float3& corner : p) found[block].push_back(to_glm(corner));
+      }
     });
     for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
   }
@@ -348,12 +364,13 @@ void add_thin_floors(const GroundField& field, std::vector<glm::dvec3>& points, 
 }
 
 WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
-  GroundField field(scene, options);
+  const std::vector<std::uint32_t> turned = sheets_facing_down(scene, tree, options.headroom_m);
+  GroundField field(scene, options, turned);
   field.reach(tree, local_entries(scene, options));
   std::vector<glm::dvec3> points;
   if (!scene.shares()) points = stored_points(scene);
-  const std::vector<Triangle> upward =
-      scene.shares() ? reached_triangles(scene, field, options, true, points) : upward_triangles(scene, options, true);
+  const std::vector<Triangle> upward = scene.shares() ? reached_triangles(scene, turned, field, options, true, points)
+                                                      : upward_triangles(scene, turned, options, true);
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, true);
   if (surface.mesh.triangles.empty())
     throw NoGround(
@@ -365,14 +382,15 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
 }
 
 WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
+  const std::vector<std::uint32_t> turned = sheets_facing_down(scene, tree, options.headroom_m);
   std::vector<glm::dvec3> points;
   std::vector<Triangle> upward;
   if (!scene.shares()) {
-    upward = upward_triangles(scene, options, false);
+    upward = upward_triangles(scene, turned, options, false);
     if (upward.empty()) return {};
     points = stored_points(scene);
   }
-  GroundField field(scene, options);
+  GroundField field(scene, options, turned);
   field.reach(tree, local_entries(scene, options));
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
@@ -384,7 +402,7 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   if (field.entries().empty()) return {};
   if (options.enter.empty() && !inside() && !around() && !floors() && !under_the_sky()) return {};
   if (options.enter.empty() && options.enter_closed) field.enter_closed(tree);
-  if (scene.shares()) upward = reached_triangles(scene, field, options, false, points);
+  if (scene.shares()) upward = reached_triangles(scene, turned, field, options, false, points);
   add_thin_floors(field, points, upward);
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
   if (surface.mesh.triangles.empty()) return surface;
@@ -399,6 +417,9 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
          << " m, higher than a person is taken to climb";
     surface.description += text.str();
   }
+  if (!turned.empty())
+    surface.description += "; of the model " + std::to_string(turned.size()) +
+                           " triangles that face down are taken for ground, drawn upside down";
   return surface;
 }
 
@@ -410,7 +431,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   const glm::dvec3 low{b.min.x - reach, b.min.y - reach, b.min.z}, high{b.max.x + reach, b.max.y + reach, b.min.z};
   std::vector<glm::dvec3> points{low, {high.x, low.y, low.z}, high, {low.x, high.y, low.z}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
-  GroundField field(scene, options, GroundField::Plane{reach, b.min.z});
+  GroundField field(scene, options, {}, GroundField::Plane{reach, b.min.z});
   field.reach(tree, local_entries(scene, options));
   // Nobody can stand under the model itself.
   const double from = 1e-4 * reach, to = b.size().z + reach, spacing = std::max(high.x - low.x, high.y - low.y) / 256;

@@ -40,6 +40,9 @@ constexpr double kEndsRadius = 0.25;
 constexpr double kAside_m = 3;
 constexpr std::size_t kAsideAround = 12;
 
+// Least number of further stations by which what is out of reach is looked for; of many stations half as many.
+constexpr std::size_t kFurther = 4;
+
 // Rounds of adding stations to units of floor.
 constexpr std::size_t kVisits = 4;
 // Further stations, at both ends of a stair, for each tie past it.
@@ -323,6 +326,30 @@ void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop) 
   choose_from(choice, {}, stop);
   fit_time(choice, visit, stop);
   strengthen(choice, stop);
+}
+
+bool grow_into_reach(FewestChoice& choice, const std::stop_token& stop) {
+  if (!out_of_reach(choice) || choice.network.link < choice.asked.link || choice.asked.minutes) return false;
+  CoverProblem larger = cover_problem(choice);
+  const ColumnIndex columns(larger.matrix);
+  const std::size_t before = choice.placed(), further = std::max(kFurther, before / 2);
+  const std::size_t most = std::min(choice.asked.most, before + further) - choice.visiting.size();
+  std::vector<std::size_t> network = choice.network.chosen;
+  larger.coverage = 1;  // as much as there is, so that each number is reached
+  for (larger.most = before - choice.visiting.size() + 1; larger.most <= most && !stop.stop_requested();
+       ++larger.most) {
+    larger.fewest = larger.most;
+    const std::size_t stations = network.size();
+    network = grow_and_swap(larger, columns, std::move(network), stop).chosen;
+    if (network.size() == stations) break;
+    CoverSolution grown = evaluate_cover(cover_problem(choice), network);
+    if (grown.violation > 0) continue;
+    choice.network = std::move(grown);
+    choice.one_fewer.reset();
+    strengthen(choice, stop);
+    return true;
+  }
+  return false;
 }
 
 bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop) {

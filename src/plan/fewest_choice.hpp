@@ -115,6 +115,10 @@ void choose(FewestChoice& choice, const VisitTime& visit, std::stop_token stop);
 // Starts from a network of the table, or from none.
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop);
 
+// If linked stations are short of what is asked, takes some more than the choice found any use for, with swaps: of two
+// that link a room the first adds nothing. True if they reach it.
+bool grow_into_reach(FewestChoice& choice, const std::stop_token& stop);
+
 // If what is asked is out of reach, looks along the ways to what no link reaches from the network, such as rooms behind
 // doorways, and chooses again. True if that serves.
 bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop);

@@ -39,6 +39,8 @@ constexpr double kRuleLead = 0.3, kLead = 1.3;
 constexpr std::size_t kMostChoices = 3;
 
 constexpr double kNoSite_m = 1, kNoSiteEither_m = 10'000;
+// No ground lies higher or deeper; national coordinates are larger, both of them.
+constexpr double kNoHeight_m = 10'000, kNational_m = 50'000;
 
 double extent_of(const Hypothesis& h) { return std::max({h.size.x, h.size.y, h.size.z}); }
 
@@ -283,6 +285,16 @@ std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional
   return out;
 }
 
+// Where a model lies, by a reading: one of its vertices, in metres.
+glm::dvec3 place_by(const RawScene& raw, Unit unit, UpAxis up) {
+  const auto some = std::ranges::find_if(raw.positions, [](const glm::dvec3& p) { return sound(p); });
+  return some == raw.positions.end() ? glm::dvec3(0) : with_up(up, *some) * metres_in(unit);
+}
+
+bool is_national(const glm::dvec3& place) {
+  return std::min(std::abs(place.x), std::abs(place.y)) > kNational_m && std::abs(place.z) < kNoHeight_m;
+}
+
 double score_of(const Hypothesis& h) {
   const std::array<double, kFeatures> f = features_of(h);
   double score = 0;
@@ -383,6 +395,10 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
   std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
   if (all.empty()) return out;
+  if (!up) {  // national coordinates tell the axis: none is a height
+    const auto too_high = [&](const Hypothesis& h) { return std::abs(place_by(raw, h.unit, h.up).z) > kNoHeight_m; };
+    if (!std::ranges::all_of(all, too_high)) std::erase_if(all, too_high);
+  }
   const auto usual = std::ranges::find_if(all, [](const Hypothesis& h) { return h.up != UpAxis::x; });
   if (usual != all.end() && has_ways(*usual))
     std::erase_if(all, [&](const Hypothesis& h) { return is_doubtful(h, up); });
@@ -392,7 +408,10 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   const std::string settings = unit ? "the setting up"
                                : up ? "the setting unit"
                                     : "the setting unit and the setting up";
+  const bool national = best.unit == Unit::metre && is_national(place_by(raw, best.unit, best.up));
   const auto rivals = [&](const Hypothesis& other) {
+    // They are in metres nearly everywhere: only doors and stairs tell otherwise.
+    if (national && other.unit != best.unit && (has_ways(best) || !has_ways(other))) return false;
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
     // A rule that a file may break says less than doors and stairs that only the other reading has.
     const bool by_rule = rule && keeps_rule && (has_ways(best) || !has_ways(other));
@@ -408,13 +427,18 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
     return out;
   }
   if (rule) return out;
-  const auto stated = std::ranges::find_if(
-      all, [&](const Hypothesis& h) { return h.unit == unit.value_or(Unit::metre) && h.up == up.value_or(UpAxis::y); });
-  out.note = "read as " + meaning(best) + "; as " + meaning(*stated) + ", a person could walk less of it; " +
-             "if that is wrong, give " +
-             (best.unit == stated->unit ? "the setting up"
-              : best.up == stated->up   ? "the setting unit"
-                                        : "the setting unit and the setting up");
+  const Unit usual_unit = unit.value_or(Unit::metre);
+  const UpAxis usual_up = up.value_or(UpAxis::y);
+  const auto stated =
+      std::ranges::find_if(all, [&](const Hypothesis& h) { return h.unit == usual_unit && h.up == usual_up; });
+  const bool same_unit = best.unit == usual_unit, same_axis = best.up == usual_up;
+  out.note = "read as " + meaning(best) +
+             (stated == all.end() ? "; otherwise its coordinates would be heights"
+                                  : "; as " + meaning(*stated) + ", a person could walk less of it") +
+             "; if that is wrong, give " +
+             (same_unit   ? "the setting up"
+              : same_axis ? "the setting unit"
+                          : "the setting unit and the setting up");
   return out;
 }
 

@@ -103,6 +103,23 @@ TEST(RecogniseUnits, AsksWhereNothingTells) {
   EXPECT_TRUE(recognise(tube.written(Unit::millimetre, UpAxis::z), {}, UpAxis::z).question.empty());
 }
 
+TEST(RecogniseUnits, NationalCoordinatesTellTheAxisAndAreInMetres) {
+  const auto pit = [](const Vec3& at) {
+    House site;
+    site.points.clear(), site.triangles.clear();
+    const auto box = [&](const Vec3& low, const Vec3& high) { site.box(at + low, at + high); };
+    box({0, 0, -1}, {80, 20, 0}), box({0, 20, -8}, {80, 45, -7}), box({0, 45, -1}, {80, 65, 0});
+    box({10, 50, 0}, {16, 52.4, 2.6}), box({46, 10, 0}, {50, 14, 30});
+    return site.written(Unit::metre, UpAxis::z);
+  };
+  EXPECT_FALSE(recognise(pit({0, 0, 0}), {}, {}).question.empty());
+  const Recognised found = recognise(pit({562'100, 5'621'300, 210}), {}, {});
+  EXPECT_EQ(found.question, "");
+  EXPECT_EQ(found.unit, Unit::metre);
+  EXPECT_EQ(found.up, UpAxis::z);
+  EXPECT_NE(found.note.find("its coordinates would be heights"), std::string::npos) << found.note;
+}
+
 TEST(RecogniseUnits, OptionsAreNotDoubted) {
   const RawScene raw = House().written(Unit::millimetre, UpAxis::z);
   const Recognised all = recognise(raw, Unit::inch, UpAxis::y);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/sheets_facing_down.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "placement_scenes.hpp"
+#include "vantage/placement.hpp"
+
+namespace vantage {
+namespace {
+
+using test::Builder;
+using test::origin;
+
+constexpr double kTall_m = 1.9;
+
+Builder& face_down(Builder& builder, double x0, double y0, double x1, double y1, double z) {
+  return builder.quad({x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z});
+}
+
+std::vector<std::uint32_t> found_in(const Builder& builder) {
+  const SceneData scene = builder.data();
+  return sheets_facing_down(scene, MeshTree(scene), kTall_m);
+}
+
+TEST(SheetsFacingDown, GroundDrawnFaceDownIsGround) {
+  Builder b;
+  face_down(b, -10, -10, 10, 10, 0).box({-2, -2, 0}, {2, 2, 3});
+  EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{0, 1}));
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_FALSE(area.on_plane());
+  EXPECT_NE(area.description().find("2 triangles that face down"), std::string::npos) << area.description();
+  const auto uv = area.project(origin + Vec3{-8, -8, 0});
+  ASSERT_TRUE(uv);
+  const auto ground = area.locate(*uv);
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->z, origin.z, 1e-3);
+}
+
+TEST(SheetsFacingDown, UndersidesOfSolidsAreNone) {
+  Builder b;
+  b.floor(-10, -10, 10, 10, 0).box({-6, -6, 3}, {6, 6, 3.2}).box({-9, -9, -8}, {9, 9, -5});
+  EXPECT_TRUE(found_in(b).empty());
+  Builder block;  // its underside touches nothing, and its inside is as high as a room
+  face_down(block, -10, -10, 10, 10, -5).floor(-10, -10, 10, 10, 0).floor(20, 0, 21, 1, 0);
+  face_down(block, 30, 0, 50, 20, 0);  // the mesh has more that faces down than up
+  EXPECT_EQ(found_in(block), (std::vector<std::uint32_t>{6, 7}));
+}
+
+TEST(SheetsFacingDown, CeilingsAreNoneAndFloorsBetweenStoreysAre) {
+  Builder b;
+  b.floor(0, 0, 8, 8, 0);
+  face_down(b, 0, 0, 8, 8, 3), face_down(b, 0, 0, 8, 8, 6);
+  EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{2, 3}));
+}
+
+TEST(SheetsFacingDown, WhatIsLowOrSmallIsNone) {
+  Builder b;
+  b.floor(0, 0, 8, 8, 0);
+  face_down(b, 0, 0, 8, 8, 2.6), face_down(b, 0, 0, 8, 8, 4);  // a ceiling and a roof above it
+  face_down(b, 20, 0, 21, 1, 0);
+  EXPECT_TRUE(found_in(b).empty());
+}
+
+}  // namespace
+}  // namespace vantage
