@@ -12,10 +12,11 @@ constexpr double kPassage_m = 0.65;  // a place with walls within this on both s
 constexpr double kSwing_m = 1.0;     // from a way through, as far as the leaf of a door reaches
 constexpr double kDoor_m = 1.5;      // above the ground: over tables, below lintels
 
-// Ground that falls by a tread within the first distance and by two within the second. Steeper than the last fall
-// nobody walks.
+// Ground that falls by a step within the first distance and by two within the second, with level treads between: a
+// slope and a bank have none.
 constexpr double kTread_m = 0.5, kTwoTreads_m = 0.9;
-constexpr double kFirstFall_m = 0.1, kSecondFall_m = 0.28, kLargestFall_m = 1.1;
+constexpr double kInterval_m = 0.1, kRise_m = 0.1, kLevel_m = 0.03;  // over an interval
+constexpr double kFall_m = 0.28, kLargestFall_m = 1.1;               // over two treads
 constexpr double kOver_m = 0.5;  // above the ground, from where the ground is looked for
 
 Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
@@ -57,10 +58,17 @@ bool on_steps(const ClashChecker& clash, const Vec3& ground) {
       const std::optional<Vec3> found = clash.ground_below(there, kOver_m + kLargestFall_m);
       return found ? std::optional(ground.z - found->z) : std::nullopt;
     };
-    const auto first = fall_at(kTread_m);
-    if (!first || *first < kFirstFall_m) continue;
-    const auto second = fall_at(kTwoTreads_m);
-    if (second && *second >= kSecondFall_m && *second > *first) return true;
+    if (fall_at(kTwoTreads_m).value_or(0) < kFall_m) continue;
+    int steps = 0, treads = 0;
+    double before = 0;
+    for (int i = 1; i * kInterval_m <= kTwoTreads_m && (steps > 0 || i * kInterval_m <= kTread_m); ++i) {
+      const std::optional<double> fall = fall_at(i * kInterval_m);
+      if (!fall) break;
+      steps += *fall - before >= kRise_m;
+      treads += std::abs(*fall - before) <= kLevel_m;
+      before = *fall;
+    }
+    if (steps >= 2 && treads >= steps) return true;
   }
   return false;
 }

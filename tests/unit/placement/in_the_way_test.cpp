@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "placement_scenes.hpp"
 
 namespace vantage {
@@ -53,6 +55,13 @@ TEST(InTheWay, AStairAndItsTopStep) {
 TEST(InTheWay, KerbsAndRampsBarNothing) {
   const ClashChecker ramp(test::Builder().quad({0, -3, 0}, {20, -3, 3}, {20, 3, 3}, {0, 3, 0}).scene());
   EXPECT_FALSE(on_steps(ramp, origin + Vec3{10, 0, 1.5})) << "15 %";
+  for (const double fall : {0.35, 0.45, 1.4}) {  // a hillside, and a bank beside its edge
+    test::Builder hill;
+    hill.floor(-6, -3, 0, 3, 0).quad({0, -3, 0}, {4, -3, -4 * fall}, {4, 3, -4 * fall}, {0, 3, 0});
+    const ClashChecker slope(hill.scene());
+    for (const double x : {-0.4, -0.3, -0.2, 0.3, 1.0})
+      EXPECT_FALSE(on_steps(slope, origin + Vec3{x, 0, -fall * std::max(x, 0.0)})) << fall << " at " << x;
+  }
   const ClashChecker kerb(test::Builder().floor(-5, -5, 0, 5, 0.15).floor(0, -5, 5, 5, 0).scene());
   EXPECT_FALSE(on_steps(kerb, origin + Vec3{-0.2, 0, 0.15}));
 }
