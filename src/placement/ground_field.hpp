@@ -46,7 +46,7 @@ class GroundField {
     double reach = 0, z = 0;
   };
 
-  // `turned`: triangles that face down and carry a person nevertheless, rising (sheets_facing_down()).
+  // `turned`: triangles that face down and carry a person nevertheless, rising (drawn_face_down()).
   // REQUIRES: the scene has triangles. Doors do not block.
   GroundField(const SceneData& scene, const WalkableOptions& options, std::span<const std::uint32_t> turned,
               std::optional<Plane> plane = {});

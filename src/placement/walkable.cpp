@@ -19,11 +19,11 @@
 #include "core/site_reach.hpp"
 #include "placement/area_limits.hpp"
 #include "placement/charts.hpp"
+#include "placement/drawn_face_down.hpp"
 #include "placement/ground_field.hpp"
 #include "placement/mesh_tree.hpp"
 #include "placement/no_ground.hpp"
 #include "placement/plan_hull.hpp"
-#include "placement/sheets_facing_down.hpp"
 #include "placement/surface_pieces.hpp"
 #include "scene/positions.hpp"
 #include "vantage/error.hpp"
@@ -364,7 +364,7 @@ void add_thin_floors(const GroundField& field, std::vector<glm::dvec3>& points, 
 }
 
 WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
-  const std::vector<std::uint32_t> turned = sheets_facing_down(scene, tree, options.headroom_m);
+  const std::vector<std::uint32_t> turned = drawn_face_down(scene, tree, options.headroom_m);
   GroundField field(scene, options, turned);
   field.reach(tree, local_entries(scene, options));
   std::vector<glm::dvec3> points;
@@ -382,7 +382,7 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
 }
 
 WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
-  const std::vector<std::uint32_t> turned = sheets_facing_down(scene, tree, options.headroom_m);
+  const std::vector<std::uint32_t> turned = drawn_face_down(scene, tree, options.headroom_m);
   std::vector<glm::dvec3> points;
   std::vector<Triangle> upward;
   if (!scene.shares()) {

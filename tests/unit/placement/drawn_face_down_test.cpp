@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "placement/sheets_facing_down.hpp"
+#include "placement/drawn_face_down.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,10 +22,10 @@ Builder& face_down(Builder& builder, double x0, double y0, double x1, double y1,
 
 std::vector<std::uint32_t> found_in(const Builder& builder) {
   const SceneData scene = builder.data();
-  return sheets_facing_down(scene, MeshTree(scene), kTall_m);
+  return drawn_face_down(scene, MeshTree(scene), kTall_m);
 }
 
-TEST(SheetsFacingDown, GroundDrawnFaceDownIsGround) {
+TEST(DrawnFaceDown, GroundDrawnFaceDownIsGround) {
   Builder b;
   face_down(b, -10, -10, 10, 10, 0).box({-2, -2, 0}, {2, 2, 3});
   EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{0, 1}));
@@ -39,7 +39,7 @@ TEST(SheetsFacingDown, GroundDrawnFaceDownIsGround) {
   EXPECT_NEAR(ground->z, origin.z, 1e-3);
 }
 
-TEST(SheetsFacingDown, UndersidesOfSolidsAreNone) {
+TEST(DrawnFaceDown, UndersidesOfSolidsAreNone) {
   Builder b;
   b.floor(-10, -10, 10, 10, 0).box({-6, -6, 3}, {6, 6, 3.2}).box({-9, -9, -8}, {9, 9, -5});
   EXPECT_TRUE(found_in(b).empty());
@@ -49,14 +49,30 @@ TEST(SheetsFacingDown, UndersidesOfSolidsAreNone) {
   EXPECT_EQ(found_in(block), (std::vector<std::uint32_t>{6, 7}));
 }
 
-TEST(SheetsFacingDown, CeilingsAreNoneAndFloorsBetweenStoreysAre) {
+TEST(DrawnFaceDown, CeilingsAreNoneAndFloorsBetweenStoreysAre) {
   Builder b;
   b.floor(0, 0, 8, 8, 0);
   face_down(b, 0, 0, 8, 8, 3), face_down(b, 0, 0, 8, 8, 6);
   EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{2, 3}));
 }
 
-TEST(SheetsFacingDown, WhatIsLowOrSmallIsNone) {
+// A box whose faces show inwards.
+Builder& inside_out(Builder& builder, const Vec3& a, const Vec3& b) {
+  return builder.box({b.x, a.y, a.z}, {a.x, b.y, b.z});
+}
+
+TEST(DrawnFaceDown, SolidsThatAreInsideOutCarryAPersonAndRoomsDoNot) {
+  Builder slab;
+  inside_out(slab, {0, 0, 0}, {8, 8, 0.3});
+  EXPECT_EQ(found_in(slab), (std::vector<std::uint32_t>{0, 1}));
+  const SearchArea area = SearchArea::build(slab.floor(-10, 0, -0.05, 8, 0.3).scene());
+  EXPECT_TRUE(area.project(origin + Vec3{4, 4, 0.3}));
+  Builder room;
+  inside_out(room, {0, 0, 0}, {8, 8, 3});
+  EXPECT_TRUE(found_in(room).empty());
+}
+
+TEST(DrawnFaceDown, WhatIsLowOrSmallIsNone) {
   Builder b;
   b.floor(0, 0, 8, 8, 0);
   face_down(b, 0, 0, 8, 8, 2.6), face_down(b, 0, 0, 8, 8, 4);  // a ceiling and a roof above it

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/drawn_face_down.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "core/disjoint_sets.hpp"
+#include "scene/positions.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kLeast_m2 = 2;             // area of a sheet, seen from above
+constexpr double kMostUp = 0.01;            // share of it that faces up, as a rim does
+constexpr std::size_t kLookedAt = 200;      // triangles of a sheet
+constexpr double kSkin_m = 0.01;            // rays begin so far off the sheet
+constexpr std::uint32_t kMost = 4'000'000;  // triangles of a mesh that is taken apart
+
+// Area that a triangle shows from above, in m²; negative: it faces down.
+double shown_m2(const SceneData& scene, std::uint32_t triangle) {
+  const auto t = corners_of(scene, triangle);
+  return cross(t[1] - t[0], t[2] - t[0]).z / 2;
+}
+
+// The triangles of each connected part of a mesh. Vertices at one place are one, whatever normals they have.
+std::vector<std::vector<std::uint32_t>> connected_parts(const SceneData& scene, const MeshRange& range) {
+  struct Corner {
+    Float3 at;
+    std::uint32_t triangle;
+    auto place() const { return std::tuple(at.x, at.y, at.z); }
+  };
+  std::vector<Corner> corners;
+  corners.reserve(3 * std::size_t{range.triangle_count});
+  for (std::uint32_t k = 0; k < range.triangle_count; ++k)
+    for (const Float3& at : scene.corners(range.first_triangle + k)) corners.push_back({at, k});
+  std::ranges::sort(corners, {}, &Corner::place);
+  DisjointSets sets(range.triangle_count);
+  for (std::size_t c = 1; c < corners.size(); ++c)
+    if (corners[c].place() == corners[c - 1].place()) sets.join(corners[c].triangle, corners[c - 1].triangle);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
+  for (std::uint32_t k = 0; k < range.triangle_count; ++k) parts[sets.find(k)].push_back(range.first_triangle + k);
+  std::vector<std::vector<std::uint32_t>> all;
+  for (auto& [first, part] : parts) all.push_back(std::move(part));
+  return all;
+}
+
+// Six times the volume that a triangle adds to a closed part, seen from `middle`; negative where it shows inwards.
+double volume(const SceneData& scene, std::uint32_t triangle, const glm::dvec3& middle) {
+  const auto t = corners_of(scene, triangle);
+  return dot(t[0] - middle, cross(t[1] - middle, t[2] - middle));
+}
+
+struct Shape {
+  double up_m2 = 0, down_m2 = 0, volume = 0;
+  bool is_sheet() const { return up_m2 <= kMostUp * down_m2; }
+  bool is_inside_out() const { return volume < 0 && std::abs(up_m2 - down_m2) <= kMostUp * down_m2; }
+};
+
+Shape shape_of(const SceneData& scene, const std::vector<std::uint32_t>& part) {
+  Shape shape;
+  const glm::dvec3 middle = corners_of(scene, part.front())[0];
+  for (const std::uint32_t triangle : part) {
+    const double area = shown_m2(scene, triangle);
+    (area > 0 ? shape.up_m2 : shape.down_m2) += std::abs(area);
+    shape.volume += volume(scene, triangle, middle);
+  }
+  return shape;
+}
+
+// Whether somebody may stand on the back of a triangle that faces down; inside(triangle below): in the same solid.
+template <class Inside>
+bool carries(const SceneData& scene, const MeshTree& tree, std::uint32_t triangle, double height_m, Inside inside) {
+  const auto t = corners_of(scene, triangle);
+  const glm::dvec3 middle = (t[0] + t[1] + t[2]) / 3.0, skin{0, 0, kSkin_m}, up{0, 0, 1};
+  const auto above = tree.first(middle + skin, up);
+  if (above && (above->distance < height_m || shown_m2(scene, above->triangle) > 0)) return false;
+  const auto below = tree.first(middle - skin, -up);
+  return above || !below || (below->distance < height_m && inside(below->triangle));
+}
+
+bool carries(const SceneData& scene, const MeshTree& tree, const std::vector<std::uint32_t>& part, double height_m) {
+  const std::size_t stride = std::max<std::size_t>(1, part.size() / kLookedAt);
+  double on = 0, all = 0;
+  for (std::size_t k = 0; k < part.size(); k += stride) {
+    const double area = -shown_m2(scene, part[k]);
+    if (!(area > 0)) continue;
+    all += area;
+    if (carries(scene, tree, part[k], height_m,
+                [&](std::uint32_t below) { return std::ranges::binary_search(part, below); }))
+      on += area;
+  }
+  return 2 * on > all;
+}
+
+// Whether any of the largest triangles that face down, and of some others, may carry a person: of most models none
+// does, and nothing has to be taken apart.
+bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& range, double height_m) {
+  std::vector<std::pair<double, std::uint32_t>> down;  // by area, negative
+  double all = 0;
+  for (std::uint32_t k = 0; k < range.triangle_count; ++k)
+    if (const double area = shown_m2(scene, range.first_triangle + k); area < 0)
+      down.emplace_back(area, range.first_triangle + k), all -= area;
+  if (all < kLeast_m2) return false;
+  const std::size_t stride = std::max<std::size_t>(1, down.size() / kLookedAt);
+  std::vector<std::uint32_t> some;
+  for (std::size_t k = 0; k < down.size(); k += stride) some.push_back(down[k].second);
+  std::ranges::nth_element(down, down.begin() + static_cast<std::ptrdiff_t>(std::min(kLookedAt, down.size() - 1)));
+  for (std::size_t k = 0; k < std::min(kLookedAt, down.size()); ++k) some.push_back(down[k].second);
+  return std::ranges::any_of(some, [&](std::uint32_t triangle) {
+    return carries(scene, tree, triangle, height_m, [&](std::uint32_t below) { return shown_m2(scene, below) > 0; });
+  });
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> drawn_face_down(const SceneData& scene, const MeshTree& tree, double height_m) {
+  std::vector<std::uint32_t> found;
+  for (const MeshRange& range : scene.ranges) {
+    if (range.triangle_count > kMost || !may_carry(scene, tree, range, height_m)) continue;
+    for (const std::vector<std::uint32_t>& part : connected_parts(scene, range)) {
+      const Shape shape = shape_of(scene, part);
+      if (shape.down_m2 < kLeast_m2 || !(shape.is_sheet() || shape.is_inside_out())) continue;
+      if (!carries(scene, tree, part, height_m)) continue;
+      std::ranges::copy_if(part, std::back_inserter(found),
+                           [&](std::uint32_t triangle) { return shown_m2(scene, triangle) < 0; });
+    }
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+}  // namespace vantage
