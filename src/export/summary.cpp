@@ -257,7 +257,7 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
          (beyond.empty() ? "" : ", most at" + beyond);
 }
 
-// "a target, or a sharp corner out of reach, at C1 (3.21, 4.05, 2.87), 41° above or below the heads of S1 and S4: …",
+// "a target or a sharp corner at C1 (3.21, 4.05, 2.87), 41° above or below the heads of S1 and S4: …",
 // one for each instrument.
 std::vector<SummaryLine> check_lines(const Evaluation& evaluation, const std::vector<std::string>& names) {
   std::vector<SummaryLine> lines;
@@ -270,10 +270,10 @@ std::vector<SummaryLine> check_lines(const Evaluation& evaluation, const std::ve
     double least = 90;
     for (const std::size_t station : target.stations)
       least = std::min(least, elevation_deg(evaluation.stations[station].position, target.centre));
-    lines.push_back({"to check", "a target, or a sharp corner out of reach, at " + target.name + " (" +
-                                     fixed(target.centre.x, 2) + ", " + fixed(target.centre.y, 2) + ", " +
-                                     fixed(target.centre.z, 2) + "), " + fixed(least, 0) +
-                                     "° or more above or below the heads of " + listed(target.stations, names) + why});
+    lines.push_back({"to check", "a target or a sharp corner at " + target.name + " (" + fixed(target.centre.x, 2) +
+                                     ", " + fixed(target.centre.y, 2) + ", " + fixed(target.centre.z, 2) + "), " +
+                                     fixed(least, 0) + "° or more above or below the heads of " +
+                                     listed(target.stations, names) + why});
   }
   for (const std::string& instrument : evaluation.no_steep_check)
     lines.push_back({"to check", wanted + " of " + instrument + why +

@@ -120,7 +120,7 @@ TEST(SteepChecks, AreThePlacesThatNoOtherBeats) {
   // It is told, written and left out where targets are read that tie scans.
   std::size_t told = 0;
   for (const SummaryLine& line : summary_lines(network))
-    told += line.heading == "to check" && line.text.starts_with("a target at C");
+    told += line.heading == "to check" && line.text.starts_with("a target or a sharp corner at C");
   EXPECT_EQ(told, 2u);
   EXPECT_FALSE(any_ties({network.targets.data() + 1, 2}));
   const test::TemporaryFolder folder;
