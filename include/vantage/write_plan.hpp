@@ -22,7 +22,7 @@ namespace vantage {
 struct FolderOptions {
   ReportOptions report = {};  ///< Head of the reports. Their field and missed surface are the answer's.
   bool reports = true;        ///< Write report.html and report.pdf, if this build can.
-  PlyCoordinates ply = PlyCoordinates::floats;
+  PlyCoordinates ply = PlyCoordinates::floats;  ///< Coordinates of PLY files.
   /// Time for all of it, in seconds. A part that is not done by then is left out, unless two seconds do for it; tables,
   /// drawings and plan.png are always written. Empty: no limit.
   std::optional<double> max_seconds = std::nullopt;
