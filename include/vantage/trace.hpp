@@ -69,13 +69,12 @@ struct RegistrationModel {
 /// Registration information in the station masks: sums over voxels of point-to-plane information (docs/method.md).
 /// Exact, except for one rounding of each sum to double.
 struct RegistrationSums {
-  static constexpr std::size_t of_pair = 21, of_station = 10,
-                               instrument_errors =
-                                   14;  ///< Numbers of a pair, of a station, and of a row of `instrument`.
-  std::uint64_t voxels = 0;             ///< Voxels that were summed: those counted, or a sample of them.
-  Vec3 centre;                          ///< Local frame; places and rotations are relative to it.
-  double radius_m = 1;                  ///< Unit of places; rotations are in units of 1 / it.
-  std::vector<Vec3> heads;              ///< Per station, metres from the centre; empty unless sums were asked for.
+  /// Numbers of a pair, of a station, and of a row of `instrument`.
+  static constexpr std::size_t of_pair = 21, of_station = 10, instrument_errors = 14;
+  std::uint64_t voxels = 0;  ///< Voxels that were summed: those counted, or a sample of them.
+  Vec3 centre;               ///< Local frame; places and rotations are relative to it.
+  double radius_m = 1;       ///< Unit of places; rotations are in units of 1 / it.
+  std::vector<Vec3> heads;   ///< Per station, metres from the centre; empty unless sums were asked for.
   /// Per pair, in the order of `NetworkCounts::shared`: the upper triangle, row by row, of Σ w_i w_j / Σ_k w_k · J Jᵀ
   /// in 1/m², with J = [place × normal, normal].
   std::vector<double> pairs;
