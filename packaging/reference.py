@@ -7,6 +7,8 @@ module. What has no comment or docstring ends the build.
 import ast
 import html
 import importlib
+import inspect
+import itertools
 import os
 import re
 import shutil
@@ -20,10 +22,10 @@ from mkdocs.structure.files import File
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PAGES = os.path.join(ROOT, "build", "reference", "pages")
 MODULE = os.path.join(ROOT, "build", "release", "tests", "python", "module")  # where ctest -R python.install puts it
-WIDE = 88  # characters of a signature in one line
+WIDE = 78  # characters of a signature in one line
 
 pages = {}    # text of each page by its path
-symbols = {}  # page and heading of each name, by language
+symbols = {}  # page and heading of each name, by language; None if it has several
 
 
 class Page:
@@ -37,18 +39,20 @@ class Page:
         self.parts.append(text)
 
     def anchor(self, name):
-        """The place of a name; the first of several declarations of one name has it."""
-        symbols[self.language].setdefault(name, (self.path, name))
+        """The place of a name; the first of several declarations on a page has it. A name of several pages leads nowhere."""
+        known = symbols[self.language].setdefault(name, (self.path, name))
+        if known and known[0] != self.path:
+            symbols[self.language][name] = None
         if name in self.anchors:
             return ""
         self.anchors.add(name)
         return f' id="{name}"'
 
-    def heading(self, level, name, kind="", short=None):
-        if name not in self.anchors:
-            self.anchor(name)
-            label = html.escape(short or name).replace("*", "&#42;")
-            self.add(f'{"#" * level} ' + (f'<span class="kind">{kind}</span> ' if kind else "") + f"{label} {{: #{name} }}")
+    def heading(self, level, name, kind=""):
+        """Overloads share one."""
+        if self.anchor(name):
+            label = (f'<span class="kind">{kind}</span> ' if kind else "") + name.replace("*", "&#42;")
+            self.add(f'{"#" * level} {label} {{: #{name} }}')
 
     def members(self, rows):
         """A list of (anchors, declarations, text)."""
@@ -105,9 +109,8 @@ def cpp_html(node, here):
 
 
 def link(here, there):
-    """Of a page, from another."""
-    there = there.replace(".md", ".html")
-    return os.path.relpath(there, os.path.dirname(here))
+    """The address of a page on another."""
+    return os.path.relpath(there.replace(".md", ".html"), os.path.dirname(here))
 
 
 def cpp_doc(node, here):
@@ -121,16 +124,20 @@ def cpp_type(node, here):
         return ""
     text = cpp_html(node, here).strip()
     text = re.sub(r"\s*(&lt;)\s*|\s+(?=&gt;)", r"\1", text)
-    return re.sub(r" (?=&amp;|\*)", "", text)
+    return re.sub(r"(&amp;|\*)(?=\w)", r"\1 ", re.sub(r" (?=&amp;|\*)", "", text))
 
 
 def is_public(member):
-    """Whether pages show it: not what is private, nor what every class has, nor the constructors of a base."""
+    """Whether pages show it: they leave out what is private, what every class has, and the constructors of a base."""
     name, arguments = member.findtext("name"), member.findtext("argsstring") or ""
-    constructor = member.get("kind") == "function" and not "".join(member.find("type").itertext()) and not name.startswith("operator")
-    return not (member.get("prot") != "public" or member.get("kind") == "friend" and member.get("inline") != "yes"
-                or arguments.endswith(("=default", "=delete")) or name.startswith("~") or "&&" in arguments and (constructor or name == "operator=")
-                or constructor and not cpp_name(member).endswith(f"{name}::{name}"))
+    if member.get("prot") != "public" or name.startswith("~") or arguments.endswith(("=default", "=delete")):
+        return False
+    if member.get("kind") != "function":
+        return member.get("kind") != "friend" or member.get("inline") == "yes"
+    if re.match(rf"\({name} &&\)", arguments) or name == "operator=" and "&&" in arguments:
+        return False
+    constructor = not "".join(member.find("type").itertext()) and not name.startswith("operator")
+    return not constructor or cpp_name(member).endswith(f"{name}::{name}")
 
 
 def line_of(node):
@@ -162,25 +169,25 @@ class CppPage(Page):
             self.missing.append(f'{place.get("file")}:{place.get("line")}: {name}')
         return text
 
+    def reference(self, node):
+        page, heading = places.get(node.get("refid"), (None, None))
+        return f'<a href="{link(self.path, page)}#{heading}">{heading}</a>' if page else html.escape(node.text)
+
     def template(self, node):
         of = node.find("templateparamlist")
         return "" if of is None else "template &lt;" + ", ".join(
             " ".join(filter(None, (cpp_type(p.find("type"), self.path), p.findtext("declname")))) for p in of) + "&gt;\n"
 
     def function(self, member, level):
-        name, short = cpp_name(member), member.findtext("name")
-        self.heading(level, name, short=name)
+        self.heading(level, cpp_name(member))
         parameters = []
         for p in member.findall("param"):
             default = cpp_type(p.find("defval"), self.path)
-            array = p.findtext("array") or ""
-            parameters.append(" ".join(filter(None, (cpp_type(p.find("type"), self.path), p.findtext("declname")))) + array
-                              + (f" = {default}" if default else ""))
-        words = [word for word, of in (("static", "static"), ("explicit", "explicit"), ("virtual", "virt"))
-                 if member.get(of) in ("yes", "virtual", "pure-virtual")]
+            parameters.append(" ".join(filter(None, (cpp_type(p.find("type"), self.path), p.findtext("declname")))) + (f" = {default}" if default else ""))
+        words = [word for word, key in (("static", "static"), ("explicit", "explicit"), ("virtual", "virt")) if member.get(key, "no") not in ("no", "non-virtual")]
+        before = self.template(member) + "".join(word + " " for word in [*words, cpp_type(member.find("type"), self.path)] if word)
         after = re.sub(r"^.*\)", "", member.findtext("argsstring")).replace("=0", " = 0")
-        before = self.template(member) + " ".join([*words, cpp_type(member.find("type"), self.path)])
-        self.add(call(short, parameters, before.strip() + (" " if before.strip() else ""), html.escape(after)))
+        self.add(call(member.findtext("name"), parameters, before, html.escape(after)))
         self.add(self.told(member, cpp_doc(member, self.path)))
 
     def enumeration(self, node, level):
@@ -190,31 +197,27 @@ class CppPage(Page):
                        self.told(value, cpp_doc(value, self.path), node)) for value in node.findall("enumvalue")])
 
     def variables(self, members):
-        """Declarations of one line, or of one after another that has none, share a comment."""
+        """Declarators of one statement share a comment."""
         rows = []
-        for member in members:
-            value = cpp_type(member.find("initializer"), self.path)
-            value = f" {value}" if value.startswith("=") else value
-            declaration = (cpp_name(member), f'{cpp_type(member.find("type"), self.path)} <b>{member.findtext("name")}</b>'
-                           f'{html.escape(member.findtext("argsstring") or "")}{value}')
-            text = cpp_doc(member, self.path)
-            statement = member.get("statement")
-            if rows and rows[-1][2] == statement:
-                rows[-1] = (rows[-1][0] + [declaration], rows[-1][1] + (text if text != rows[-1][1] else ""), statement, member)
-            else:
-                rows.append(([declaration], text, statement, member))
-        for _, text, _, member in rows:
-            self.told(member, text)
-        self.members([row[:2] for row in rows])
+        for statement, together in itertools.groupby(members, lambda member: member.get("statement")):
+            together = list(together)
+            declarations = []
+            for member in together:
+                type_, name = cpp_type(member.find("type"), self.path), f'<b>{member.findtext("name")}</b>'
+                value = cpp_type(member.find("initializer"), self.path)
+                declaration = f"using {name} = {type_}" if member.get("kind") == "typedef" else f"{type_} {name}" + (f" {value}" if value.startswith("=") else value)
+                declarations.append((cpp_name(member), self.template(member) + declaration))
+            texts = dict.fromkeys(cpp_doc(member, self.path) for member in together)
+            rows.append((declarations, self.told(together[0], "".join(texts))))
+        self.members(rows)
 
     def type(self, compound, level):
         name = cpp_name(compound)
         self.heading(level, name, compound.get("kind"))
-        bases = [cpp_name(self.every[base.get("refid")]) for base in compound.findall("basecompoundref") if base.get("refid") in self.every]
+        bases = ", ".join(self.reference(base) for base in compound.findall("basecompoundref"))
         of = self.template(compound)
         if of or bases:
-            self.add(f'<pre class="declaration"><code>{of}{compound.get("kind")} <b>{name}</b>' + (f' : {", ".join(bases)}' if bases else "")
-                     + "</code></pre>")
+            self.add(f'<pre class="declaration"><code>{of}{compound.get("kind")} <b>{name}</b>{bases and " : " + bases}</code></pre>')
         self.add(self.told(compound, cpp_doc(compound, self.path)))
         self.list(cpp_members(compound, self.every), min(level + 1, 4))
 
@@ -279,7 +282,6 @@ def cpp_pages():
     every = {compound.get("id"): compound for compound in compounds}
     headers = [compound for compound in compounds if compound.get("kind") == "file" and compound.findtext("compoundname") != "vantage.hpp"]
     found = []
-    entries_of = {}
     for header in headers:
         file = header.find("location").get("file")
         page, lines = CppPage(header, every), statements(file)
@@ -294,15 +296,14 @@ def cpp_pages():
                 one.set("statement", str(lines[line_of(one)[0] - 1]))
                 for value in one.findall("enumvalue"):
                     places[value.get("id")] = (page.path, f'{cpp_name(one)}::{value.findtext("name")}')
-        found.append(page)
-        entries_of[page.path] = sorted(entries, key=line_of)
+        found.append((page, sorted(entries, key=line_of)))
     for node in compounds:  # what pages do not show is no place to go to
         for member in node.iter("memberdef"):
             if not is_public(member):
                 places.pop(member.get("id"), None)
-    for page in found:
-        page.make(entries_of[page.path])
-    return found
+    for page, entries in found:
+        page.make(entries)
+    return [page for page, _ in found]
 
 
 # --- Python ---
@@ -342,7 +343,7 @@ def text_html(text):
 
 def text_of(thing):
     """A docstring without the signature that pybind11 begins it with; the stubs have that in words of Python."""
-    return re.sub(r"^\w+\(.*\) -> [^\n]*", "", (getattr(thing, "__doc__", None) or "").strip()).strip()
+    return re.sub(r"^\w+\(.*\) -> [^\n]*", "", inspect.cleandoc(getattr(thing, "__doc__", None) or "")).strip()
 
 
 class PythonPage(Page):
@@ -358,6 +359,11 @@ class PythonPage(Page):
         text = text if "Literal" in text else text.replace("'", "")  # of names that are defined further down
         return re.sub(r"\b[A-Z]\w+", linked, html.escape(text, quote=False))
 
+    def sentences(self, text):
+        text = errors_apart(f"<p>{text_html(text)}</p>")
+        path, name = symbols["python"]["Error"]
+        return text.replace("<strong>Raises</strong> Error", f'<strong>Raises</strong> <a href="{link(self.path, path)}#{name}">Error</a>')
+
     def doc(self, name, text, stub=None):
         """A docstring: paragraphs, and lists of options with their types and defaults."""
         if not text:
@@ -366,7 +372,7 @@ class PythonPage(Page):
         for k, part in enumerate(listed):
             if k % 3 == 0 and part.strip():
                 for paragraph in re.split(r"\n\s*\n", part.strip()):
-                    self.add(errors_apart(f"<p>{text_html(paragraph)}</p>"))
+                    self.add(self.sentences(paragraph))
             elif k % 3 == 1:
                 self.add(f"<p><strong>{text_html(part)}:</strong></p>")
             elif k % 3 == 2:
@@ -408,37 +414,48 @@ class PythonPage(Page):
         made = stub.name == "__init__" or not stub.returns
         self.add(call(name, parameters, after="" if made else f" -&gt; {self.typed(stub.returns)}"))
 
-    def function(self, level, name, stub, thing):
-        if level:
-            self.heading(level, name)
-        text = text_of(thing)
+    def function(self, name, stub, text):
         self.signature(name, stub, text)
         self.doc(name, text, stub)
 
     def type(self, node, thing):
-        name, attributes, methods = node.name, [], []
+        name, attributes, methods, made = node.name, [], [], None
         self.heading(2, name, "class")
-        self.doc(name, text_of(thing))
         for item in node.body:
             if isinstance(item, ast.AnnAssign):
                 attributes.append((item.target.id, item.annotation))
             elif isinstance(item, ast.FunctionDef) and "property" in map(ast.unparse, item.decorator_list):
                 attributes.append((item.name, item.returns))
             elif item.name == "__init__":
-                self.function(0, name, item, thing.__init__)
-            elif not item.name.startswith("__"):
+                made = item
+            elif not item.name.startswith("__") and f"{item.name}.setter" not in map(ast.unparse, item.decorator_list):
                 methods.append(item)
-        if attributes and name != "Error":  # whose docstring lists its own
-            self.members([([(f"{name}.{attribute}", f"<b>{attribute}</b>: {self.typed(kind)}")], self.attribute(f"{name}.{attribute}", getattr(thing, attribute)))
-                          for attribute, kind in attributes])
+        if node.bases:
+            self.add(f'<pre class="declaration"><code>class <b>{name}</b>({", ".join(map(self.typed, node.bases))})</code></pre>')
+        if made and not text_of(thing.__init__):  # the class tells how it is made
+            self.function(name, made, text_of(thing))
+        else:
+            self.doc(name, text_of(thing))
+            if made:
+                self.function(name, made, text_of(thing.__init__))
+        told = text_of(thing)
+        rows = [self.attribute(f"{name}.{attribute}", kind, getattr(thing, attribute)) for attribute, kind in attributes
+                if name != "Error"  # whose docstring lists its own
+                and f"    {attribute}: {text_of(getattr(thing, attribute))}" not in told]
+        if len(rows) < len(attributes) and name != "Error":
+            self.add("<p>Options are attributes, too.</p>")
+        if rows:
+            self.add("<p><strong>Attributes:</strong></p>")
+            self.members(rows)
         for method in methods:
-            self.function(3, f"{name}.{method.name}", method, getattr(thing, method.name))
+            self.heading(3, f"{name}.{method.name}")
+            self.function(f"{name}.{method.name}", method, text_of(getattr(thing, method.name)))
 
-    def attribute(self, name, thing):
+    def attribute(self, name, kind, thing):
         text = text_of(thing)
         if not text:
             self.missing.append(f"python: {name}")
-        return errors_apart(f"<p>{text_html(text)}</p>")
+        return [(name, f"<b>{name.split('.')[1]}</b>: {self.typed(kind)}")], self.sentences(text)
 
 
 def python_pages():
@@ -459,7 +476,8 @@ def python_pages():
             if isinstance(stubs[name], ast.ClassDef):
                 page.type(stubs[name], getattr(module, name))
             else:
-                page.function(2, name, stubs[name], getattr(module, name))
+                page.heading(2, name)
+                page.function(name, stubs[name], text_of(getattr(module, name)))
     first.add("## Types of arguments {: #types }")
     first.members([([(node.targets[0].id, f"<b>{node.targets[0].id}</b> = {first.typed(node.value)}")], text_html(lines[node.lineno - 2].lstrip("# ")))
                    for node in aliases])
@@ -504,7 +522,7 @@ def on_page_markdown(markdown, page, **_):
         return markdown
     for language, found in made.items():
         rows = "".join(f"| [{one.title}]({one.path}) | {one.intro}"
-                       + ", ".join(f"[{name}]({one.path}#{name})" for name in dict.fromkeys(one.types)) + " |\n" for one in found)
+                       + ", ".join(f"[{name}]({one.path}#{name})" for name in dict.fromkeys(one.types) if not name.startswith("operator")) + " |\n" for one in found)
         markdown = markdown.replace(f"<!-- pages: {language} -->", "| page | contents |\n| --- | --- |\n" + rows)
     return markdown
 
@@ -515,12 +533,12 @@ def on_page_content(text, page, **_):
     order = ("python", "cpp") if "python" in here else ("cpp", "python")
 
     def linked(code):
-        name = code[1]
+        name = re.sub(r"^vantage(?:::|\.)", "", code[1])
         if re.fullmatch(r"[A-Z]\w*[a-z]\w*|\w+(?:::|\.)[\w:.]+|[\w:.]+\(\)", name):
             for language in order:
-                path, heading = symbols[language].get(name.removesuffix("()"), (None, None))
-                if path:
-                    return f'<a href="{link(here, path)}#{heading}">{code[0]}</a>'
+                place = symbols[language].get(name.removesuffix("()"))
+                if place:
+                    return f'<a href="{link(here, place[0])}#{place[1]}">{code[0]}</a>'
         return code[0]
 
     return re.sub(r'(?<!">)<code>([\w:.]+(?:\(\))?)</code>', linked, text)

@@ -66,8 +66,7 @@ void refuse_unknown(const py::kwargs& given, const std::string& call, const Sett
 /// stubs.
 template <class... Options>
 std::string settings_doc(const std::string& call, const SettingTable<Options>&... tables) {
-  std::string text =
-      "\n\nSettings, None where they are left open; in brackets the form of a value, as text, number or sequence:\n";
+  std::string text = "\n\nSettings, each with the form of its value (text, number or sequence); None leaves it open:\n";
   py::dict defaults;
   const auto add = [&](const auto& table) {
     for (const auto& row : table) {

@@ -8,7 +8,7 @@ import re
 import sys
 
 TYPE = re.compile(r"(?:template <[^>]*> )?(?:struct|class|enum class|enum) (\w+)[^()=]*$")
-TOKEN = re.compile(r'///<?|//|"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])\'|\n|[{};,]|(?:public|private|protected):(?!:)|[^\s{};,"\'/:p]+|.|\s')
+TOKEN = re.compile(r'///<?|//|"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])\'|\n|[{};,]|(?:public|private|protected):(?!:)|\w+|.')
 
 
 def needs_none(text):
