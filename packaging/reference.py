@@ -65,7 +65,7 @@ class Page:
 
 
 def errors_apart(text):
-    """What a call throws or requires begins a paragraph of its own."""
+    """A sentence on what a call throws or requires begins a paragraph of its own."""
     text = re.sub(r"(?<=[.):;] )(Throws|Raises|REQUIRES)\b", r"</p>\n<p>\1", text)
     return re.sub(r"<p>(Throws|Raises|REQUIRES)\b", r'<p class="errors"><strong>\1</strong>', text)
 
@@ -128,7 +128,7 @@ def cpp_type(node, here):
 
 
 def is_public(member):
-    """Whether pages show it: they leave out what is private, what every class has, and the constructors of a base."""
+    """True if pages show it: they leave out what is private, what every class has, and the constructors of a base."""
     name, arguments = member.findtext("name"), member.findtext("argsstring") or ""
     if member.get("prot") != "public" or name.startswith("~") or arguments.endswith(("=default", "=delete")):
         return False
@@ -199,7 +199,7 @@ class CppPage(Page):
     def variables(self, members):
         """Declarators of one statement share a comment."""
         rows = []
-        for statement, together in itertools.groupby(members, lambda member: member.get("statement")):
+        for _, together in itertools.groupby(members, lambda member: member.get("statement")):
             together = list(together)
             declarations = []
             for member in together:
@@ -222,35 +222,31 @@ class CppPage(Page):
         self.list(cpp_members(compound, self.every), min(level + 1, 4))
 
     def list(self, entries, level):
-        variables = []
-        for entry in [*entries, None]:
-            if entry is not None and entry.get("kind") in ("variable", "typedef") and level > 2:
-                variables.append(entry)
-                continue
-            if variables:
-                self.variables(variables)
-                variables = []
-            if entry is None:
-                continue
-            if level == 2:
-                self.types.append(cpp_name(entry))
-            if entry.tag == "compounddef":
-                self.type(entry, level)
-            elif entry.get("kind") == "enum":
-                self.enumeration(entry, level)
-            elif entry.get("kind") in ("function", "friend"):
-                self.function(entry, level)
+        """Entries in the order of the header. Variables of a class stand in one list; others have a heading for each statement."""
+        def together(entry):
+            if entry.get("kind") not in ("variable", "typedef"):
+                return entry.get("id")
+            return entry.get("statement") if level == 2 else "members"
+
+        for _, group in itertools.groupby(entries, together):
+            group = [*group]
+            first, kind = group[0], group[0].get("kind")
+            if first.tag == "compounddef":
+                self.type(first, level)
+            elif kind == "enum":
+                self.enumeration(first, level)
+            elif kind in ("function", "friend"):
+                self.function(first, level)
             else:
-                together = [other for other in entries if entry.get("statement") and other.get("statement") == entry.get("statement")]
-                if entry is together[0]:
-                    self.heading(level, cpp_name(entry), "constant" if entry.get("kind") == "variable" else "type")
-                    self.variables(together)
+                if level == 2:
+                    self.heading(level, cpp_name(first), "constant" if kind == "variable" else "type")
+                self.variables(group)
 
     def make(self, entries):
         text = cpp_doc(self.header, self.path)
         if not text:
             self.missing.append(f'{self.header.find("location").get("file")}:2: the header')
-        self.intro = first_sentence(text) + "<br>"
+        self.intro, self.types = first_sentence(text) + "<br>", [cpp_name(entry) for entry in entries]
         self.add(text)
         self.add(f'<pre class="declaration"><code>#include &lt;vantage/{self.header.findtext("compoundname")}&gt;</code></pre>')
         self.list(entries, 2)
