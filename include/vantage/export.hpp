@@ -118,6 +118,7 @@ void write_waypoints(const std::filesystem::path& file, const Evaluation& evalua
 /// - .dxf (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point
 ///   and a circle below the tripod), STATION_NAMES, LINKS (between the grounds of linked stations), SEARCH_AREA (closed
 ///   polylines), TARGETS and CONTROL_POINTS (a point and a circle at the centre), TARGET_NAMES.
+///
 /// `names`: from `station_names()`, one each. `links`: of these stations, or without values. Throws Error: io;
 /// invalid_argument (another extension, sizes that do not match, for .geojson and .kml a site without a coordinate
 /// system or stations outside of it).

@@ -283,6 +283,7 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
 /// required: components cannot be registered with each other, however well each overlaps in itself;
 /// - the least Euclidean distance of the scaled objectives to the best values (the utopia point: Zeleny, Compromise
 /// Programming, 1973).
+///
 /// Throws Error invalid_argument if the front is empty.
 std::size_t answer(const PlanResult& result);
 /// True if the answer meets all requirements. False if this is not certain: the answer was not confirmed, or `capture`

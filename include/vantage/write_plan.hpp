@@ -61,6 +61,7 @@ struct WrittenFolder {
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan, and registration.ply, .png and .svg;
 /// - report.html and report.pdf.
+///
 /// Counts the answer with every ray once. Throws Error: io; invalid_argument (an empty front), malformed_file (a logo
 /// that is no picture); and as the simulator does.
 WrittenFolder write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
