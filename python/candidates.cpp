@@ -226,7 +226,7 @@ void add_bounds(py::module_& m) {
       py::arg("graph") = py::none(), py::arg("link") = 0.0, py::arg("progress") = py::none(),
       ("The most coverage of `stations` candidates besides the existing ones: a good network, and a bound for "
        "all\nothers (docs/bounds.md). `link`: least overlap in `graph` of the links that connect the network; 0: it "
-       "need not\nbe connected." +
+       "need not\nbe connected. Raises Error invalid_argument: no candidates, or 0 stations." +
        of_coverage.doc())
           .c_str());
   m.def(
@@ -313,7 +313,8 @@ void add_greedy(py::module_& m) {
       },
       py::arg("site"), py::arg("stations"), py::kw_only(), py::arg("progress") = py::none(),
       ("Adds the candidate with the largest gain in coverage, again and again: a baseline, and a first network "
-       "for\n`Site.plan(start=...)`." +
+       "for\n`Site.plan(start=...)`. Raises Error invalid_argument: more stations than candidates, or no allowed "
+       "position." +
        options.doc())
           .c_str());
 }
@@ -346,7 +347,8 @@ void add_exact(py::module_& m) {
         return call.run([&] { return exact_network(self.site, config, call.progress()); });
       },
       py::arg("site"), py::arg("stations"), py::kw_only(), py::arg("progress") = py::none(),
-      ("The best network among candidates, as an integer program; proven best among them if its gap is 0." +
+      ("The best network among candidates, as an integer program; proven best among them if its gap is 0.\nRaises "
+       "Error invalid_argument if no position is allowed." +
        options.doc())
           .c_str());
 }

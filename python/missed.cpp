@@ -73,7 +73,8 @@ void add_missed(py::module_& m) {
           "Status of each, an index into `reasons`: (k,).")
       .def_property_readonly(
           "reasons", [](const MissedVoxels&) { return reasons(); },
-          "'captured', 'hidden', 'far', 'flat', 'sparse' and 'not_chosen', in the order of the numbers of `why`.")
+          "'captured', 'hidden', 'out_of_range', 'too_flat', 'too_dark', 'too_sparse' and 'not_chosen', in the order "
+          "of the numbers of `why`.")
       .def_property_readonly(
           "shares", &shares_of,
           "Shares of the goal points by reason, which add up to 1, for each node by its name; '': the whole site.")

@@ -99,9 +99,9 @@ Options<Scanner> scanner_options() {
           "times_s", [](const Scanner& s) { return or_none(s.times_s, numbers_of); },
           [](Scanner& s, const py::object& times) { s.times_s = numbers_from(times, "times_s"); },
           "Seconds from the begin of a scan to each of the directions (n,). None: points_per_second tells them.")
-      .add("height_m", &Scanner::height_m, "Height of the head above the search area.")
-      .add("min_range_m", &Scanner::min_range_m, "d_min.")
-      .add("max_range_m", &Scanner::max_range_m, "d_max.")
+      .add("height_m", &Scanner::height_m, "Height of the head above the search area, metres.")
+      .add("min_range_m", &Scanner::min_range_m, "Nearest distance measured, metres.")
+      .add("max_range_m", &Scanner::max_range_m, "Farthest distance measured, metres.")
       .add("points_per_second", &Scanner::points_per_second, "Measurement rate, for the time on site.")
       .add<py::object>(
           "noise", [](const Scanner& s) { return noise_of(s.noise); },
@@ -190,7 +190,8 @@ void add_scanners(py::module_& m) {
         for (const ScannerPreset& preset : list_scanners(more)) all.emplace_back(preset.key, preset.summary);
         return all;
       },
-      py::arg("more") = "", "Pairs (key, summary) of the presets, those of the file `more` first.");
+      py::arg("more") = "",
+      "Pairs (key, summary) of the presets, those of the file `more` first. Raises Error: io, malformed_file.");
   m.def(
       "load_directions",
       [](const std::filesystem::path& file) {

@@ -275,7 +275,8 @@ void add_scenes(py::module_& m) {
         return load_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, options.read(given), name);
       },
       py::arg("bytes"), py::arg("name") = "glTF in memory",
-      "Loads a scene from the bytes of a .glb or .gltf file. Messages begin with `name`. Options as for `Scene.load`.");
+      "Loads a scene from the bytes of a .glb or .gltf file. Messages begin with `name`. Options as for "
+      "`Scene.load`.\nRaises Error as `Scene.load`, and malformed_file if the file refers to another one.");
   m.def(
       "built_in_scene_names",
       [] {
@@ -289,7 +290,8 @@ void add_scenes(py::module_& m) {
         write_built_in_scene(name, triangles, file);
       },
       py::arg("name"), py::arg("file"), py::arg("triangles") = 0, py::call_guard<py::gil_scoped_release>(),
-      "Writes a built-in scene as GLB. triangles: for 'industrial', 20 000 and up; the others ignore it.");
+      "Writes a built-in scene as GLB. triangles: for 'industrial', 20 000 and up; the others ignore it.\nRaises "
+      "Error: invalid_argument, io.");
 }
 
 }  // namespace vantage::python

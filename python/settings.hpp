@@ -62,15 +62,16 @@ void refuse_unknown(const py::kwargs& given, const std::string& call, const Sett
   }
 }
 
-/// A line for each row, for the end of a docstring, and the rows' names for the test of the stubs.
+/// A line for each row with the form of its value, for the end of a docstring, and the rows' names for the test of the
+/// stubs.
 template <class... Options>
 std::string settings_doc(const std::string& call, const SettingTable<Options>&... tables) {
-  std::string text = "\n\nSettings, None where they are left open:\n";
+  std::string text = "\n\nSettings, each with the form of its value (text, number or sequence); None leaves it open:\n";
   py::dict defaults;
   const auto add = [&](const auto& table) {
     for (const auto& row : table) {
       if (row.name == "problem") continue;  // a separate parameter
-      text += "    " + keyword(row.name) + ": " + row.help + ".\n";
+      text += "    " + keyword(row.name) + (row.unit.empty() ? "" : " (" + row.unit + ")") + ": " + row.help + ".\n";
       defaults[py::str(keyword(row.name))] = py::none();
     }
   };

@@ -172,7 +172,8 @@ void add_simulators(py::module_& m) {
        "threads\nrun while it traces. Calls from several threads run one after another; a callback that calls the "
        "simulator that\ncalled it gets an Error. The same inputs, seed and engine give the same result, bit for "
        "bit.\n\n`progress`, if given, is called with the share done in [0, 1]. If it returns False, the call ends "
-       "early, and its\nresult has `cancelled` set. Ctrl-C ends a call too, with KeyboardInterrupt." +
+       "early, and its\nresult has `cancelled` set. Ctrl-C ends a call too, with KeyboardInterrupt.\n\nRaises Error: "
+       "invalid_argument, no_suitable_device, out_of_memory." +
        options.doc())
           .c_str());
   type.def(py::init([options](const Scene& scene, const std::variant<Scanner, std::vector<Scanner>>& scanner,
@@ -253,7 +254,8 @@ void add_simulators(py::module_& m) {
            py::arg("overlap") = true, py::arg("surroundings") = false, py::arg("registration") = py::none(),
            py::arg("progress") = py::none(),
            "Evaluates several networks, each as in `evaluate`, on one sample of the surveyed voxels: an Evaluation "
-           "each, with\nstandard errors. voxels: size of the sample, at most all of them.")
+           "each, with\nstandard errors. voxels: size of the sample, at most all of them.\nRaises Error "
+           "invalid_argument.")
       .def("__repr__", [](const Simulators& self) {
         return "<vantage.Simulator on " + name_of(self.simulator.engine().engine) + ", " +
                std::to_string(self.simulator.voxel_count()) + " voxels>";

@@ -102,8 +102,8 @@ void add_sites(py::module_& m) {
             return guarded(Site::open(file, std::move(options)));
           },
           py::arg("file"),
-          ("Reads a model and chooses the settings that are left open. Raises Error: io, "
-           "malformed_file,\ninvalid_argument, out_of_memory." +
+          ("Reads a model, a floor plan or points, as `Scene.load`, and chooses the settings that are left open. "
+           "Raises Error: io,\nmalformed_file, invalid_argument, out_of_memory." +
            settings_doc("Site.open", site_settings()))
               .c_str())
       .def_property_readonly(

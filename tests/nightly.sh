@@ -11,7 +11,7 @@
 #   machine    all tests under each instruction set of Embree and each width of lavapipe's vectors
 #   packages   builds the Debian packages, has lintian look at them, and installs them, the container's steps and the wheel where nothing else is
 #              (needs root, a mirror, lintian and mmdebstrap)
-#   docs       the site of docs (needs mkdocs and mkdocs-material), and the commands of docs that take long
+#   docs       the site of docs with the reference (needs mkdocs, mkdocs-material and doxygen), and the commands of docs that take long
 #   readers    point clouds in PLY as the Point Cloud Library, CloudCompare and Open3D read them (needs pcl-tools, cloudcompare and python3-open3d);
 #              PLY, GLB and the system of LAS as three.js and proj4 do
 #   writers    models as gltf-transform, gltfpack, gltf-pipeline, obj2gltf and three.js write them; floor plans as GDAL (needs gdal-bin), dxf-writer and

@@ -38,7 +38,7 @@ class AttainableCounts {
   std::uint64_t population() const noexcept { return population_; }              ///< Number of surveyed voxels.
   /// Elements of the surveyed meshes of a pattern.
   struct OfMeshes {
-    std::string meshes;
+    std::string meshes;             ///< The pattern, as it was given.
     std::vector<std::uint8_t> has;  ///< By element, 1 for those of them.
   };
   /// Tells the share captured of the surveyed meshes of a pattern too, as `captured()` of vantage/objective.hpp takes

@@ -33,7 +33,7 @@ class SampledCoverage {
   /// Makes one without stations.
   SampledCoverage(const Simulator& simulator, std::uint64_t sample_voxels);
 
-  const CoverageMatrix& matrix() const noexcept { return matrix_; }
+  const CoverageMatrix& matrix() const noexcept { return matrix_; }              ///< A column for each station.
   std::size_t size() const noexcept { return matrix_.candidates(); }             ///< Number of stations.
   const std::vector<std::uint32_t>& voxels() const noexcept { return voxels_; }  ///< Voxel of each element, ascending.
   std::uint64_t population() const noexcept { return population_; }              ///< Number of surveyed voxels.
@@ -92,6 +92,7 @@ struct CandidateConfig {
   double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const CandidateConfig& config);
 
 /// Evenly spread allowed positions, and the coverage of stations on them.

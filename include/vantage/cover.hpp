@@ -30,22 +30,23 @@ namespace vantage {
 /// Sparse matrix of the amount that each candidate adds to each element: 8 bytes an entry.
 class CoverageMatrix {
  public:
+  /// Amount that a candidate adds to one element.
   struct Entry {
-    std::uint32_t element = 0;
-    std::uint32_t amount = 0;  ///< At least 1.
+    std::uint32_t element = 0;  ///< Its number, from 0.
+    std::uint32_t amount = 0;   ///< At least 1.
   };
 
   CoverageMatrix() = default;
   /// Makes one without candidates. `weights`: one for each element. REQUIRES: goal > 0.
   CoverageMatrix(std::vector<std::uint32_t> weights, double goal);
 
-  std::size_t candidates() const noexcept { return offsets_.size() - 1; }
-  std::size_t elements() const noexcept { return weights_.size(); }
+  std::size_t candidates() const noexcept { return offsets_.size() - 1; }  ///< Number of candidates: columns.
+  std::size_t elements() const noexcept { return weights_.size(); }        ///< Number of elements: rows.
   /// Entries of a candidate, by rising element. REQUIRES: candidate < candidates().
   std::span<const Entry> column(std::size_t candidate) const {
     return std::span(entries_).subspan(offsets_[candidate], offsets_[candidate + 1] - offsets_[candidate]);
   }
-  const std::vector<std::uint32_t>& weights() const noexcept { return weights_; }
+  const std::vector<std::uint32_t>& weights() const noexcept { return weights_; }  ///< w_e of each element.
   double goal() const noexcept { return goal_; }  ///< The amount that covers an element where all have one goal.
   /// The amount that covers an element. REQUIRES: element < elements().
   double goal(std::size_t element) const { return goals_.empty() ? goal_ : goals_[element]; }
@@ -82,8 +83,8 @@ class StationGraph {
  public:
   /// Another candidate, and how much it overlaps with one.
   struct Overlap {
-    std::uint32_t candidate = 0;
-    float share = 0;
+    std::uint32_t candidate = 0;  ///< Its number, from 0.
+    float share = 0;              ///< Overlap of the two, in [0, 1].
   };
 
   StationGraph() = default;
@@ -99,7 +100,7 @@ class StationGraph {
   /// with the candidates before; size >= size().
   void extend(const CoverageMatrix& seen, std::size_t size);
 
-  std::size_t size() const noexcept { return overlaps_.size(); }
+  std::size_t size() const noexcept { return overlaps_.size(); }  ///< Number of candidates.
   /// 0 for candidates without a common element. REQUIRES: i, j < size(), as below.
   float overlap(std::size_t i, std::size_t j) const;
   /// Candidates that overlap with `i`, rising.
@@ -113,8 +114,9 @@ class StationGraph {
   /// Candidates that no network may have together with `i`, rising.
   std::span<const std::uint32_t> excluded(std::size_t i) const { return excluded_[i]; }
 
-  /// Both set i, j and j, i. REQUIRES: i != j.
+  /// Sets i, j and j, i. REQUIRES: i != j.
   void set_overlap(std::size_t i, std::size_t j, float overlap);
+  /// No network may have both. REQUIRES: i != j.
   void exclude(std::size_t i, std::size_t j);
   /// Excludes all pairs whose positions are less than `least_m` apart, of which one is candidate `first` or a later
   /// one. REQUIRES: a position for each candidate.
@@ -132,7 +134,7 @@ class StationGraph {
 
 /// A covering problem. Borrows the matrix and the graph.
 struct CoverProblem {
-  const CoverageMatrix& matrix;
+  const CoverageMatrix& matrix;            ///< Amount that each candidate adds to each element.
   const StationGraph* graph = nullptr;     ///< Null: no overlaps and no exclusions.
   std::vector<std::size_t> existing = {};  ///< Candidates of every network, first in every solution.
   std::size_t fewest = 1;                  ///< Least number of further candidates.
@@ -161,6 +163,7 @@ struct CoverSolution {
 
   /// Possible gain in coverage, as a share of this network's.
   double gap() const { return relative_gap(bound, coverage); }
+  /// The same of a bound and of what was reached; 0 if nothing was.
   static double relative_gap(double bound, double reached) {
     return bound > reached && reached > 0 ? bound / reached - 1 : 0;
   }
@@ -186,7 +189,7 @@ std::vector<std::size_t> improve_by_swaps(const CoverProblem& problem, std::vect
 
 /// Result of min_connected_cover().
 struct ConnectedCover {
-  CoverSolution best;
+  CoverSolution best;  ///< The best network found.
   /// The best network of one candidate fewer, which is not feasible; empty if none was searched.
   std::optional<CoverSolution> one_fewer = std::nullopt;
 };
@@ -210,6 +213,7 @@ struct BoundConfig {
   double exact_seconds = 0;  ///< Time for branch and bound; 0: greedy and swaps alone choose.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const BoundConfig& config);
 
 /// The most coverage of `problem.most` further candidates: a good network, and a bound for all networks of as many.

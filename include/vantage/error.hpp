@@ -24,12 +24,13 @@ enum class Errc {
 /// (u, v), a clash, a cancelled run) are values, never errors.
 class Error : public std::runtime_error {
  public:
+  /// `what`: the message; `details`: further lines.
   Error(Errc code, const std::string& what, std::vector<std::string> details = {})
       : std::runtime_error(what),
         code_(code),
         details_(std::make_shared<const std::vector<std::string>>(std::move(details))) {}
 
-  Errc code() const noexcept { return code_; }
+  Errc code() const noexcept { return code_; }  ///< Kind of failure.
   /// Further lines, e.g. why each device was refused.
   std::span<const std::string> details() const noexcept { return *details_; }
 

@@ -41,23 +41,25 @@ std::string to_string(LinkMeasure);  ///< "overlap", "scan overlap"
 
 /// Links between the active stations of a network. Stations are numbered by their place in it, from 0.
 struct StationLinks {
-  LinkMeasure measure = LinkMeasure::overlap;
+  LinkMeasure measure = LinkMeasure::overlap;        ///< Measure that `least` and `values` are of.
   double least = 0;                                  ///< Least value of a link; a value of 0 never links.
   PairMatrix values = {};                            ///< One for each pair of all stations.
   std::vector<std::vector<std::size_t>> parts = {};  ///< Connected components, the largest first.
   /// The weakest link of the maximum spanning tree, if there is one component of several stations.
   std::optional<std::pair<std::size_t, std::size_t>> weakest = std::nullopt;
-  double weakest_value = 0;
+  double weakest_value = 0;  ///< Value of that link.
   /// Best pair of each component, except the first, with a station outside of it.
   struct Gap {
-    std::size_t inside = 0, outside = 0;
-    double value = 0;
+    std::size_t inside = 0, outside = 0;  ///< Stations, by their places in the network.
+    double value = 0;                     ///< Value of the pair.
   };
-  std::vector<Gap> gaps = {};
+  std::vector<Gap> gaps = {};  ///< One for each component except the first.
   /// Pairs that would link a component, except the first, to another if glass did not stop links: the best of each.
   std::vector<Gap> through_glass = {};
 };
+/// Links of at least `least` between stations that are active, by overlap. REQUIRES: a row for each station.
 StationLinks station_links(const OverlapMatrix& overlap, double least, std::span<const PlacedStation> stations);
+/// The same by scan overlap.
 StationLinks station_links(const ScanOverlapMatrix& overlap, double least, std::span<const PlacedStation> stations);
 
 /// A link that alone ties ground at two heights together, though the way on foot between its stations is long: it goes
@@ -74,7 +76,7 @@ struct ScanData {
   /// Points on all surfaces: counted, or estimated from the coarser scans of `EvaluationSite::surroundings`.
   double points = 0;
   double e57_bytes = 0;  ///< As files of `PointCloudWriter` with reflectivity and without colours.
-  double las_bytes = 0;
+  double las_bytes = 0;  ///< The same as LAS.
 };
 
 /// A network and its figures: by every ray, or estimated from a sample of the voxels.
@@ -154,13 +156,14 @@ double violation_of(const Evaluation& evaluation, std::span<const Requirement> r
 
 /// Parts that an evaluation uses. Borrows all of it.
 struct EvaluationSite {
-  Simulator& simulator;
+  Simulator& simulator;                 ///< Traces the stations.
   Simulator* surroundings = nullptr;    ///< `surroundings_of(simulator)`, for scan overlaps. Null: none.
   const OnSite* on_site = nullptr;      ///< Makes rounds on site. Null: none.
   const ClashChecker* clash = nullptr;  ///< Needed by targets and by lines of sight between stations. Null: none.
   const SearchArea* area = nullptr;     ///< With `clash`: tells where stations may stand instead. Null: not told.
 };
 
+/// Extent of an evaluation: counts, measures, errors.
 struct EvaluationOptions {
   std::optional<std::uint64_t> sample_voxels = {};  ///< Size of the sample of voxels; empty: every ray.
   bool overlap = true;  ///< Count pairs of stations; without them only coverage is measured.
@@ -176,7 +179,7 @@ struct EvaluationOptions {
   /// until the error is known to 2 % or to 0.02 mm, as one standard error.
   std::uint64_t registration_voxels = 0;
   std::vector<Target> targets = {};  ///< Targets and control points that tie scans together, for `registration`.
-  TargetOptions target = {};
+  TargetOptions target = {};         ///< Needs of a scan that measures a target.
   /// Measures `capture` too. The evaluated stations raise these counts where one alone sees more. Null: not.
   const AttainableCounts* attainable = nullptr;
   std::optional<double> attainable_growth = std::nullopt;           ///< As in `Evaluation`, of these counts.

@@ -44,7 +44,10 @@ std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32
 /// The kind of coordinates of a PLY. Floats, which all viewers read, are about an origin of whole kilometres near the
 /// site that the header's comment `origin X Y Z` tells: 0 0 0 where coordinates are small. Doubles are in the survey
 /// frame.
-enum class PlyCoordinates : std::uint8_t { floats, doubles };
+enum class PlyCoordinates : std::uint8_t {
+  floats,   ///< Coordinates take 12 bytes a point.
+  doubles,  ///< Coordinates take 24 bytes a point.
+};
 
 /// Streams a point cloud to a file in constant memory. The extension decides the format: .ply (binary little endian),
 /// .las (1.4) or .e57 (ASTM E2807: a scan for each station, with its pose, points in the scanner's own frame). The file
@@ -65,8 +68,9 @@ class PointCloudWriter {
   void begin_station(const StationScan& station);
   /// Writes a point for each ray that hit. `station`: its number, from 1; LAS's point source id, where 0 means none.
   void write(const ScanChunk& chunk, std::uint16_t station);
+  /// Completes the file and gives it its name. Throws Error io.
   void close();
-  std::uint64_t points() const noexcept;
+  std::uint64_t points() const noexcept;  ///< Points written so far.
 
  private:
   struct Impl;
@@ -114,6 +118,7 @@ void write_waypoints(const std::filesystem::path& file, const Evaluation& evalua
 /// - .dxf (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point
 ///   and a circle below the tripod), STATION_NAMES, LINKS (between the grounds of linked stations), SEARCH_AREA (closed
 ///   polylines), TARGETS and CONTROL_POINTS (a point and a circle at the centre), TARGET_NAMES.
+///
 /// `names`: from `station_names()`, one each. `links`: of these stations, or without values. Throws Error: io;
 /// invalid_argument (another extension, sizes that do not match, for .geojson and .kml a site without a coordinate
 /// system or stations outside of it).
@@ -158,10 +163,14 @@ std::string evaluation_json(const Evaluation& evaluation);
 /// engine, device, seed, parameters, version. Every network of the front has its values by their objectives' names. All
 /// numbers (`entry`, `answer`, stations of links) count from 1.
 std::string front_json(const PlanResult& result, const Simulator& simulator);
+/// A line for each network of the front: its values by the search and by every ray, violation, and stations. Throws
+/// Error io.
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result);
 
-/// Pictures, drawn as .png or .svg by extension.
+/// Draws the front, as .png or .svg by extension, as all pictures. Throws Error: io, invalid_argument (another
+/// extension).
 void draw_front(const std::filesystem::path& file, const PlanResult& result);
+/// Draws the hypervolume of the search against its evaluations.
 void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result);
 /// The front at five moments of the search, with the search's own values (figure 9 of the method).
 void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);

@@ -10,8 +10,8 @@ namespace vantage {
 
 /// An image in sRGB with 8 bits a channel, row by row from the top.
 struct Image {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  ///< Red, green, blue, alpha: 4 · width · height bytes.
+  std::uint32_t width = 0, height = 0;  ///< Pixels.
+  std::vector<std::uint8_t> rgba;       ///< Red, green, blue, alpha: 4 · width · height bytes.
 };
 
 /// Reads a PNG or JPEG. Throws Error: io, malformed_file.

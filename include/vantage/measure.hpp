@@ -23,10 +23,13 @@ namespace vantage {
 class PairMatrix {
  public:
   PairMatrix() = default;
-  explicit PairMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}
-  std::size_t size() const noexcept { return n_; }
+  explicit PairMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}  ///< Makes one of `n` stations, all 0.
+  std::size_t size() const noexcept { return n_; }                    ///< Number of stations.
+  /// Number of a pair. REQUIRES: i, j < size(), as below.
   double operator()(std::size_t i, std::size_t j) const { return values_[i * n_ + j]; }
+  /// Sets i, j and j, i.
   void set(std::size_t i, std::size_t j, double value) { values_[i * n_ + j] = values_[j * n_ + i] = value; }
+  /// Numbers of station i with each.
   std::span<const double> row(std::size_t i) const { return {values_.data() + i * n_, n_}; }
 
  private:
@@ -62,7 +65,7 @@ double clustering_coefficient(const OverlapMatrix& overlap);
 /// An estimate and its standard error. The error is 0 when the whole population was counted. It is 0.5, the largest
 /// possible for a value in [0, 1], if the sample is too small to tell (one voxel).
 struct Estimate {
-  double value = 0, standard_error = 0;
+  double value = 0, standard_error = 0;  ///< In the unit of what is estimated; NaN: not known.
 };
 /// Shares of what is attainable that a network captures (vantage/attainable.hpp).
 struct CapturedShares {
@@ -91,12 +94,12 @@ enum class RegistrationSurfaces {
   surveyed,  ///< Surveyed surfaces only: conservative.
   all,       ///< All surfaces, e.g. ground and neighbours too, as voxels of `surroundings_of()`.
 };
-std::string to_string(RegistrationSurfaces);
+std::string to_string(RegistrationSurfaces);  ///< "surveyed", "all"
 
 /// Prior of registration: one standard deviation of each station's pose before scans are matched, and how accurately
 /// scans have the surface. Reasons and sources: docs/method.md.
 struct RegistrationOptions {
-  RegistrationModel model = {};
+  RegistrationModel model = {};         ///< Accuracy of a surface in one scan.
   double position_m = 0.03;             ///< Head's position, in each axis; above 0.
   Angle heading = Angle::degrees(0.2);  ///< Above 0.
   /// Each of the two tilts, as by a dual-axis compensator. 0: exactly level, so 4 unknowns a station instead of 6; some
@@ -107,6 +110,7 @@ struct RegistrationOptions {
                                                                    ///< way.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const RegistrationOptions& options);
 /// One row for each setting, and its bounds.
 const SettingTable<RegistrationOptions>& registration_settings();
@@ -121,6 +125,7 @@ RegistrationOptions levelled_by(RegistrationOptions options, std::span<const Sca
 struct RegistrationTarget {
   Vec3 centre;           ///< Local frame (survey frame less `Simulator::origin()`).
   double control_m = 0;  ///< Standard deviation of known coordinates, in each axis; 0: they are not known.
+  /// One scan that measures it.
   struct Sighting {
     std::size_t station;  ///< Its place in the network.
     /// Standard deviation of the centre in that scan, above 0: in each axis across the line from the head, and along
@@ -141,18 +146,18 @@ struct StationError {
 
 /// Predicted error of a registered network, metres.
 struct RegistrationError {
-  double rms_m = 0;     ///< Root mean square displacement of the points of the covered surface.
-  double random_m = 0;  ///< The same without the errors that all scans of an instrument share.
-  double worst_m = 0;   ///< `rms_m` of the worst station.
-  std::size_t worst_station = 0;
+  double rms_m = 0;               ///< Root mean square displacement of the points of the covered surface.
+  double random_m = 0;            ///< The same without the errors that all scans of an instrument share.
+  double worst_m = 0;             ///< `rms_m` of the worst station.
+  std::size_t worst_station = 0;  ///< Its place in the network.
   /// As `rms_m`, in the site's frame and not in the survey's own; known if a station sees a control point.
   std::optional<double> absolute_rms_m = std::nullopt;
-  std::vector<StationError> stations;
+  std::vector<StationError> stations;  ///< One for each station.
   /// Per station: covariance of [turn · scale_m, shift], 6 × 6 row-major. The displacement at p is shift + turn × (p −
   /// centre).
   std::vector<std::array<double, 36>> poses;
-  Vec3 centre;  ///< Local frame, as `RegistrationSums::centre`.
-  double scale_m = 1;
+  Vec3 centre;         ///< Local frame, as `RegistrationSums::centre`.
+  double scale_m = 1;  ///< Length that turns of `poses` are multiplied by.
 
   /// Root mean square displacement of a point of the local frame by station `station`.
   double at(std::size_t station, const Vec3& local) const;
@@ -183,7 +188,7 @@ struct Connectivity {
   /// The weakest link of the strongest spanning tree, and its overlap, if there is one component. The whole
   /// registration depends on it.
   std::pair<std::size_t, std::size_t> weakest_link{0, 0};
-  double weakest_overlap = 0;
+  double weakest_overlap = 0;  ///< Overlap of the weakest link.
 };
 /// Links are the pairs whose overlap is above 0 and at least `min_overlap`, from 0 to 1.
 /// Throws Error: invalid_argument.

@@ -32,32 +32,35 @@ enum class WhyMissed : std::uint8_t {
   sparse,      ///< No single candidate's station would leave as many points as the goal density.
   not_chosen,  ///< One other station would have captured it.
 };
-inline constexpr std::size_t why_missed_count = 7;
+inline constexpr std::size_t why_missed_count = 7;  ///< Number of `WhyMissed` values.
+/// "captured", "hidden", "out_of_range", "too_flat", "too_dark", "too_sparse", "not_chosen"
 std::string to_string(WhyMissed);
 
+/// Lines that the reasons are found by.
 struct MissedOptions {
   /// Number of candidates from which lines are drawn: the first ones, which are spread evenly.
   std::size_t candidates = 256;
   Angle flat = Angle::degrees(80);  ///< Largest incidence, from the normal, of a surface that is not seen too flatly.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const MissedOptions& options);
 
 /// Status of one voxel, with shares of its goal density in [0, 1].
 struct VoxelStatus {
-  WhyMissed why = WhyMissed::captured;
-  float captured = 0;    ///< What the network left.
-  float attainable = 0;  ///< What the best single candidate would leave, or `captured` if that is more.
+  WhyMissed why = WhyMissed::captured;  ///< Its status.
+  float captured = 0;                   ///< What the network left.
+  float attainable = 0;                 ///< What the best single candidate would leave, or `captured` if that is more.
 };
 
 /// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other
 /// stations would add to it, and the other reasons share what is beyond every station. A voxel belongs to the mesh with
 /// most surface in it, and counts by its weight, as in coverage.
 struct MissedShare {
-  std::string node;  ///< `MeshInfo::name`; "" is the whole site.
-  std::uint64_t voxels = 0;
+  std::string node;                               ///< `MeshInfo::name`; "" is the whole site.
+  std::uint64_t voxels = 0;                       ///< Judged voxels of the node.
   std::array<double, why_missed_count> shares{};  ///< Indexed by `WhyMissed`.
-  double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }
+  double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }  ///< One of `shares`.
 };
 
 /// A room, with what a network captures of it and where one can stand in it.
@@ -74,9 +77,9 @@ std::vector<std::vector<std::size_t>> stations_in_rooms(std::span<const Room> ro
 
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
-  std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending.
+  std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending; the next two have an element for each.
   std::vector<std::uint32_t> points = {};  ///< Points of the network in each.
-  std::vector<VoxelStatus> status = {};
+  std::vector<VoxelStatus> status = {};    ///< Status of each.
   /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one. The
   /// whole site's captured share is its coverage, from all voxels; the sample splits the rest.
   std::vector<MissedShare> shares = {};

@@ -33,8 +33,8 @@ struct MeasuredNetwork {
   /// Counts on all surfaces, surveyed or not, by the coarser simulator of `surroundings_of()`, with pairs. Null if no
   /// objective needs them. `surroundings_voxels`: the number of its voxels.
   const NetworkCounts* surroundings = nullptr;
-  std::uint64_t surroundings_voxels = 0;
-  double minutes_on_site = 0;  ///< By `OnSite`, without existing stations; 0 where no objective needs it.
+  std::uint64_t surroundings_voxels = 0;  ///< See `surroundings`.
+  double minutes_on_site = 0;             ///< By `OnSite`, without existing stations; 0 where no objective needs it.
   /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
   Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
   const Scene* scene = nullptr;  ///< The surveyed scene, for `captured()`.
@@ -57,6 +57,7 @@ struct RequiredInputs {
   bool attainable = false;
   bool meshes = false;  ///< `NetworkCounts::meshes`, for `captured()`.
 };
+/// Inputs of both; the registration model of the first that has one.
 constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs& b) {
   return {a.counts || b.counts,
           a.pairs || b.pairs,
@@ -81,9 +82,9 @@ double captured(const NetworkCounts& counts, const Scene& scene, std::string_vie
 /// (best − value) / (best − worst). `worst` is the reference point of the hypervolume. Values beyond either end are
 /// allowed.
 struct Scale {
-  double best = std::numeric_limits<double>::quiet_NaN(), worst = best;
-  bool given() const { return !std::isnan(best); }
-  double width() const { return std::abs(best - worst); }
+  double best = std::numeric_limits<double>::quiet_NaN(), worst = best;  ///< Its ends; NaN: not given.
+  bool given() const { return !std::isnan(best); }                       ///< True if it has ends.
+  double width() const { return std::abs(best - worst); }                ///< Distance of its ends, at least 0.
 };
 /// A scale on which less is better. Throws Error invalid_argument unless best <= worst, both finite.
 Scale minimise(double best, double worst);
@@ -95,12 +96,12 @@ Scale maximise(double best, double worst);
 struct Objective {
   /// "coverage": its key in tables, JSON and options. Lower-case letters, digits, `_`; unique.
   std::string name = {};
-  std::string label = {};  ///< Text for axes: "Overlap (average clustering coefficient)".
-  std::string unit = {};   ///< "mm"; empty: a plain number.
-  std::string noun = {};   ///< In sentences: "registration error"; empty: the name.
-  bool percent = false;    ///< Sentences show a value of 1 as 100 %.
-  Scale scale = {};        ///< E.g. `minimise(0, 10)` for millimetres, `maximise(1, 0)` for a share.
-  RequiredInputs needs = {};
+  std::string label = {};     ///< Text for axes: "Overlap (average clustering coefficient)".
+  std::string unit = {};      ///< "mm"; empty: a plain number.
+  std::string noun = {};      ///< In sentences: "registration error"; empty: the name.
+  bool percent = false;       ///< Sentences show a value of 1 as 100 %.
+  Scale scale = {};           ///< E.g. `minimise(0, 10)` for millimetres, `maximise(1, 0)` for a share.
+  RequiredInputs needs = {};  ///< Inputs that `value` reads.
   /// Computes the value. Called from several threads at once. Must be a pure function.
   std::function<double(const MeasuredNetwork&)> value = {};
   /// Standard error of `value` on a sample; empty: computed from the sample's groups (docs/method.md).
@@ -110,8 +111,14 @@ struct Objective {
   bool by_alpha = false;
   /// How a choice of stations among candidates, before a search for few stations, can use a limit on it. The search
   /// handles limits of every kind; the choice knows those on coverage, links, distances and time.
-  enum class Kind { other, coverage, link, distance, time };
-  Kind kind = Kind::other;
+  enum class Kind {
+    other,     ///< The choice does not know it.
+    coverage,  ///< A share of the surface.
+    link,      ///< The weakest link of the maximum spanning tree.
+    distance,  ///< The least distance between two stations.
+    time,      ///< Minutes on site.
+  };
+  Kind kind = Kind::other;     ///< The kind of this one.
   double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 has at least, for `Kind::coverage`.
   /// Pattern of the surveyed meshes, as of `captured()`, of which the value is the share of what is attainable; empty:
   /// it is no share of some meshes. REQUIRES: `needs.attainable` if not empty.
@@ -127,7 +134,7 @@ struct Objective {
   }
   /// Inverse of `scaled`.
   double unscaled(double f) const;
-  bool maximised() const { return scale.best > scale.worst; }
+  bool maximised() const { return scale.best > scale.worst; }  ///< True if more is better.
 };
 
 /// Union of their inputs.
@@ -139,10 +146,14 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured);
 /// A bound on an objective: `coverage >= 0.9`. In a search, networks that violate one rank behind all that do not, by
 /// their violation.
 struct Requirement {
-  enum class Bound { at_least, at_most };
-  Objective objective;
-  Bound bound = Bound::at_least;
-  double limit = 0;
+  /// Side on which the limit lies.
+  enum class Bound {
+    at_least,  ///< `>=`
+    at_most,   ///< `<=`
+  };
+  Objective objective;            ///< Measure that is bounded.
+  Bound bound = Bound::at_least;  ///< Its side.
+  double limit = 0;               ///< In the unit of the objective.
   /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN. A share of what is
   /// attainable holds from half of the last digit that is printed (0.05 %), since it is not known any better.
   double missed_by(double measured) const;
@@ -164,16 +175,16 @@ std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_
 /// λ1 coverage + λ2 Φ + λ3 Δ (equation 1, with section 5.1.2's Φ). Φ = 2^((N_max − N)/(N_max − N_min)) − 1, and Δ = 1 /
 /// connected components of the graph of stations that see each other within range. A baseline.
 struct FitnessWeights {
-  double coverage = 0.4, station_count = 0.4, visibility = 0.2;
+  double coverage = 0.4, station_count = 0.4, visibility = 0.2;  ///< λ1, λ2 and λ3.
 };
 
 /// Parameters of the built-in objectives.
 struct ObjectiveSettings {
   std::size_t stations_min = 1, stations_max = max_stations;  ///< N_min and N_max, without existing stations.
   double link_overlap = default_link_overlap;                 ///< `parts`: least overlap of a link.
-  FitnessWeights fitness = {};
-  RegistrationOptions registration = {};  ///< `registration`, `registration_worst`.
-  double attainable = 1;                  ///< `capture`: attainable coverage, which a capture of 1 has at least.
+  FitnessWeights fitness = {};                                ///< `fitness`: its weights.
+  RegistrationOptions registration = {};                      ///< `registration`, `registration_worst`.
+  double attainable = 1;  ///< `capture`: attainable coverage, which a capture of 1 has at least.
 };
 /// Names of the built-in objectives: "coverage", "overlap", "stations", ….
 std::span<const std::string> objective_names();

@@ -47,6 +47,7 @@ struct OnSiteOptions {
   std::vector<AccessWindow> windows = {};
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const OnSiteOptions& options);
 /// One row for each setting that users give, and its bounds.
 const SettingTable<OnSiteOptions>& on_site_settings();
@@ -59,8 +60,8 @@ struct Round {
   std::vector<double> legs_m;      ///< Path to each in that order, then back out: one more than stations.
   /// Ground points of each of these paths, survey frame; a straight line if the search area does not connect its ends.
   std::vector<std::vector<Vec3>> paths;
-  double walk_m = 0;
-  double scan_min = 0, set_up_min = 0, photos_min = 0, walk_min = 0;
+  double walk_m = 0;                                                  ///< All of `legs_m` together, metres.
+  double scan_min = 0, set_up_min = 0, photos_min = 0, walk_min = 0;  ///< Minutes of each, over the whole round.
   double minutes = 0;           ///< Scan, set-up, photos, walking and waiting together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
   std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
@@ -106,10 +107,10 @@ class OnSite {
   /// The ground points of such a way, from one end to the other; none if the search area does not connect them. Throws
   /// as way_m().
   std::vector<Vec3> way(const Vec3& from, const Vec3& to) const;
-  /// Two of some points, and a length of the way between them.
+  /// Two of some points, by their indices, and a length of the way between them in metres.
   struct Way {
-    std::size_t a = 0, b = 0;
-    double metres = 0;
+    std::size_t a = 0, b = 0;  ///< Indices of the points.
+    double metres = 0;         ///< Length that is compared with.
   };
   /// Tells whether the way between two points is longer than a length, for each of many: much faster than way_m() of
   /// each. 0 if the search area does not connect them. Throws as way_m().
@@ -135,7 +136,7 @@ class OnSite {
   void add_windows(std::span<const PlacedStation> stations, Visit& visit) const;
   /// `Scanner::rays()` / `Scanner::points_per_second`, in minutes. Throws std::out_of_range.
   double minutes_per_scan(std::uint32_t scanner = 0) const;
-  const OnSiteOptions& options() const noexcept;
+  const OnSiteOptions& options() const noexcept;  ///< Options in force.
 
  private:
   friend class Site;

@@ -18,30 +18,32 @@ namespace vantage {
 
 /// Why an optimiser stopped, or `running`.
 enum class StopReason {
-  running,
-  max_evaluations,
-  max_iterations,
-  target_reached,
+  running,            ///< It has not ended.
+  max_evaluations,    ///< `OptimiserConfig::max_evaluations` is reached.
+  max_iterations,     ///< `OptimiserConfig::max_iterations` is reached.
+  target_reached,     ///< The target or the hypervolume that was asked for is reached.
   converged,          ///< Steps or differences fell below their tolerance.
   stagnated,          ///< No improvement for long.
   flat,               ///< The objective does not change over a whole population.
   invalid_objective,  ///< Every value of an iteration was NaN.
   ill_conditioned,    ///< The covariance's condition number passed 1e14.
   diverged,           ///< Steps grew without bound.
-  max_time,
-  cancelled,
+  max_time,           ///< The time limit of the plan is over.
+  cancelled,          ///< The caller stopped it.
 };
+/// The name of the enumerator.
 std::string to_string(StopReason);
 
 /// Box constraints, one pair per coordinate.
 struct Bounds {
-  std::vector<double> lower, upper;
+  std::vector<double> lower, upper;  ///< One value for each coordinate.
+  /// The same bounds for every coordinate.
   static Bounds uniform(std::size_t dimension, double lower, double upper);
 };
 
 /// One point with its objective values, all minimised.
 struct ParetoPoint {
-  std::vector<double> x, f;
+  std::vector<double> x, f;  ///< Coordinates and objective values.
 };
 
 /// Settings of CMA-ES alone.
@@ -55,9 +57,12 @@ struct CmaEsConfig {
 /// Settings of MO-CMA-ES alone.
 struct MoCmaEsConfig {
   /// generational: μ parents, μ offspring each iteration. steady_state: offspring one at a time, or `batch` at a time.
-  enum class Scheme { generational, steady_state };
-  Scheme scheme = Scheme::steady_state;
-  std::size_t batch = 1;  ///< Offspring asked for at once in the steady state, to keep a GPU busy.
+  enum class Scheme {
+    generational,  ///< As many offspring as parents, which then compete with them.
+    steady_state,  ///< Each offspring competes as soon as it is evaluated.
+  };
+  Scheme scheme = Scheme::steady_state;  ///< Which of them.
+  std::size_t batch = 1;                 ///< Offspring asked for at once in the steady state, to keep a GPU busy.
   /// The next four apply to the steady state; all 0 gives the published algorithm. With them it needs a fraction of the
   /// evaluations on planning problems and leaves local fronts (measured in docs/evidence/optimisers.md).
   double guided = 0.5;   ///< Share of parents drawn by hypervolume contribution instead of uniformly from the front.
@@ -77,7 +82,7 @@ struct MoCmaEsConfig {
 struct OptimiserConfig {
   std::size_t population = 0;  ///< λ of CMA-ES, 0: 4 + floor(3 ln n). μ of the others, 0: 100.
   double sigma0 = 0.2;         ///< Initial step: a share of the range if there are bounds, else absolute.
-  std::optional<Bounds> bounds = std::nullopt;
+  std::optional<Bounds> bounds = std::nullopt;  ///< Empty: none.
   /// First points of the initial population; the rest is uniform in the bounds, or, without bounds, normal around the
   /// first point (or 0). CMA-ES takes the first as its initial mean; without one it is random inside the bounds, else
   /// 0.
@@ -105,9 +110,9 @@ struct OptimiserConfig {
   /// Growth over those iterations, as a share of the hypervolume, that counts as no growth.
   double stagnation_tolerance = 1e-6;
 
-  std::uint64_t seed = 1;
-  CmaEsConfig cma = {};
-  MoCmaEsConfig mo = {};
+  std::uint64_t seed = 1;  ///< Seed of all random numbers.
+  CmaEsConfig cma = {};    ///< For CMA-ES.
+  MoCmaEsConfig mo = {};   ///< For MO-CMA-ES.
 };
 
 /// Interface of all optimisers: ask() for points, evaluate them, tell() their objectives. All objectives are minimised.
@@ -115,8 +120,8 @@ struct OptimiserConfig {
 class Optimiser {
  public:
   virtual ~Optimiser() = default;
-  virtual std::size_t dimension() const noexcept = 0;
-  virtual std::size_t objectives() const noexcept = 0;
+  virtual std::size_t dimension() const noexcept = 0;   ///< Number of coordinates.
+  virtual std::size_t objectives() const noexcept = 0;  ///< Number of objectives.
   /// Points to evaluate, row-major, inside the bounds. Valid until the next tell() or load(). Another ask() before
   /// tell() returns the same points.
   virtual std::span<const double> ask() = 0;
@@ -141,7 +146,7 @@ class Optimiser {
   /// Hypervolume of the population against the reference point. With one objective: reference minus the best value, at
   /// least 0.
   virtual double hypervolume() const = 0;
-  virtual std::size_t evaluations() const noexcept = 0;
+  virtual std::size_t evaluations() const noexcept = 0;  ///< Points told so far.
   /// Complete iterations: evaluations / μ; for CMA-ES the calls of tell().
   virtual std::size_t iterations() const noexcept = 0;
   /// Saves the complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
@@ -183,7 +188,7 @@ class CmaEs final : public Optimiser {
   std::size_t evaluations() const noexcept override;
   std::size_t iterations() const noexcept override;
   std::size_t restarts() const noexcept;  ///< Restarts so far.
-  double sigma() const noexcept;
+  double sigma() const noexcept;          ///< Step size now.
   void save(std::ostream&) const override;
   void load(std::istream&) override;
 

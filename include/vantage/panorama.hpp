@@ -32,8 +32,8 @@ class Panorama {
   static Panorama load(const std::filesystem::path& file, Angle heading = {});
   /// Colour in a direction, 0xAABBGGRR: bilinear in the stored values, around the seam and up to the poles.
   std::uint32_t colour(Angle zenith, Angle azimuth) const;
-  const Image& image() const noexcept { return image_; }
-  Angle heading() const noexcept { return heading_; }
+  const Image& image() const noexcept { return image_; }  ///< The photograph.
+  Angle heading() const noexcept { return heading_; }     ///< Azimuth of its middle.
 
  private:
   Image image_;
@@ -48,12 +48,13 @@ enum class PanoramaView {
   reflectivity,  ///< R·(I·(−N)).
   mesh,          ///< One colour a mesh, shaded.
 };
-std::string to_string(PanoramaView);
+std::string to_string(PanoramaView);  ///< The name of the enumerator.
 /// Throws Error invalid_argument and lists the views.
 PanoramaView panorama_view_from_string(const std::string&);
 /// All views.
 std::span<const PanoramaView> panorama_views() noexcept;
 
+/// Size and limits of rendered panoramas.
 struct PanoramaOptions {
   std::uint32_t width = 2048;     ///< Pixels; even. The height is half of it.
   std::uint32_t supersample = 2;  ///< Rays per pixel and direction, 1 to 8, to smooth edges.
@@ -64,10 +65,10 @@ struct PanoramaOptions {
 
 /// A rendered view and the scale of its colours.
 struct PanoramaImage {
-  PanoramaView view = PanoramaView::colour;
-  Image image;
-  double scale_low = 0, scale_high = 0;  ///< `range`: metres at the ends of the scale. `reflectivity`: 0 and the
-                                         ///< largest value.
+  PanoramaView view = PanoramaView::colour;  ///< Content of the image.
+  Image image;                               ///< Twice as wide as high.
+  double scale_low = 0, scale_high = 0;      ///< `range`: metres at the ends of the scale. `reflectivity`: 0 and the
+                                             ///< largest value.
 };
 
 /// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (except 2 bytes a

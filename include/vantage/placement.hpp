@@ -23,7 +23,7 @@ struct PlanRegion {
   std::vector<std::vector<std::array<double, 2>>> rings;  ///< Corners (x, y); a ring is closed whether or not it
                                                           ///< repeats its first corner.
   std::string file = {};                                  ///< File it was read from, if any.
-  bool holds(double x, double y) const;
+  bool holds(double x, double y) const;                   ///< True for a point in it; survey frame, metres.
 };
 
 /// Reads a region in survey coordinates: the Polygons and MultiPolygons of a GeoJSON file (.json, .geojson), or the
@@ -49,13 +49,14 @@ struct WalkableOptions {
   std::vector<PlanRegion> without = {};  ///< No ground in any of these.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const WalkableOptions& options);
 
 /// A triangle mesh with (u, v) per vertex, survey frame. `SearchArea` is built from one and can return it for drawing.
 struct SearchMesh {
-  std::vector<Vec3> positions;
-  std::vector<Uv> uvs;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Vec3> positions;                          ///< Corners, survey frame, metres.
+  std::vector<Uv> uvs;                                  ///< (u, v) of each corner.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices of corners.
 };
 
 /// Why a surface that one could stand on is left out of a derived search area.
@@ -67,14 +68,15 @@ enum class LeftOutReason {
   limits,       ///< Outside the requested levels and regions.
   small,        ///< A connected part below the smallest area.
 };
+/// A phrase for people: "too narrow".
 std::string to_string(LeftOutReason);
 
 /// Surface left out for one reason.
 struct LeftOut {
-  LeftOutReason reason = LeftOutReason::unreachable;
-  double area_m2 = 0;
-  std::vector<Vec3> positions = {};  ///< Survey frame.
-  std::vector<std::array<std::uint32_t, 3>> triangles = {};
+  LeftOutReason reason = LeftOutReason::unreachable;         ///< The reason.
+  double area_m2 = 0;                                        ///< Its area.
+  std::vector<Vec3> positions = {};                          ///< Survey frame.
+  std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< Indices into `positions`.
 };
 
 /// Obstacle to a part of the floor, on the easiest way there.
@@ -85,7 +87,7 @@ enum class Bar {
   step,      ///< A step higher than a person takes.
   no_way,    ///< Nothing in the model leads there.
 };
-std::string to_string(Bar);
+std::string to_string(Bar);  ///< The name of the enumerator.
 
 /// Kinds of closed parts of the floor.
 enum class ClosedKind {
@@ -95,15 +97,15 @@ enum class ClosedKind {
   top,     ///< The top of something that stands on the floor.
   hollow,  ///< Inside something without an opening.
 };
-std::string to_string(ClosedKind);
+std::string to_string(ClosedKind);  ///< The name of the enumerator.
 
 /// Floor that something bars the way to.
 struct ClosedPart {
-  double area_m2 = 0;
-  double share = 0;  ///< Of all floor, reached and closed.
-  Vec3 place;        ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
-  ClosedKind kind = ClosedKind::room;
-  Bar bar = Bar::no_way;
+  double area_m2 = 0;  ///< Its area.
+  double share = 0;    ///< Of all floor, reached and closed.
+  Vec3 place;          ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
+  ClosedKind kind = ClosedKind::room;  ///< Kind of the part.
+  Bar bar = Bar::no_way;               ///< Obstacle on the way to it.
   double height_m = 0;  ///< Least headroom (`headroom`) or highest step (`climb`, `step`) on the way there.
   /// Names of the closed leaves and panes on the way to it.
   std::vector<std::string> doors = {};
@@ -126,11 +128,11 @@ class SearchArea {
   /// Throws Error: invalid_argument when no triangle has an area in (u, v), or the arrays do not fit together.
   static SearchArea from_mesh(SearchMesh mesh);
 
-  Uv uv_min() const noexcept;
-  Uv uv_max() const noexcept;
+  Uv uv_min() const noexcept;     ///< Lower end of (u, v).
+  Uv uv_max() const noexcept;     ///< Upper end of (u, v).
   bool derived() const noexcept;  ///< True: made from walkable surfaces, or a plane laid under the model.
   const std::string& description() const noexcept;  ///< Origin of the search area, for logs and reports.
-  const SearchMesh& mesh() const noexcept;
+  const SearchMesh& mesh() const noexcept;          ///< Its triangles, survey frame.
   const WalkableOptions& options() const noexcept;  ///< Options it was built with.
   /// Largest area first. For a marked search area, only what lies outside the limits.
   std::span<const LeftOut> left_out() const noexcept;
@@ -151,24 +153,25 @@ class SearchArea {
 
 /// Outcome of placing one station, whether from a decision vector, given or existing.
 enum class StationStatus {
-  ok,
+  ok,          ///< A scanner can stand there.
   hole,        ///< No ground under its (u, v).
   clash,       ///< Something stands within its security volume, or touches its mast or its head.
   inside,      ///< Its head is within something solid.
   off_ground,  ///< A given head without support at about the scanner's height below it.
   outside,     ///< A given head whose tripod stands on something outside the search area.
 };
-std::string to_string(StationStatus);
+std::string to_string(StationStatus);  ///< The name of the enumerator.
 /// Says what is wrong, as the end of a sentence that begins with the station's name; empty for `ok`.
 std::string explain(StationStatus);
 
+/// A station on its ground, and how it stands there.
 struct PlacedStation {
-  Uv uv;
+  Uv uv;             ///< (u, v) of its ground in the search area.
   Vec3 position;     ///< Scanner's head, survey frame: the ground plus the height. (0, 0, 0) in a hole.
   Vec3 ground = {};  ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
-  StationStatus status = StationStatus::ok;
-  bool existing = false;  ///< Existing station, scanned before the plan.
-  StationSetup setup = {};
+  StationStatus status = StationStatus::ok;  ///< Tells if a scanner can stand there, or why not.
+  bool existing = false;                     ///< Existing station, scanned before the plan.
+  StationSetup setup = {};                   ///< Which scanner, and how it is turned.
 };
 /// Whether the station adds to what its network measures: not in a hole, a solid or a clash. An existing station was
 /// scanned, so it counts despite a clash in the model. Heads off the ground and outside the search area count.
@@ -181,6 +184,7 @@ struct SecurityVolume {
   double radius_m = 0.5;  ///< r; 0 switches the check off.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const SecurityVolume& volume);
 
 /// Distance queries against all surveyed and blocking meshes. Safe to use from any thread. Unless the check is off, a
@@ -208,7 +212,7 @@ class ClashChecker {
   bool ray_passes(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.
   double distance(const Vec3& point, double limit_m) const;
-  const SecurityVolume& volume() const noexcept;
+  const SecurityVolume& volume() const noexcept;  ///< As it was given.
 
  private:
   struct Impl;

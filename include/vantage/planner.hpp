@@ -71,20 +71,24 @@ struct SurveyProblem {
   /// requirement and the class of accuracy, if `fewest` and the registration is a measure. 0: none.
   std::optional<std::size_t> targets = {};
   std::vector<Target> existing_targets = {};  ///< Targets and control points that are there.
-  TargetOptions target = {};
+  TargetOptions target = {};                  ///< Needs of a scan that measures a target, and places for new ones.
 
   /// Parameters of the built-in objectives for this problem.
   ObjectiveSettings settings() const;
 };
 
+/// The problem as named values: its settings, objectives, requirements and existing stations.
 Settings settings(const SurveyProblem& problem);
 
-/// The problems of table 2 of the method, by objectives: coverage; coverage and overlap; coverage and number of
-/// stations; all three. Then the scalarised fitness of equation 1, a baseline.
+/// The problems of table 2 of the method. This one has the objective coverage alone.
 SurveyProblem coverage_fix(std::size_t stations);
+/// Objectives coverage and overlap.
 SurveyProblem coverage_overlap_fix(std::size_t stations);
+/// Objectives coverage and number of stations.
 SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
+/// Objectives coverage, overlap and number of stations.
 SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
+/// The scalarised fitness of equation 1, a baseline.
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
 /// The surveyor's question: the fewest stations that capture so much of what is attainable, all linked along some
 /// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
@@ -95,7 +99,7 @@ SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size
 /// "fitness-min". Throws Error invalid_argument and lists the names; also if a -fix problem has a range or a -min
 /// problem has none.
 SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, std::size_t stations_max);
-std::span<const std::string> problem_names();
+std::span<const std::string> problem_names();  ///< Names that `survey_problem()` takes.
 /// A problem of built-in objectives.
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
                              std::size_t stations_max, double link_overlap = default_link_overlap);
@@ -106,11 +110,11 @@ struct PlanConfig {
   /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
   /// traces about twice as many stations as there are candidates.
   std::size_t iterations = 0;
-  double sigma0 = 0.2;
+  double sigma0 = 0.2;  ///< First step of the optimiser, as a share of the search area.
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
   /// same one.
   OptimiserMaker optimiser = {};
-  MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
+  MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;  ///< Scheme of MO-CMA-ES.
   std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: depends on the engine.
   bool exact = false;     ///< Search with every ray, the slowest way; `sample_voxels` is then 0.
   /// Search with this many surveyed voxels; 0: depends on the problem and the site.
@@ -129,7 +133,9 @@ struct PlanConfig {
   /// the results with every ray, the answer first: after eight tenths of it, or as it is measured. Entries not reached
   /// in time have `exact` false.
   double max_seconds = 0;
+  /// Stops at this hypervolume, in [0, 1]. Empty: none.
   std::optional<double> target_hypervolume = std::nullopt;
+  /// Stops when the hypervolume has not grown for this many iterations. 0: never.
   std::size_t stagnation_iterations = 0;
   std::optional<std::uint64_t> seed = {};  ///< Empty: that of the site.
   std::filesystem::path checkpoint = {};   ///< File to write; the one before stays as FILE.before. Empty: none.
@@ -165,8 +171,8 @@ struct TradeOffPoint {
 
 /// One line of the history, an iteration each.
 struct PlanIteration {
-  std::size_t iteration = 0, evaluations = 0;
-  double hypervolume = 0;
+  std::size_t iteration = 0, evaluations = 0;  ///< Number of the iteration, from 1, and evaluations up to its end.
+  double hypervolume = 0;                      ///< Hypervolume of the front, as `PlanResult::hypervolume`.
   /// Values that the optimiser minimised: `scaled_objectives()` of each network of the front.
   std::vector<std::vector<double>> front;
   double seconds = 0;  ///< Since the start; not reproducible.
@@ -192,9 +198,10 @@ struct FurtherStation {
   double minutes = 0;  ///< On site, walking included.
 };
 
+/// Result of `plan()`, with the settings in force.
 struct PlanResult {
-  SurveyProblem problem;  ///< The problem, and the settings of its search.
-  PlanConfig config;
+  SurveyProblem problem;                  ///< The problem, and the settings of its search.
+  PlanConfig config;                      ///< The configuration, as it was given.
   std::size_t population = 0, batch = 0;  ///< In force, also if the configuration left them open.
   WalkableOptions walkable;               ///< Settings of the search area.
   std::optional<Scene> scene = {};        ///< Scene of the site.
@@ -215,28 +222,28 @@ struct PlanResult {
   /// Stations against what they capture, from one to a few beyond the answer, if `capture` decides their number.
   /// Estimated on the voxels of `attainable`, except for the answer.
   std::vector<TradeOffPoint> trade_off;
-  std::vector<PlanIteration> history;
+  std::vector<PlanIteration> history;  ///< One for each iteration.
   /// Final hypervolume of the search; reference point (1, …, 1) of scaled objectives. With one objective it is 1 less
   /// its scaled value.
   double hypervolume = 0;
   double exact_hypervolume = 0;  ///< The same by every ray; NaN if an abort left entries unconfirmed.
   /// Networks in the final archive that were not confirmed: another was better by more than the standard errors allow.
   std::size_t spared = 0;
-  std::uint64_t evaluations = 0;
-  std::uint64_t redrawn = 0, drawn = 0;   ///< Stations redrawn out of holes or clashes, and all drawn.
-  std::uint64_t resumed_evaluations = 0;  ///< Number of evaluations taken from a checkpoint.
-  StopReason stop_reason = StopReason::running;
-  double seconds = 0, trace_seconds = 0;
-  Work work = {};  ///< Of this plan, without building the site's simulators.
+  std::uint64_t evaluations = 0;                 ///< Networks evaluated by the search.
+  std::uint64_t redrawn = 0, drawn = 0;          ///< Stations redrawn out of holes or clashes, and all drawn.
+  std::uint64_t resumed_evaluations = 0;         ///< Number of evaluations taken from a checkpoint.
+  StopReason stop_reason = StopReason::running;  ///< Reason for which the search ended.
+  double seconds = 0, trace_seconds = 0;         ///< Time of the call, and of its tracing; not reproducible.
+  Work work = {};                                ///< Of this plan, without building the site's simulators.
 };
 
 /// Snapshot of a running plan.
 struct PlanProgress {
-  std::size_t iteration = 0, iterations = 0;
-  std::uint64_t evaluations = 0;
-  double hypervolume = 0, evaluations_per_second = 0;
-  double seconds_left = 0;  ///< Below 0: not known yet.
-  std::string phase;        ///< "look" (at attainable coverage), "choose", "search" or "confirm".
+  std::size_t iteration = 0, iterations = 0;  ///< Done and planned: iterations of a search, networks of a confirmation.
+  std::uint64_t evaluations = 0;              ///< Networks evaluated so far.
+  double hypervolume = 0, evaluations_per_second = 0;  ///< Figures of the search until now.
+  double seconds_left = 0;                             ///< Below 0: not known yet.
+  std::string phase;  ///< "look" (at attainable coverage), "choose", "search" or "confirm".
   /// The present front of the optimiser: decision vectors and `scaled_objectives()`, 1 and more if requirements are
   /// violated. Valid during the call.
   std::span<const ParetoPoint> front = {};
@@ -276,6 +283,7 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
 /// required: components cannot be registered with each other, however well each overlaps in itself;
 /// - the least Euclidean distance of the scaled objectives to the best values (the utopia point: Zeleny, Compromise
 /// Programming, 1973).
+///
 /// Throws Error invalid_argument if the front is empty.
 std::size_t answer(const PlanResult& result);
 /// True if the answer meets all requirements. False if this is not certain: the answer was not confirmed, or `capture`
@@ -302,7 +310,7 @@ struct GreedyConfig {
 struct GreedyResult {
   std::vector<PlacedStation> stations;  ///< In the order of choice: the first k are the choice for k.
   std::vector<double> coverage;         ///< After each, on the sample.
-  bool cancelled = false;
+  bool cancelled = false;               ///< It was stopped before it was done.
 };
 
 /// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
@@ -325,7 +333,7 @@ struct ExactConfig {
 struct ExactResult {
   std::vector<PlacedStation> stations;  ///< Empty if no connected network was found.
   CoverSolution choice;                 ///< The choice among candidates, and a bound on the coverage of any.
-  bool cancelled = false;
+  bool cancelled = false;               ///< It was stopped before it was done.
 };
 
 /// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A

@@ -15,10 +15,11 @@ struct Progress {
   /// Checked between chunks of work. A stopped call says so in its result.
   std::stop_token stop;
 
+  /// Reports the share done, if anybody listens.
   void operator()(double done) const {
     if (report) report(done);
   }
-  bool stopped() const { return stop.stop_requested(); }
+  bool stopped() const { return stop.stop_requested(); }  ///< True once the caller wants the work to stop.
 };
 
 }  // namespace vantage

@@ -27,9 +27,9 @@ struct SurveyQuestion {
   std::optional<double> link = {};             ///< Least scan overlap of the links that connect all stations.
   std::optional<double> apart_m = {};          ///< Least distance between two stations.
   std::optional<double> minutes_on_site = {};  ///< Upper limit.
-  OnSiteOptions on_site = {};
-  std::vector<std::string> objectives = {};                 ///< Names; replace the problem's own.
-  std::vector<std::string> requirements = {};               ///< In the form of `make_requirement()`.
+  OnSiteOptions on_site = {};                  ///< As `SurveyProblem::on_site`.
+  std::vector<std::string> objectives = {};    ///< Names; replace the problem's own.
+  std::vector<std::string> requirements = {};  ///< In the form of `make_requirement()`.
   std::optional<std::array<std::size_t, 2>> stations = {};  ///< Least and largest number; one number twice.
   std::vector<Vec3> existing = {};                          ///< As `SurveyProblem::existing`.
   std::vector<StationSetup> existing_setups = {};           ///< One each, or none.
@@ -40,10 +40,10 @@ struct SurveyQuestion {
   std::optional<double> link_overlap = {};              ///< Least overlap (equation 11) of a link.
   std::optional<double> min_overlap = {};               ///< Required overlap of the links that connect all stations.
   std::optional<FitnessWeights> fitness = {};           ///< Weights of the scalarised fitness.
-  RegistrationOptions registration = {};
-  std::optional<std::size_t> targets = {};    ///< As `SurveyProblem::targets`.
-  std::vector<Target> existing_targets = {};  ///< As `SurveyProblem::existing_targets`.
-  TargetOptions target = {};
+  RegistrationOptions registration = {};                ///< As `SurveyProblem::registration`.
+  std::optional<std::size_t> targets = {};              ///< As `SurveyProblem::targets`.
+  std::vector<Target> existing_targets = {};            ///< As `SurveyProblem::existing_targets`.
+  TargetOptions target = {};                            ///< As `SurveyProblem::target`.
 
   /// Whether it asks for the fewest stations.
   bool asks_for_fewest() const;

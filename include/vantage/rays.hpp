@@ -38,7 +38,7 @@ struct RayHits {
   std::vector<float> diffuse;                ///< R alone (`MeshInfo::diffuse`); 0 without a hit.
   std::vector<std::int32_t> mesh;            ///< Index into `Scene::meshes()`; −1 without a hit.
   std::vector<std::uint32_t> primitive;      ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
-  std::size_t size() const { return range_m.size(); }
+  std::size_t size() const { return range_m.size(); }  ///< Number of rays.
 };
 
 /// Traces rays of any origins and directions in a scene: on the processor and in double precision, whichever engine
@@ -51,7 +51,7 @@ class RayTracer {
   /// Throws Error: out_of_memory, device_failure.
   explicit RayTracer(const Scene& scene);
 
-  const Scene& scene() const noexcept;
+  const Scene& scene() const noexcept;  ///< The scene that it traces in.
 
   /// The nearest hit of each ray; of equally near triangles, that with the lowest number. All calls return empty arrays
   /// if stopped, and throw Error invalid_argument, with the row, for an origin that is not finite or further than

@@ -16,10 +16,10 @@ namespace vantage {
 /// Range noise as the maker states it: one standard deviation per (reflectivity, distance), as in table 1 of the
 /// method.
 struct NoiseTable {
-  std::vector<double> distances_m = {};     ///< Columns, ascending.
-  std::vector<double> reflectivities = {};  ///< Rows, ascending, in [0, 1].
-  std::vector<double> sigma_m = {};         ///< Row-major, reflectivities × distances. Empty: no noise.
-  bool empty() const { return sigma_m.empty(); }
+  std::vector<double> distances_m = {};           ///< Columns, ascending.
+  std::vector<double> reflectivities = {};        ///< Rows, ascending, in [0, 1].
+  std::vector<double> sigma_m = {};               ///< Row-major, reflectivities × distances. Empty: no noise.
+  bool empty() const { return sigma_m.empty(); }  ///< No noise: ranges are exact.
 };
 
 /// Returns how much is known: "no noise table: exact ranges", "one figure of noise, of 100 m, for all distances and
@@ -36,7 +36,7 @@ struct RayAngles {
 /// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, or `row_zeniths[i]` if there are any, azimuth heading − H/2 +
 /// (j + ½)·Δh and direction (sin θ cos φ, sin θ sin φ, cos θ). Its index is i·columns + j everywhere.
 struct Scanner {
-  std::string name = "custom";
+  std::string name = "custom";                   ///< For tables and messages.
   Angle heading = Angle::degrees(0);             ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
   Angle horizontal_angle = Angle::degrees(360);  ///< H, (0°, 360°].
   /// V, (0°, 360°]: the mirror's sweep over both sides, so zeniths are θ₀..θ₀ + V/2.
@@ -61,18 +61,18 @@ struct Scanner {
   /// Full angle γ by which the beam widens far away, and its diameter D at the exit, both to 1/e² of the intensity on
   /// the axis. As of a Gaussian beam, the diameter at distance t is √(D² + γ² t²). Both 0: unknown.
   Angle beam_divergence = Angle::radians(0);
-  double exit_diameter_m = 0;
+  double exit_diameter_m = 0;  ///< See `beam_divergence`.
   /// Longest distance at which the scanner detects a matt surface of reflectivity `detection_reflectivity` at normal
   /// incidence. 0: it detects every echo within range.
   double detection_range_m = 0;
-  double detection_reflectivity = 0.9;
+  double detection_reflectivity = 0.9;  ///< In (0, 1].
   /// Errors that a calibration leaves and all scans of the instrument share, one standard deviation each: of the
   /// vertical index, the collimation and the trunnion axis; of the offset of ranges, and of their scale. They are part
   /// of the registration error; simulated scans have those that are drawn for them (`ScanOptions::instrument`). 0: not
   /// stated.
   Angle angle_accuracy = Angle::radians(0);
-  double range_accuracy_m = 0;
-  double range_accuracy_ppm = 0;
+  double range_accuracy_m = 0;    ///< See `angle_accuracy`.
+  double range_accuracy_ppm = 0;  ///< Millionths of the range; see `angle_accuracy`.
   /// Error of each of a scan's two tilts by the compensator, one standard deviation, another in every scan. 0: not
   /// stated. Registration takes it if asked to (`RegistrationOptions::tilt_of_scanner`).
   Angle tilt_accuracy = Angle::radians(0);
@@ -80,12 +80,12 @@ struct Scanner {
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;
 
-  std::uint32_t rows() const;     ///< Zenith steps.
-  std::uint32_t columns() const;  ///< Azimuth steps.
-  std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }
-  RayAngles angles(std::uint64_t ray) const;  ///< REQUIRES: ray < rays().
-  double time_s(std::uint64_t ray) const;     ///< Seconds from the begin of a scan. REQUIRES: ray < rays().
-  double seconds() const;                     ///< Of a scan, without setting up.
+  std::uint32_t rows() const;                                               ///< Zenith steps.
+  std::uint32_t columns() const;                                            ///< Azimuth steps.
+  std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }  ///< Rays of a scan: rows times columns.
+  RayAngles angles(std::uint64_t ray) const;                                ///< REQUIRES: ray < rays().
+  double time_s(std::uint64_t ray) const;  ///< Seconds from the begin of a scan. REQUIRES: ray < rays().
+  double seconds() const;                  ///< Of a scan, without setting up.
   /// Takes other steps. Uneven rows stay where they are. Throws Error invalid_argument if the scanner has a list of
   /// directions.
   void set_steps(Angle azimuth, Angle zenith);
@@ -100,6 +100,7 @@ struct Scanner {
   void check() const;
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const Scanner& scanner);
 
 /// Errors of one instrument, which all its scans share. A point at range r and zenith θ lies at r (1 + scale) + offset,
@@ -107,11 +108,11 @@ Settings settings(const Scanner& scanner);
 /// towards larger azimuths. f is 1 in the half turn before the heading and −1 in that behind it, where the mirror shows
 /// its other face.
 struct InstrumentErrors {
-  Angle vertical_index = Angle::radians(0);
-  Angle collimation = Angle::radians(0);
-  Angle trunnion = Angle::radians(0);
-  double range_offset_m = 0;
-  double range_scale_ppm = 0;
+  Angle vertical_index = Angle::radians(0);  ///< Turns every ray downwards by f times this.
+  Angle collimation = Angle::radians(0);     ///< Turns every ray across by f times this.
+  Angle trunnion = Angle::radians(0);        ///< Turns a ray across by f cos θ times this.
+  double range_offset_m = 0;                 ///< Added to every range.
+  double range_scale_ppm = 0;                ///< Millionths of the range, added to it.
 
   /// Displacement of a point at this range, in the frame of `angles`.
   Vec3 displacement(const RayAngles& angles, double range_m, Angle heading = Angle::radians(0)) const;
@@ -132,8 +133,8 @@ NoiseTable load_noise(const std::string& name);
 
 /// Directions of rays and their times, as `Scanner::set_directions()` takes them.
 struct DirectionTable {
-  std::vector<RayAngles> directions = {};
-  std::vector<double> times_s = {};
+  std::vector<RayAngles> directions = {};  ///< In the order of the scan.
+  std::vector<double> times_s = {};        ///< Seconds from the begin of a scan to each; empty: not told.
 };
 /// Reads directions from a CSV file: a header `azimuth_deg,elevation_deg` or `azimuth_deg,elevation_deg,time_s`, then a
 /// line for each ray, in the order of the scan. Azimuths grow from the heading towards the left, elevations from the

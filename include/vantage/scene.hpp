@@ -30,10 +30,10 @@ enum class Role {
 
 /// One mesh of the scene: a glTF primitive, placed by one node.
 struct MeshInfo {
-  std::string name;            ///< The node's name; the mesh's if the node has none.
-  Role role = Role::surveyed;  ///< `surveyed` or `blocking`; a loaded scene holds no other meshes.
-  double diffuse = 0.5;        ///< Diffuse reflection coefficient R of the material, in [0, 1].
-  std::uint32_t triangle_count = 0;
+  std::string name;                  ///< The node's name; the mesh's if the node has none.
+  Role role = Role::surveyed;        ///< `surveyed` or `blocking`; a loaded scene holds no other meshes.
+  double diffuse = 0.5;              ///< Diffuse reflection coefficient R of the material, in [0, 1].
+  std::uint32_t triangle_count = 0;  ///< Its triangles with an area.
   /// Weight of its voxels in coverage, 1 to 255, relative to voxels of other surveyed meshes.
   std::uint32_t weight = 1;
   bool door = false;          ///< A closed door leaf: people walk through it, rays do not.
@@ -48,7 +48,7 @@ struct MeshInfo {
 struct Room {
   std::string name;    ///< Its number and its long name.
   std::string storey;  ///< Of the `IfcBuildingStorey` above it; "" if there is none.
-  Box box;
+  Box box;             ///< Around it.
   /// Loops around its floor, seen from above: corners (x, y). A point is in the room if it is within an odd number of
   /// them. Empty: the box alone.
   std::vector<std::vector<std::array<double, 2>>> outline = {};
@@ -62,16 +62,26 @@ double distance_to(const Room& room, const Vec3& point, double most_m);
 std::optional<std::size_t> room_at(std::span<const Room> rooms, const Vec3& point, double within_m = 0.15);
 
 /// Unit of length of a file.
-enum class Unit { metre, centimetre, millimetre, inch, foot };
-double metres_in(Unit unit) noexcept;
+enum class Unit {
+  metre,       ///< "m"
+  centimetre,  ///< "cm"
+  millimetre,  ///< "mm"
+  inch,        ///< "in", 25.4 mm
+  foot,        ///< "ft", 12 inches
+};
+double metres_in(Unit unit) noexcept;  ///< Length of one, in metres.
 /// "m", "cm", "mm", "in", "ft".
 const char* to_string(Unit unit) noexcept;
 /// Throws Error invalid_argument for any other text.
 Unit unit_from_string(const std::string& text);
 
 /// Axis of a file that points up.
-enum class UpAxis { x, y, z };
-const char* to_string(UpAxis up) noexcept;
+enum class UpAxis {
+  x,  ///< "x"
+  y,  ///< "y"
+  z,  ///< "z"
+};
+const char* to_string(UpAxis up) noexcept;  ///< "x", "y", "z".
 /// Throws Error invalid_argument unless the text is "x", "y" or "z".
 UpAxis up_axis_from_string(const std::string& text);
 
@@ -154,8 +164,9 @@ class Scene {
 
   /// Bounds of all surveyed and blocking meshes, survey frame.
   Box bounds() const noexcept;
+  /// Surveyed and blocking ones; indices of meshes are their places here.
   std::span<const MeshInfo> meshes() const noexcept;
-  std::size_t triangle_count() const noexcept;
+  std::size_t triangle_count() const noexcept;   ///< Triangles of all surveyed and blocking meshes.
   std::span<const Room> rooms() const noexcept;  ///< In the file's order; empty where it has none.
   /// Whether the file marks a search area. If not, one is derived from walkable surfaces.
   bool has_search_area() const noexcept;
@@ -170,6 +181,7 @@ class Scene {
 
   /// Internal storage, for the library's own modules.
   const SceneData& data() const noexcept { return *data_; }
+  /// From that storage, likewise.
   explicit Scene(std::shared_ptr<const SceneData> data) : data_(std::move(data)) {}
 
  private:

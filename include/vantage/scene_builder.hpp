@@ -25,7 +25,7 @@ struct Pose {
 
 /// A mesh as arrays. `Role::search` makes it part of the search area, `Role::ignore` leaves it out.
 struct SceneMesh {
-  std::string name = "mesh";
+  std::string name = "mesh";         ///< For patterns and tables.
   std::vector<Vec3> positions = {};  ///< Metres, Z up; in the survey frame under the default `pose`.
   std::vector<std::array<std::uint32_t, 3>> triangles =
       {};                                      ///< Indices into `positions`, counter-clockwise from outside.
@@ -37,7 +37,7 @@ struct SceneMesh {
   double detail_m = 0;                         ///< Widest beam footprint of a counted point, metres; 0: any.
   double accuracy_m = 0;                       ///< Largest range noise (σ) of a counted point, metres; 0: any.
   std::array<float, 4> colour = {1, 1, 1, 1};  ///< Linear red, green, blue and alpha, in [0, 1].
-  Pose pose = {};
+  Pose pose = {};                              ///< Place of the mesh.
 };
 
 /// Collects meshes and builds immutable, independent scenes from them. One thread at a time; finished scenes may be
@@ -49,6 +49,7 @@ struct SceneMesh {
 /// `Simulator::set_scene` takes the next scene.
 class SceneBuilder {
  public:
+  /// Starts without meshes.
   SceneBuilder();
   ~SceneBuilder();
   SceneBuilder(SceneBuilder&&) noexcept;

@@ -22,6 +22,7 @@ struct Setting {
   /// resumed with others.
   bool decides = true;
 };
+/// A configuration, field by field.
 using Settings = std::vector<Setting>;
 
 /// One setting of a struct of options, described once. The command line, configuration files, a scene's defaults and
@@ -45,6 +46,7 @@ struct SettingRow {
   bool advanced = false;                      ///< For special cases: lists of settings may leave it out.
   std::vector<std::string> excludes = {};     ///< Settings that exclude it.
 };
+/// The rows of all settings of a struct, in the order in which they are listed.
 template <class Options>
 using SettingTable = std::vector<SettingRow<Options>>;
 
@@ -57,16 +59,16 @@ void check_settings(const SettingTable<Options>& table, const Options& options) 
 
 /// A sample of voxels: a number of them or a share.
 struct SampleSize {
-  std::optional<std::uint64_t> voxels = {};
-  std::optional<double> share = {};  ///< Above 0, at most 1.
+  std::optional<std::uint64_t> voxels = {};  ///< A number of them.
+  std::optional<double> share = {};          ///< Above 0, at most 1.
   /// Number of voxels out of `population`: at most all, and for a share at least one.
   std::uint64_t of(std::uint64_t population) const;
 };
 
 /// Devices as users list them: all, some by their number, the processor.
 struct DeviceList {
-  bool all = false, cpu = false;
-  std::vector<std::uint32_t> numbers = {};
+  bool all = false, cpu = false;            ///< All graphics cards; the processor.
+  std::vector<std::uint32_t> numbers = {};  ///< Numbers of graphics cards (`EngineInfo::device_index`).
 };
 
 }  // namespace vantage

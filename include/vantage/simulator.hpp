@@ -23,8 +23,9 @@ namespace vantage {
 
 class TracerMaker;  // internal: see src/trace/tracer_maker.hpp
 
+/// Settings of a simulator: devices, voxels, limits of points.
 struct SimulatorConfig {
-  Engine engine = Engine::automatic;
+  Engine engine = Engine::automatic;                         ///< Engine that traces rays.
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best device that has the engine.
   /// Several devices that share the work, in place of `engine` and `device_index`. If all have the same engine, results
   /// equal those of one device, bit for bit. Engines differ by rounding at edges, and so do results of a mixture.
@@ -53,6 +54,7 @@ struct SimulatorConfig {
 /// At 60° the beam's footprint is twice as long as at 0°, and a matt surface returns half as much.
 inline constexpr Angle default_max_incidence = Angle::degrees(60);
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const SimulatorConfig& config);
 
 /// Host memory that a simulation needs, estimated from triangles and areas before any is allocated.
@@ -60,14 +62,16 @@ struct MemoryEstimate {
   std::uint64_t voxels = 0;  ///< Approximate number of surveyed voxels: cells of the grid that the surfaces meet.
   std::uint64_t bytes = 0;   ///< Upper bound on the process's peak, scene included, when tracing on the CPU.
 };
+/// Estimates it for networks of so many stations. `user_size_m`: as in `SimulatorConfig`.
 MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size_t stations = mask_bits);
 
 /// A station: position of the scanner's head in the survey frame, and how it is set up there.
 struct Station {
-  Vec3 position;
-  bool active = true;  ///< False: in a hole or a clash. Keeps its place in the network but is not simulated.
-  StationSetup setup = {};
+  Vec3 position;            ///< Scanner's head, survey frame, metres.
+  bool active = true;       ///< False: in a hole or a clash. Keeps its place in the network but is not simulated.
+  StationSetup setup = {};  ///< Which scanner, and how it is turned.
 };
+/// Stations that are simulated together.
 using Network = std::vector<Station>;
 
 /// Arrays of a `ScanChunk` to compute, allocate and transfer; combined by or.
@@ -84,8 +88,13 @@ enum ScanOutput : std::uint32_t {
 };
 
 /// Which returns of a beam become points.
-enum class Returns : std::uint8_t { first, strongest, last, all };
-std::string to_string(Returns);
+enum class Returns : std::uint8_t {
+  first,      ///< The nearest of each ray.
+  strongest,  ///< The one with most energy.
+  last,       ///< The farthest.
+  all,        ///< Each of them.
+};
+std::string to_string(Returns);  ///< The name of the enumerator.
 /// Throws Error invalid_argument and lists them.
 Returns returns_from_string(const std::string& text);
 
@@ -118,17 +127,17 @@ struct ScanOptions {
 /// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays not asked for are empty. If a
 /// beam has several returns, there is a chunk of the same rays for each number of a return.
 struct ScanChunk {
-  std::uint32_t return_number = 1;
-  std::uint64_t first_ray = 0;
-  std::uint64_t ray_count = 0;
-  std::vector<float> range_m;
+  std::uint32_t return_number = 1;  ///< Number of the return that the points are, from 1.
+  std::uint64_t first_ray = 0;      ///< Number of the first ray in the scanner's pattern.
+  std::uint64_t ray_count = 0;      ///< Number of rays, and elements of each array.
+  std::vector<float> range_m;       ///< Metres from the head, noise included; +infinity without a hit.
   /// Local frame, where floats are fine enough: survey position = `Simulator::origin()` + this. NaN without a hit.
   std::vector<std::array<float, 3>> position;
-  std::vector<std::array<float, 3>> normal;
-  std::vector<float> reflectivity;
-  std::vector<std::int32_t> mesh;        ///< Index into Scene::meshes(); −1 without a hit.
-  std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
-  std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB; 0 without a hit.
+  std::vector<std::array<float, 3>> normal;  ///< Unit, turned towards the scanner.
+  std::vector<float> reflectivity;           ///< R·(I·(−N)), in [0, 1].
+  std::vector<std::int32_t> mesh;            ///< Index into Scene::meshes(); −1 without a hit.
+  std::vector<std::uint32_t> primitive;      ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
+  std::vector<std::uint32_t> colour;         ///< 0xAABBGGRR, sRGB; 0 without a hit.
   /// Index of the surveyed voxel in Morton order; 2³²−1 if the point does not count.
   std::vector<std::uint32_t> voxel;
   /// 1: a ghost. The ray was reflected, and its point lies behind the mirror; mesh and colour are those of what it met.
@@ -138,32 +147,32 @@ struct ScanChunk {
 
 /// Sums over one scan.
 struct ScanSummary {
-  std::uint64_t rays = 0, points = 0;
+  std::uint64_t rays = 0, points = 0;    ///< Rays traced, and points of them, on all meshes.
   std::uint64_t points_on_surveyed = 0;  ///< Points that count: on a surveyed mesh and inside a surveyed voxel.
   std::uint64_t hits_on_surveyed = 0;    ///< Hits on a surveyed mesh, wherever noise then moved the point.
   std::uint64_t ghosts = 0;              ///< Points seen in a mirror (`MeshInfo::mirror`), which never count.
   MixedPoints mixed;                     ///< Points of a beam between surfaces.
-  double trace_seconds = 0;
-  bool cancelled = false;
+  double trace_seconds = 0;              ///< Time of tracing; not reproducible.
+  bool cancelled = false;                ///< It was stopped before the last ray.
 };
 
 /// The points of one scan, in ray order for each number of a return: rays without a hit are left out. Arrays not asked
 /// for are empty.
 struct ScanPoints {
-  std::vector<std::uint64_t> ray;  ///< Row ray / columns and column ray % columns of the station's scanner.
-  std::vector<Vec3> position;      ///< Survey frame, metres.
-  std::vector<float> range_m;      ///< Metres from the head, noise included.
-  std::vector<std::array<float, 3>> normal;
-  std::vector<float> reflectivity;
-  std::vector<std::int32_t> mesh;        ///< Index into `Scene::meshes()`.
-  std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order).
-  std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB.
-  std::vector<std::uint32_t> voxel;      ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
-  std::vector<std::uint8_t> ghost;       ///< 1: seen in a mirror.
+  std::vector<std::uint64_t> ray;            ///< Row ray / columns and column ray % columns of the station's scanner.
+  std::vector<Vec3> position;                ///< Survey frame, metres.
+  std::vector<float> range_m;                ///< Metres from the head, noise included.
+  std::vector<std::array<float, 3>> normal;  ///< Unit, turned towards the scanner; survey frame.
+  std::vector<float> reflectivity;           ///< R·(I·(−N)), in [0, 1].
+  std::vector<std::int32_t> mesh;            ///< Index into `Scene::meshes()`.
+  std::vector<std::uint32_t> primitive;      ///< Triangle of the scene (all meshes in order).
+  std::vector<std::uint32_t> colour;         ///< 0xAABBGGRR, sRGB.
+  std::vector<std::uint32_t> voxel;          ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
+  std::vector<std::uint8_t> ghost;           ///< 1: seen in a mirror.
   /// Number of the return, from 1, and how many its ray has (`scan_returns`). Returns of a ray do not follow each
   /// other.
   std::vector<std::uint8_t> return_number, returns;
-  ScanSummary summary;
+  ScanSummary summary;  ///< Sums over all of it.
 };
 
 /// As the size of a sample: all surveyed voxels.
@@ -180,14 +189,14 @@ struct EveryRayOptions {
   /// Voxels that registration is summed over, in groups: a sample costs the planes of its own voxels alone. It grows
   /// fourfold until `registration_known` returns true for the counts of a network, by its number, or has every voxel.
   std::uint64_t registration_voxels = every_voxel;
-  std::function<bool(std::size_t network, const NetworkCounts&)> registration_known = {};
+  std::function<bool(std::size_t network, const NetworkCounts&)> registration_known = {};  ///< Empty: at once.
   /// Gives the beam a width, at the cost of its sub-rays, none of which are left out. Empty: rays without one.
   std::optional<BeamOptions> beam = std::nullopt;
 };
 
 /// Points of a voxel that are counted. Fewer rays do for fewer.
 enum class CountTo {
-  all,
+  all,   ///< Every point.
   goal,  ///< Up to the goal density: a voxel there may show fewer points than it got.
   one,   ///< Whether there is any: pairs and registration are right, and no coverage.
 };
@@ -198,8 +207,8 @@ struct SampleOptions {
   /// Number of voxels passed over first, in the order of the draw. Samples of n voxels from 0, n, 2n, … are disjoint
   /// until all voxels were drawn; a smaller sample from the same place is part of a larger one.
   std::uint64_t from = 0;
-  bool overlap = true;
-  CountTo count_to = CountTo::all;
+  bool overlap = true;              ///< Keeps station masks and counts pairs.
+  CountTo count_to = CountTo::all;  ///< Points of a voxel that are counted.
   /// Called with the points of a network in each voxel of the sample, in the order of `Simulator::sampled_voxels`.
   /// Called once for each network that was counted to its end, in any order, on the calling thread.
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
@@ -256,15 +265,15 @@ class Simulator {
   /// simulator of `surroundings_of` or one that works over other processes. Must run alone, const calls included.
   bool set_scene(const Scene& scene);
 
-  const EngineInfo& engine() const noexcept;
+  const EngineInfo& engine() const noexcept;           ///< Engine and device in use.
   const Scanner& scanner() const noexcept;             ///< The first scanner.
   std::span<const Scanner> scanners() const noexcept;  ///< All scanners.
-  const Scene& scene() const noexcept;
-  const SimulatorConfig& config() const noexcept;
-  Vec3 origin() const noexcept;                ///< Local origin; survey = local + origin.
-  std::uint64_t voxel_count() const noexcept;  ///< N_v of equation 8.
-  double voxel_size_m() const noexcept;
-  double goal_density() const noexcept;  ///< Points wanted in a voxel; the densest goal if goals differ.
+  const Scene& scene() const noexcept;                 ///< The scene that it simulates.
+  const SimulatorConfig& config() const noexcept;      ///< As it was given.
+  Vec3 origin() const noexcept;                        ///< Local origin; survey = local + origin.
+  std::uint64_t voxel_count() const noexcept;          ///< N_v of equation 8.
+  double voxel_size_m() const noexcept;                ///< Edge of a voxel: at most `SimulatorConfig::user_size_m`.
+  double goal_density() const noexcept;                ///< Points wanted in a voxel; the densest goal if goals differ.
   /// Points wanted in one voxel (`SimulatorConfig::spacing_by_detail`). REQUIRES: voxel < voxel_count().
   double goal_density(std::uint64_t voxel) const;
   /// Limit of incidence in force, from `SimulatorConfig::max_incidence`. Empty: there is none.

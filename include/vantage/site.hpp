@@ -33,42 +33,44 @@ struct SiteOptions {
   std::vector<Scanner> scanners = {};
   /// A preset, in the form of `load_scanner()`. Empty: `usual_scanner`, unless `steps` describe another.
   std::optional<std::string> scanner = {};
-  std::optional<std::array<Angle, 2>> steps = {};  ///< Azimuth and zenith.
+  std::optional<std::array<Angle, 2>> steps = {};  ///< Angles between rays in azimuth and zenith.
+  /// As in `Scanner`.
   std::optional<Angle> heading = {}, horizontal_angle = {}, vertical_angle = {}, zenith_start = {};
-  std::optional<double> height_m = {};
-  std::optional<std::array<double, 2>> range_m = {};  ///< Nearest and farthest.
-  std::optional<std::string> noise = {};              ///< In the form of `load_noise()`.
-  std::optional<std::array<double, 2>> beam = {};     ///< Divergence in mrad, exit diameter in mm.
+  std::optional<double> height_m = {};                ///< Height of the head above the ground.
+  std::optional<std::array<double, 2>> range_m = {};  ///< Nearest and farthest distance measured.
+  std::optional<std::string> noise = {};              ///< Range noise, in the form of `load_noise()`.
+  std::optional<std::array<double, 2>> beam = {};     ///< Divergence of the beam in mrad, exit diameter in mm.
   /// `Scanner::detection_range_m` and `detection_reflectivity`; {0, 1}: every echo is detected.
   std::optional<std::array<double, 2>> detection = {};
   /// A calibration's: `Scanner::angle_accuracy` in arc seconds, `range_accuracy_m` in mm, `range_accuracy_ppm`.
   std::optional<std::array<double, 3>> calibration = {};
-  std::optional<double> points_per_second = {};
+  std::optional<double> points_per_second = {};  ///< As in `Scanner`.
 
   std::optional<double> user_size_m = {};  ///< Upper bound of the voxel size.
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
   /// The spacing follows from this purpose of the scans, in the form of `spacing_for()`, unless it is given.
   std::optional<std::string> deliverable = {};
-  bool spacing_by_detail = false;  ///< As `SimulatorConfig::spacing_by_detail`.
-  std::optional<Angle> max_incidence = {};
+  bool spacing_by_detail = false;           ///< As `SimulatorConfig::spacing_by_detail`.
+  std::optional<Angle> max_incidence = {};  ///< As `SimulatorConfig::max_incidence`; 90°: any.
   /// If nothing marks the surveyed surface, weigh all but ground to stand on so that ground has a third of coverage at
   /// most. Scans do not need it.
   bool weigh_ground = true;
 
-  std::optional<std::array<double, 3>> security_m = {};  ///< `SecurityVolume`: lower, upper, radius.
-  std::optional<Angle> max_slope = {};
-  std::optional<double> headroom_m = {}, min_area_m2 = {}, climb_m = {};
-  std::optional<std::array<double, 2>> passage_m = {};  ///< Width and height.
-  std::vector<Vec3> enter = {};                         ///< Where one enters; empty: found.
-  std::optional<std::array<double, 2>> levels_m = {};   ///< Lowest and highest ground.
-  std::vector<PlanRegion> within = {}, without = {};
+  std::optional<std::array<double, 3>> security_m = {};  ///< Lower and upper height and radius of the `SecurityVolume`.
+  std::optional<Angle> max_slope = {};                   ///< As in `WalkableOptions`.
+  std::optional<double> headroom_m = {}, min_area_m2 = {}, climb_m = {};  ///< As in `WalkableOptions`.
+  /// Width and height of the narrowest opening that a person passes.
+  std::optional<std::array<double, 2>> passage_m = {};
+  std::vector<Vec3> enter = {};                        ///< Entrances, survey frame; empty: found.
+  std::optional<std::array<double, 2>> levels_m = {};  ///< Lowest and highest ground, survey frame.
+  std::vector<PlanRegion> within = {}, without = {};   ///< Regions that all stations stand in, and none.
 
-  Engine engine = Engine::automatic;
-  DeviceList devices = {};
-  std::uint64_t seed = 1;
-  bool validation = false;
-  std::uint64_t memory_bytes = 0;  ///< 0: half of the free memory.
-  std::string crs = {};            ///< Coordinate system of the survey frame; empty: unknown.
+  Engine engine = Engine::automatic;  ///< Engine that traces rays.
+  DeviceList devices = {};            ///< Devices that share the work; none named: the best.
+  std::uint64_t seed = 1;             ///< Seed of noise, samples and search.
+  bool validation = false;            ///< Checks every Vulkan call with the validation layer.
+  std::uint64_t memory_bytes = 0;     ///< Larger estimates are refused; 0: half of the free memory.
+  std::string crs = {};               ///< Coordinate system of the survey frame; empty: unknown.
 
   /// Called on the calling thread with each fact and choice, a sentence each, and with each warning.
   std::function<void(const std::string&)> log = {}, warn = {};
@@ -92,7 +94,7 @@ const SettingTable<SiteOptions>& site_settings();
 struct SiteChoice {
   std::string setting;  ///< Its name in `site_settings()`.
   std::string value;    ///< In the form in which users give it.
-  std::string why;
+  std::string why;      ///< Reason, a phrase.
 };
 
 /// Owns scene, scanners, ground, clash checks and simulator, each made once. Moved, not copied. Several threads may
@@ -101,8 +103,8 @@ struct SiteChoice {
 /// `survey_problem` and the like, which call them.
 class Site {
  public:
-  /// Reads the scene and chooses what the options leave open. Throws Error as `Scene::load`, and invalid_argument for a
-  /// setting out of its range.
+  /// Reads a model, a floor plan or points, in the formats of `Scene::load`, and chooses what the options leave open.
+  /// Throws Error as `Scene::load`, and invalid_argument for a setting out of its range.
   static Site open(const std::filesystem::path& file, SiteOptions options = {});
   /// Makes a site of an existing scene. `name`: for titles and messages.
   explicit Site(Scene scene, SiteOptions options = {}, std::string name = "site");
@@ -112,12 +114,12 @@ class Site {
   Site& operator=(Site&&) noexcept;
   ~Site();
 
-  const std::string& name() const noexcept;  ///< The file's name, without folder and extension.
-  const Scene& scene() const noexcept;       ///< With the weights in force (`weigh_ground`).
-  const SiteOptions& options() const noexcept;
-  std::span<const SiteChoice> choices() const noexcept;
-  const Scanner& scanner() const noexcept;             ///< The first.
-  std::span<const Scanner> scanners() const noexcept;  ///< Indexed by `StationSetup::scanner`.
+  const std::string& name() const noexcept;              ///< The file's name, without folder and extension.
+  const Scene& scene() const noexcept;                   ///< The scene, with the weights in force (`weigh_ground`).
+  const SiteOptions& options() const noexcept;           ///< As they were given.
+  std::span<const SiteChoice> choices() const noexcept;  ///< Settings that were left open, and what they are taken as.
+  const Scanner& scanner() const noexcept;               ///< The first scanner.
+  std::span<const Scanner> scanners() const noexcept;    ///< Indexed by `StationSetup::scanner`.
   /// Index of a scanner in `scanners()`, which it joins if it is new. Throws Error invalid_argument if it fails
   /// `Scanner::check`, or is new once the simulator exists.
   std::uint32_t place_of(const Scanner& scanner);
@@ -126,17 +128,17 @@ class Site {
   void detect_every_echo();
   /// Factor of default lengths for scenes smaller than a site; 1 from 2 m.
   double length_scale() const noexcept;
-  const SimulatorConfig& simulator_config() const noexcept;
-  const WalkableOptions& walkable() const noexcept;
-  const SecurityVolume& security() const noexcept;
-  const std::string& crs() const noexcept;
+  const SimulatorConfig& simulator_config() const noexcept;  ///< Settings of `simulator()`.
+  const WalkableOptions& walkable() const noexcept;          ///< Settings of `area()`.
+  const SecurityVolume& security() const noexcept;           ///< Volume that `clash()` keeps free.
+  const std::string& crs() const noexcept;                   ///< Coordinate system of the survey frame; empty: unknown.
   /// All settings, for results and configuration files.
   Settings settings() const;
 
   bool has_area();  ///< Whether there is ground to stand on.
   /// Throws Error invalid_argument if there is none.
   const SearchArea& area();
-  const ClashChecker& clash();
+  const ClashChecker& clash();  ///< Made if needed.
   /// Spans the simulator over other processes (`SimulatorConfig::shared`). Throws Error invalid_argument once it
   /// exists.
   void share(std::shared_ptr<TracerMaker> others);
@@ -144,7 +146,7 @@ class Site {
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Made if needed.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
-  Work work() const;          ///< Of the simulators that were made so far.
+  Work work() const;          ///< Work of the simulators that were made so far.
 
   /// Places a station by its head (survey frame), at `uv` if that is given, and checks it as a search does.
   PlacedHead place_head(const Vec3& head, std::optional<Uv> uv = {});

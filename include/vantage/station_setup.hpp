@@ -13,11 +13,11 @@ namespace vantage {
 /// head lies, at 180° it hangs. The heading turns the scanner about up, from +X towards +Y. It adds to
 /// `Scanner::heading`, which turns the scanner about its own axis.
 struct StationSetup {
-  Angle heading = Angle::degrees(0);
-  Angle tilt = Angle::degrees(0);
-  std::uint32_t scanner = 0;  ///< Index into `Simulator::scanners()`.
+  Angle heading = Angle::degrees(0);  ///< Turn about up.
+  Angle tilt = Angle::degrees(0);     ///< Lean of the axis.
+  std::uint32_t scanner = 0;          ///< Index into `Simulator::scanners()`.
 
-  bool turned() const { return heading != Angle() || tilt != Angle(); }
+  bool turned() const { return heading != Angle() || tilt != Angle(); }  ///< True unless heading and tilt are 0.
   /// Rows of Rz(heading) · Ry(tilt), which takes directions from the scanner's frame to the survey's. Quarter turns are
   /// exact.
   std::array<Vec3, 3> survey_from_scanner() const;

@@ -32,7 +32,7 @@ std::vector<std::string> set_ups_of(const Evaluation& evaluation);
 /// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "control",
 /// "on site", "hours" or "to do") and its text.
 struct SummaryLine {
-  std::string heading = {}, text = {};
+  std::string heading = {}, text = {};  ///< Subject of the line, and its text.
 };
 /// Figures of a network in words, then advice on stations that are left out, missing links and violated requirements.
 std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
@@ -43,15 +43,17 @@ std::vector<SummaryLine> summary_lines(const PlanResult& result);
 /// stations capture 86.2 % of what is attainable; a further one would add some 22 m² in 4 min, and has to add 25 m²".
 /// Empty unless the fewest stations are asked for by what they capture.
 std::string planned_text(const PlanResult& result);
+/// `summary_lines` of a plan for a terminal.
 std::string summary_text(const PlanResult& result);
 /// A part of the floor where stations may stand, and the stations on it.
 struct FloorPart {
+  /// Kinds of parts.
   enum class Kind {
     storey,    ///< Ground above or below other ground. A site of one level has none.
     building,  ///< Ground under a roof and within walls, apart from other such ground. A site of one has none.
     room,      ///< A room that the file names.
   };
-  Kind kind = Kind::storey;
+  Kind kind = Kind::storey;  ///< Kind of the part.
   std::string name = {};     ///< "storey 2", counted from below; "building 1", the largest; the room's own.
   double area_m2 = 0;        ///< Ground of the search area in plan; 0: none of it is reached.
   Vec3 place = {};           ///< A point of it, survey frame; of a room without ground its middle.

@@ -43,12 +43,12 @@ struct ScanFit {
 
 /// A scan that was taken.
 struct TakenScan {
-  std::string name = {}, sensor = {};
-  Vec3 head = {};            ///< Survey frame, metres.
-  StationSetup setup = {};   ///< Heading and tilt.
-  std::uint64_t points = 0;  ///< Before they were thinned.
-  std::vector<TakenPoint> thinned = {};
-  ScanFit fit = {};
+  std::string name = {}, sensor = {};    ///< As the file has them; "": not told.
+  Vec3 head = {};                        ///< Survey frame, metres.
+  StationSetup setup = {};               ///< Heading and tilt.
+  std::uint64_t points = 0;              ///< Before they were thinned.
+  std::vector<TakenPoint> thinned = {};  ///< Its points, one for each cell.
+  ScanFit fit = {};                      ///< Result of `fit_to_model()`.
 };
 
 /// Points of a site's scans lie this near to the model's surfaces, or are of something else.
@@ -83,7 +83,7 @@ struct SeenThrough {
 
 /// Cells beside what scans saw, in the space of a person above the ground, that no scan saw.
 struct UnknownSpace {
-  double cell_m = 0;
+  double cell_m = 0;                                    ///< Edge of a cell.
   Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
   std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Ascending.
 };
@@ -93,12 +93,13 @@ struct SiteChanges {
   std::vector<FoundThing> things = {};  ///< Largest first.
   /// Things of one scan that another scan saw through: people who stood still, cars that left. They count as nothing.
   std::vector<FoundThing> passing = {};
-  std::vector<SeenThrough> seen_through = {};
+  std::vector<SeenThrough> seen_through = {};           ///< Parts of the model that scans saw through.
   double cell_m = 0;                                    ///< Cells of things.
   Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
   std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Of all things, ascending.
   std::vector<std::uint32_t> removed = {};              ///< Meshes of `Scene::meshes()`, ascending.
   UnknownSpace unknown = {};                            ///< If it is a goal: see `unknown_space()`.
+  /// True if the site differs from its model.
   bool any() const { return !cells.empty() || !removed.empty() || !unknown.cells.empty(); }
 };
 
@@ -119,17 +120,19 @@ inline constexpr std::uint32_t unknown_weight = 5;
 /// and weights of `site`.
 Site changed_site(Site& site, const SiteChanges& changes);
 
+/// Goals of the next stations.
 struct NextConfig {
   double capture = 0.9;        ///< Wanted share of what is attainable, above 0 and at most 1.
   double link = default_link;  ///< Least scan overlap of links that connect all stations, taken ones included; 0: none.
-  double tolerance_m = default_tolerance_m;
+  double tolerance_m = default_tolerance_m;  ///< Distance from the model within which a point is of the model, metres.
   /// A taken scan this near to a planned station is that station.
   double taken_within_m = 1;
-  std::uint64_t sample_voxels = 20'000;
-  std::size_t most = 32;  ///< Most further stations.
-  bool unknown = false;   ///< Whether the edge of `unknown_space()` is a goal.
+  std::uint64_t sample_voxels = 20'000;  ///< Voxels that candidates are judged on.
+  std::size_t most = 32;                 ///< Most further stations.
+  bool unknown = false;                  ///< Whether the edge of `unknown_space()` is a goal.
 };
 
+/// Its members as named values, for results and configuration files.
 Settings settings(const NextConfig& config);
 
 /// One row for each setting that a user gives.
@@ -137,7 +140,7 @@ const SettingTable<NextConfig>& next_settings();
 
 /// A station to take, in the order in which to take them.
 struct NextStation {
-  PlacedStation station;
+  PlacedStation station;                    ///< Place and set-up.
   std::optional<std::size_t> planned = {};  ///< Index among the planned stations, if it is one.
   double gain = 0;                          ///< What it adds to the captured share, after those before it.
   double captured = 0;                      ///< The share with it.
@@ -185,12 +188,12 @@ std::optional<NextAnswer> next_stations(Site& found, std::span<const TakenScan> 
 
 /// Scans that were taken, what they tell, and the answer to where to stand next.
 struct Day {
-  std::vector<TakenScan> scans = {};
-  std::vector<PlacedStation> planned = {};
+  std::vector<TakenScan> scans = {};            ///< Scans that were taken.
+  std::vector<PlacedStation> planned = {};      ///< Stations of the plan, if there is one.
   std::vector<std::string> planned_names = {};  ///< One for each of `planned`.
-  SiteChanges changes = {};
-  NextConfig config = {};
-  NextAnswer answer = {};
+  SiteChanges changes = {};                     ///< Differences of the site from its model, by `find_changes()`.
+  NextConfig config = {};                       ///< Goals of the next stations.
+  NextAnswer answer = {};                       ///< Result of `next_stations()`.
 
   /// A scan is named by the planned station that it is of, else by the name in its file, with ", taken" if a planned
   /// station has it. The names of the next stations follow.

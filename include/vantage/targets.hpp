@@ -23,7 +23,12 @@ class Site;
 
 /// Levels of accuracy (U.S. Institute of Building Documentation, Level of Accuracy Specification Guide, 2016): a bound
 /// of the error at 95 %.
-enum class AccuracyClass { loa20, loa30, loa40, loa50 };
+enum class AccuracyClass {
+  loa20,  ///< 50 mm.
+  loa30,  ///< 15 mm.
+  loa40,  ///< 5 mm.
+  loa50,  ///< 1 mm.
+};
 std::string to_string(AccuracyClass);  ///< "LOA30"
 /// Throws Error invalid_argument for any other text; case is ignored.
 AccuracyClass accuracy_class_from_string(const std::string& text);
@@ -33,10 +38,10 @@ double error_at_95_percent(double rms_m) noexcept;
 
 /// A target on its stand or mark. Lengths in metres, survey frame.
 struct Target {
-  std::string name = {};
-  Vec3 centre;
-  double control_m = 0;  ///< Standard deviation of known coordinates, in each axis; 0: no control point.
-  bool proposed = false;
+  std::string name = {};  ///< For tables, pictures and the crew.
+  Vec3 centre;            ///< Centre of the sphere or the checkerboard.
+  double control_m = 0;   ///< Standard deviation of known coordinates, in each axis; 0: no control point.
+  bool proposed = false;  ///< True if `propose_targets()` proposed it; false: it was given.
   /// Stations that measure it, ascending, by their places in the network.
   std::vector<std::size_t> stations = {};
   /// A place on a surveyed surface for a check of the vertical index: two stations or more see it steeply. It ties no
@@ -65,6 +70,7 @@ struct TargetOptions {
 AccuracyClass wanted_class(const TargetOptions& options) noexcept;
 /// Largest root mean square error that `wanted_class()` and `largest_rms_m` allow.
 double allowed_rms_m(const TargetOptions& options);
+/// Its members as named values, for results and configuration files.
 Settings settings(const TargetOptions& options);
 /// One row for each setting that users give, and its bounds.
 const SettingTable<TargetOptions>& target_settings();
@@ -76,9 +82,9 @@ double target_reach_m(const Scanner& scanner, const TargetOptions& options = {})
 
 /// Targets that a network wants, and what they bring.
 struct TargetProposal {
-  std::vector<Target> targets;  ///< The given ones, then the proposed ones, the most useful first.
-  RegistrationError without = {}, with = {};
-  double reach_m = 0;  ///< `target_reach_m()` of the first scanner.
+  std::vector<Target> targets;                ///< The given ones, then the proposed ones, the most useful first.
+  RegistrationError without = {}, with = {};  ///< Predicted without any target, and with all.
+  double reach_m = 0;                         ///< `target_reach_m()` of the first scanner.
 };
 
 /// Proposes as few targets as bring the predicted error to what `options` allow: each time the one of some 400 places

@@ -22,27 +22,27 @@ enum class Engine {
   compute_bvh,  ///< Vulkan compute shaders with our own BVH.
   embree,       ///< CPU.
 };
-std::string to_string(Engine);
+std::string to_string(Engine);  ///< "auto", "ray_query", "compute_bvh", "embree"
 /// Throws Error invalid_argument and lists the engines.
 Engine engine_from_string(const std::string&);
 
 /// An engine on a device, as `list_engines` finds it.
 struct EngineInfo {
-  Engine engine = Engine::embree;
-  std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver;  ///< Driver or library, with its version.
-  std::uint32_t device_index = 0;
-  bool usable = false;
-  bool software = false;  ///< A CPU behind a GPU interface.
-  bool chosen_by_default = false;
-  std::string reason;  ///< Why it was taken or refused.
+  Engine engine = Engine::embree;  ///< Engine that traces.
+  std::string device;              ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver;              ///< Driver or library, with its version.
+  std::uint32_t device_index = 0;  ///< Number of the device, among those of its interface.
+  bool usable = false;             ///< True if a simulator can be made on it.
+  bool software = false;           ///< A CPU behind a GPU interface.
+  bool chosen_by_default = false;  ///< `Engine::automatic` takes it.
+  std::string reason;              ///< Why it was taken or refused.
 };
 /// All engines on all devices of this machine, usable or not. Having no device is no error.
 std::vector<EngineInfo> list_engines();
 
 /// An engine on a device, as requested.
 struct DeviceChoice {
-  Engine engine = Engine::automatic;
+  Engine engine = Engine::automatic;                  ///< Engine that traces.
   std::optional<std::uint32_t> index = std::nullopt;  ///< `EngineInfo::device_index`; empty: the best device that has
                                                       ///< the engine.
   friend bool operator==(const DeviceChoice&, const DeviceChoice&) = default;
@@ -69,6 +69,7 @@ struct RegistrationModel {
 /// Registration information in the station masks: sums over voxels of point-to-plane information (docs/method.md).
 /// Exact, except for one rounding of each sum to double.
 struct RegistrationSums {
+  /// Numbers of a pair, of a station, and of a row of `instrument`.
   static constexpr std::size_t of_pair = 21, of_station = 10, instrument_errors = 14;
   std::uint64_t voxels = 0;  ///< Voxels that were summed: those counted, or a sample of them.
   Vec3 centre;               ///< Local frame; places and rotations are relative to it.
@@ -100,6 +101,7 @@ struct DroppedPoints {
   std::uint64_t noise = 0;      ///< Range too noisy.
   std::uint64_t echo = 0;       ///< Echo too weak to be detected.
   friend bool operator==(const DroppedPoints&, const DroppedPoints&) = default;
+  /// Sums of both, member by member.
   friend DroppedPoints operator+(const DroppedPoints& a, const DroppedPoints& b) {
     return {a.points + b.points, a.incidence + b.incidence, a.footprint + b.footprint, a.noise + b.noise,
             a.echo + b.echo};
@@ -113,6 +115,7 @@ struct MixedPoints {
   std::uint64_t counted = 0;      ///< Points that count, in a voxel that one of their echoes came from.
   std::uint64_t wrong_voxel = 0;  ///< Points in another surveyed voxel. These do not count.
   friend bool operator==(const MixedPoints&, const MixedPoints&) = default;
+  /// Sums of both, member by member.
   friend MixedPoints operator+(const MixedPoints& a, const MixedPoints& b) {
     return {a.points + b.points, a.counted + b.counted, a.wrong_voxel + b.wrong_voxel};
   }
@@ -120,7 +123,7 @@ struct MixedPoints {
 
 /// Counted voxels of one mesh. A voxel belongs to the mesh with most surface in it.
 struct MeshVoxels {
-  std::uint64_t voxels = 0;
+  std::uint64_t voxels = 0;    ///< Counted ones.
   std::uint64_t captured = 0;  ///< Those that reached their goal density.
   friend bool operator==(const MeshVoxels&, const MeshVoxels&) = default;
 };
@@ -153,8 +156,8 @@ struct NetworkCounts {
   /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1), for the standard error of
   /// coverage. Infinite for a sample without groups.
   double successive_difference_sum = 0;
-  double trace_seconds = 0;
-  bool cancelled = false;
+  double trace_seconds = 0;  ///< Time of tracing; not reproducible.
+  bool cancelled = false;    ///< It was stopped; the counts are then of no use.
 
   std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
 };
@@ -163,7 +166,7 @@ struct NetworkCounts {
 /// memory only for those blocks of voxels in which one has a point; up to 64 in all have a word for each voxel.
 class StationMasks {
  public:
-  static constexpr std::size_t block_voxels = 4096;
+  static constexpr std::size_t block_voxels = 4096;  ///< Voxels of a block.
 
   StationMasks() = default;
   /// No station has a point yet.
@@ -172,9 +175,9 @@ class StationMasks {
   explicit StationMasks(std::vector<std::uint64_t> words)
       : voxels_(words.size()), words_(1), only_word_(std::move(words)) {}
 
-  bool empty() const { return words_ == 0; }  ///< No masks were asked for.
-  std::size_t voxels() const { return voxels_; }
-  std::size_t words() const { return words_; }  ///< Of 64 stations each.
+  bool empty() const { return words_ == 0; }      ///< No masks were asked for.
+  std::size_t voxels() const { return voxels_; }  ///< Number of voxels.
+  std::size_t words() const { return words_; }    ///< Of 64 stations each.
   /// Bit b means that station 64 w + b has a point in the voxel. REQUIRES: w < words(), voxel < voxels().
   std::uint64_t word(std::size_t w, std::size_t voxel) const {
     if (words_ == 1) return only_word_[voxel];

@@ -27,6 +27,7 @@ struct Work {
     visit("sampled_rays", &Work::sampled_rays), visit("planes", &Work::planes);
     visit("choice_steps", &Work::choice_steps), visit("uploaded_bytes", &Work::uploaded_bytes);
   }
+  /// Sums of both, member by member.
   friend Work operator+(Work a, const Work& b) {
     for_each([&](const char*, auto member) { a.*member += b.*member; });
     return a;

@@ -22,7 +22,7 @@ namespace vantage {
 struct FolderOptions {
   ReportOptions report = {};  ///< Head of the reports. Their field and missed surface are the answer's.
   bool reports = true;        ///< Write report.html and report.pdf, if this build can.
-  PlyCoordinates ply = PlyCoordinates::floats;
+  PlyCoordinates ply = PlyCoordinates::floats;  ///< Coordinates of PLY files.
   /// Time for all of it, in seconds. A part that is not done by then is left out, unless two seconds do for it; tables,
   /// drawings and plan.png are always written. Empty: no limit.
   std::optional<double> max_seconds = std::nullopt;
@@ -61,6 +61,7 @@ struct WrittenFolder {
 /// floors also plan-level-1.png and so on;
 /// - if the registration error is known, ellipses in the plan, and registration.ply, .png and .svg;
 /// - report.html and report.pdf.
+///
 /// Counts the answer with every ray once. Throws Error: io; invalid_argument (an empty front), malformed_file (a logo
 /// that is no picture); and as the simulator does.
 WrittenFolder write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,

@@ -8,15 +8,25 @@ import numpy.typing as npt
 
 __version__: str
 
+# A point (x, y, z): survey frame, metres.
 Vec3 = Tuple[float, float, float]
+# A place (u, v) of a search area.
 Uv = Tuple[float, float]
+# A value, and its standard error.
 Estimate = Tuple[float, float]
+# A file or a folder.
 Path = Union[str, "os.PathLike[str]"]
+# Called with the share done, in [0, 1], now and then; the call ends early if it returns False.
 Progress = Callable[[float], Any]
+# Purpose of a mesh.
 Role = Literal["surveyed", "blocking", "search", "ignore"]
+# Engine that traces rays.
 EngineName = Literal["auto", "ray_query", "compute_bvh", "embree"]
+# Heads as an array (n, 3): survey frame, metres; or stations with their set-ups; or stations that were placed.
 Stations = Union[npt.ArrayLike, Sequence["Station"], Sequence["PlacedStation"]]
+# A region seen from above, survey frame: points inside an odd number of its rings of corners (x, y).
 Rings = Sequence[Sequence[Tuple[float, float]]]
+# An array; docstrings tell its shape.
 Floats = npt.NDArray[np.float64]
 
 class Error(RuntimeError):
