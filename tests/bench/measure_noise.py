@@ -25,7 +25,7 @@ import numpy as np
 
 import scan_files
 
-LEAST_POINTS = 30
+LEAST_POINTS = 20
 SIGMAS = 4  # of 10 000 normal residuals, fewer than one is beyond
 BENT = 3.8  # F of three terms of a quadric: one white patch in a hundred is beyond
 STEPS_MM = (0.1, 0.2, 0.25, 0.5, 1, 2, 2.5, 4, 5, 8, 10, 20)
@@ -98,9 +98,9 @@ def is_bent(e, angles, row):
         solution, _, size, _ = np.linalg.lstsq(terms, e, rcond=None)
         sums.append(((e - terms @ solution) ** 2).sum())
         sizes.append(size)
-    if sizes[1] == sizes[0]:
-        return False
-    return (sums[0] - sums[1]) / (sizes[1] - sizes[0]) > BENT * sums[1] / (len(e) - sizes[1])
+    if len(e) < sizes[1] + 10:
+        return True  # too few points to tell
+    return sizes[1] > sizes[0] and (sums[0] - sums[1]) / (sizes[1] - sizes[0]) > BENT * sums[1] / (len(e) - sizes[1])
 
 
 def excess_of_blocks(e, angles):
@@ -214,8 +214,9 @@ def exponents(patches):
 
 
 def repeated_offsets(patches):
-    """Offsets of beams that are the same in all patches: their root mean square, and the number of beams; or None. A
-    common offset, and what changes evenly from beam to beam, is not in it: planes take that up."""
+    """Offsets of beams that are the same in all patches: their root mean square, what noise alone would give at most,
+    and the number of beams; or None. A common offset, and what changes evenly from beam to beam, is not in it, since
+    planes take that up."""
     equations = [patch.rows for patch in patches if patch.rows is not None]
     if not equations:
         return None
@@ -229,9 +230,10 @@ def repeated_offsets(patches):
     if enough.sum() < 5:
         return None
     inverse = np.linalg.pinv(normal[np.ix_(enough, enough)], rcond=0.02, hermitian=True)
-    variance = median_and_error([patch.neighbours for patch in patches])[0] ** 2
-    square = np.mean((inverse @ right[enough]) ** 2) - variance * np.trace(inverse) / enough.sum()
-    return np.sqrt(max(square, 0)), int(enough.sum())
+    covariance = median_and_error([patch.neighbours for patch in patches])[0] ** 2 * inverse
+    square = np.mean((inverse @ right[enough]) ** 2) - np.trace(covariance) / enough.sum()
+    by_noise = 3 * np.sqrt(2 * (covariance ** 2).sum()) / enough.sum()
+    return np.sqrt(max(square, 0)), np.sqrt(by_noise), int(enough.sum())
 
 
 def classes(patches):
@@ -269,7 +271,8 @@ def report(scans, patches):
     for name, power in exponents(patches).items():
         print(f"power of {name}: " + ("not known" if power is None else f"{power[0]:.2f} ± {power[1]:.2f}"))
     rows = repeated_offsets(patches)
-    print("offsets of beams that repeat: " + (f"{1000 * rows[0]:.2f} mm, {rows[1]} beams" if rows else "not known"))
+    print("offsets of beams that repeat: " + (f"{1000 * rows[0]:.2f} mm, of which noise alone gives up to "
+                                              f"{1000 * rows[1]:.2f} mm, {rows[2]} beams" if rows else "not known"))
 
 
 def parse(arguments=None):

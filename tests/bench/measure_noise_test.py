@@ -54,7 +54,8 @@ class MeasureNoise(unittest.TestCase):
             self.assertAlmostEqual(middle(patches, "neighbours") / sigma, 1, delta=0.04)
             self.assertAlmostEqual(middle(patches, "correlation"), 0, delta=0.07)
             self.assertAlmostEqual(middle(patches, "blocks"), 1, delta=0.05)
-            self.assertLess(measure_noise.repeated_offsets(patches)[0], 0.1 * sigma)
+            offsets, by_noise, _ = measure_noise.repeated_offsets(patches)
+            self.assertLess(offsets, by_noise)
 
     def test_powers_of_range_and_intensity(self):
         scan = room(lambda r, i: 0.001 * r ** 0.8 * i ** -0.5, columns=1800, walls=np.array([8, 3, 1.8]),
@@ -75,7 +76,10 @@ class MeasureNoise(unittest.TestCase):
 
     def test_offsets_of_beams(self):
         patches = measured(room(lambda r, i: 0.002, offsets=0.006), points=200)
-        self.assertAlmostEqual(measure_noise.repeated_offsets(patches)[0] / 0.006, 1, delta=0.25)
+        offsets, by_noise, beams = measure_noise.repeated_offsets(patches)
+        self.assertAlmostEqual(offsets / 0.006, 1, delta=0.25)
+        self.assertLess(by_noise, 0.002)
+        self.assertEqual(beams, 24)
         self.assertAlmostEqual(middle(patches, "neighbours") / 0.002, 1, delta=0.1)
         self.assertGreater(middle(patches, "sigma"), 0.003)
 
