@@ -106,6 +106,21 @@ class MeasureNoise(unittest.TestCase):
         scan.points = rays * (3 + (ranges - (WALLS / np.abs(rays)).min(axis=1)))[:, None]  # a sphere
         self.assertEqual(len(measured(scan, points=200)), 0)
 
+    def test_bends_are_told_from_offsets_of_beams(self):
+        random = np.random.default_rng(3)
+        row = np.repeat(np.arange(4), 15)
+        angles = np.column_stack([np.tile(np.linspace(-1, 1, 15), 4), row])
+
+        def bent(curve, offsets):
+            surface = curve * angles[:, 0] ** 2 + offsets * row ** 2
+            tried = (surface + random.standard_normal(60) for _ in range(100))
+            return np.mean([measure_noise.is_bent(e, angles, row) for e in tried])
+
+        self.assertLess(bent(0, 0), 0.08)
+        self.assertLess(bent(0, 3), 0.08)
+        self.assertGreater(bent(3, 0), 0.9)
+        self.assertTrue(measure_noise.is_bent(random.standard_normal(12), angles[::5], None))
+
     def test_rays_from_an_arm(self):
         """The ranges of an Ouster begin on a circle about its axis."""
         scan = room(lambda r, i: 0.003)
