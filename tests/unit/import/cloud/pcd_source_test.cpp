@@ -94,6 +94,13 @@ TEST_F(PcdSourceTest, AViewpointMovesTheScan) {
   expect_refused_for("quaternion", [&] { view("0 0 0 0 0 0 0"); });
 }
 
+// Drivers that fill PCL's list of points by hand write them so.
+TEST_F(PcdSourceTest, PointsCountWithoutAWidth) {
+  std::string content = header("binary") + binary_rows();
+  content.replace(content.find("WIDTH 3\nHEIGHT 1"), 16, "WIDTH 0\nHEIGHT 0");
+  check(points_of(*open_pcd(write("a.pcd", content))));
+}
+
 TEST_F(PcdSourceTest, LzfRepeats) {
   using namespace std::string_literals;
   EXPECT_EQ(importer::unpack_lzf("\2abc"s, 3), "abc");
