@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/disjoint_sets.hpp"
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 
 namespace vantage {
@@ -17,6 +18,7 @@ namespace {
 constexpr double kLeast_m2 = 2;             // area of a sheet, seen from above
 constexpr double kMostUp = 0.01;            // share of it that faces up, as a rim does
 constexpr std::size_t kLookedAt = 200;      // triangles of a sheet
+constexpr std::size_t kLookedAtFirst = 50;  // the largest of a mesh, and as many others
 constexpr double kSkin_m = 0.01;            // rays begin so far off the sheet
 constexpr std::uint32_t kMost = 4'000'000;  // triangles of a mesh that is taken apart
 
@@ -71,7 +73,8 @@ Shape shape_of(const SceneData& scene, const std::vector<std::uint32_t>& part) {
   return shape;
 }
 
-// Whether somebody may stand on the back of a triangle that faces down; inside(triangle below): in the same solid.
+// True if somebody may stand on the back of a triangle that faces down. inside(triangle): whether that triangle,
+// straight below, belongs to the same solid.
 template <class Inside>
 bool carries(const SceneData& scene, const MeshTree& tree, std::uint32_t triangle, double height_m, Inside inside) {
   const auto t = corners_of(scene, triangle);
@@ -96,8 +99,8 @@ bool carries(const SceneData& scene, const MeshTree& tree, const std::vector<std
   return 2 * on > all;
 }
 
-// Whether any of the largest triangles that face down, and of some others, may carry a person: of most models none
-// does, and nothing has to be taken apart.
+// True if any of the largest triangles that face down, or of some others, may carry a person. Most models have none,
+// and nothing has to be taken apart.
 bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& range, double height_m) {
   std::vector<std::pair<double, std::uint32_t>> down;  // by area, negative
   double all = 0;
@@ -105,11 +108,12 @@ bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& ra
     if (const double area = shown_m2(scene, range.first_triangle + k); area < 0)
       down.emplace_back(area, range.first_triangle + k), all -= area;
   if (all < kLeast_m2) return false;
-  const std::size_t stride = std::max<std::size_t>(1, down.size() / kLookedAt);
+  const std::size_t stride = std::max<std::size_t>(1, down.size() / kLookedAtFirst);
+  const std::size_t largest = std::min(kLookedAtFirst, down.size());
   std::vector<std::uint32_t> some;
   for (std::size_t k = 0; k < down.size(); k += stride) some.push_back(down[k].second);
-  std::ranges::nth_element(down, down.begin() + static_cast<std::ptrdiff_t>(std::min(kLookedAt, down.size() - 1)));
-  for (std::size_t k = 0; k < std::min(kLookedAt, down.size()); ++k) some.push_back(down[k].second);
+  std::ranges::nth_element(down, down.begin() + static_cast<std::ptrdiff_t>(largest - 1));
+  for (std::size_t k = 0; k < largest; ++k) some.push_back(down[k].second);
   return std::ranges::any_of(some, [&](std::uint32_t triangle) {
     return carries(scene, tree, triangle, height_m, [&](std::uint32_t below) { return shown_m2(scene, below) > 0; });
   });
@@ -118,9 +122,15 @@ bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& ra
 }  // namespace
 
 std::vector<std::uint32_t> drawn_face_down(const SceneData& scene, const MeshTree& tree, double height_m) {
+  std::vector<std::uint8_t> may(scene.ranges.size());
+  parallel::for_all(std::size_t{0}, may.size(), [&](std::size_t m) {
+    const MeshRange& range = scene.ranges[m];
+    may[m] = range.triangle_count <= kMost && may_carry(scene, tree, range, height_m);
+  });
   std::vector<std::uint32_t> found;
-  for (const MeshRange& range : scene.ranges) {
-    if (range.triangle_count > kMost || !may_carry(scene, tree, range, height_m)) continue;
+  for (std::size_t m = 0; m < may.size(); ++m) {
+    if (!may[m]) continue;
+    const MeshRange& range = scene.ranges[m];
     for (const std::vector<std::uint32_t>& part : connected_parts(scene, range)) {
       const Shape shape = shape_of(scene, part);
       if (shape.down_m2 < kLeast_m2 || !(shape.is_sheet() || shape.is_inside_out())) continue;

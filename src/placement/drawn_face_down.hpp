@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person stands on although it was drawn face down: ground as modellers draw a first rectangle, and solids that
-// are inside out, as mirrored copies are.
+// Finds surfaces that a person stands on although they were drawn face down: ground, as modellers draw a first
+// rectangle, and solids that are inside out, as mirrored copies are.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace vantage {
 
-// The triangles of such connected parts of a mesh, rising: of open sheets of which hardly anything faces up, and of
-// closed ones whose faces show inwards, if they are not as high inside as a person. Somebody of this height, in metres,
-// has room on most of what faces down, below the sky or a face that looks down at it, unlike inside of a solid. A
-// ceiling under the sky is none: something lies below a ceiling.
+// Returns the triangles of such connected parts of a mesh, rising: of open sheets of which hardly anything faces up,
+// and of closed ones whose faces show inwards, if they are not as high inside as a person. Somebody of this height, in
+// metres, has room on most of what faces down, below the sky or a face that looks down at it, unlike inside of a solid.
+// A ceiling under the sky is none: something lies below a ceiling.
 std::vector<std::uint32_t> drawn_face_down(const SceneData& scene, const MeshTree& tree, double height_m);
 
 }  // namespace vantage

@@ -363,8 +363,19 @@ void add_thin_floors(const GroundField& field, std::vector<glm::dvec3>& points, 
   }
 }
 
+// True if the model is what a scan saw: nothing is known beyond it, and a face shows the side that was seen.
+bool is_scanned(const SceneData& scene) {
+  const auto defaults = nlohmann::json::parse(scene.defaults_json, nullptr, false);
+  const auto scanned = defaults.is_object() ? defaults.find("scanned") : defaults.end();
+  return scanned != defaults.end() && scanned->is_boolean() && scanned->get<bool>();
+}
+
+std::vector<std::uint32_t> turned_in(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
+  return is_scanned(scene) ? std::vector<std::uint32_t>{} : drawn_face_down(scene, tree, options.headroom_m);
+}
+
 WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
-  const std::vector<std::uint32_t> turned = drawn_face_down(scene, tree, options.headroom_m);
+  const std::vector<std::uint32_t> turned = turned_in(scene, tree, options);
   GroundField field(scene, options, turned);
   field.reach(tree, local_entries(scene, options));
   std::vector<glm::dvec3> points;
@@ -382,7 +393,7 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
 }
 
 WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
-  const std::vector<std::uint32_t> turned = drawn_face_down(scene, tree, options.headroom_m);
+  const std::vector<std::uint32_t> turned = turned_in(scene, tree, options);
   std::vector<glm::dvec3> points;
   std::vector<Triangle> upward;
   if (!scene.shares()) {
@@ -461,13 +472,6 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   surface.description = text.str();
   surface.on_plane = true;
   return surface;
-}
-
-// Whether the model is what a scan saw: nothing is known beyond it.
-bool is_scanned(const SceneData& scene) {
-  const auto defaults = nlohmann::json::parse(scene.defaults_json, nullptr, false);
-  const auto scanned = defaults.is_object() ? defaults.find("scanned") : defaults.end();
-  return scanned != defaults.end() && scanned->is_boolean() && scanned->get<bool>();
 }
 
 }  // namespace

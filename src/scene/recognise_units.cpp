@@ -285,7 +285,7 @@ std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional
   return out;
 }
 
-// Where a model lies, by a reading: one of its vertices, in metres.
+// The place of a model by a reading: one of its vertices, in metres.
 glm::dvec3 place_by(const RawScene& raw, Unit unit, UpAxis up) {
   const auto some = std::ranges::find_if(raw.positions, [](const glm::dvec3& p) { return sound(p); });
   return some == raw.positions.end() ? glm::dvec3(0) : with_up(up, *some) * metres_in(unit);
