@@ -241,13 +241,13 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   };
   refine();
   if (look_along_ways(choice, context.oracle(), watch.stop)) refine();
-  if (grow_into_reach(choice, watch.stop)) refine();
   // A share that is asked for is reached whatever it takes; if it is out of reach then too, each station has to help.
   if (out_of_reach(choice) && !problem.pays_m2 && !report.stopped()) {
     choose_anew(choice, 0, watch.stop);
     refine();
     if (out_of_reach(choice)) choose_anew(choice, kLeastHelp, watch.stop);
   }
+  if (grow_into_reach(choice, watch.stop)) refine();
   keep_to_stairs(choice, watch.stop);
   const auto keep_only_what_pays = [&] {
     if (context.pays && keep_what_pays(choice, *context.pays, context.asked_capture, watch.stop))
