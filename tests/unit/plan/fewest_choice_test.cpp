@@ -601,5 +601,33 @@ TEST(LookAlongWays, LeavesAChoiceThatHasWhatIsAskedAlone) {
   EXPECT_EQ(choice.network.chosen, chosen);
 }
 
+// The choice without its last stations, of which it has to have at most `most`.
+FewestChoice short_of(FewestChoice choice, std::size_t missing, std::size_t most) {
+  choice.asked.most = most;
+  choice.network.chosen.resize(choice.network.chosen.size() - missing);
+  choice.network = evaluate_cover(cover_problem(choice), std::move(choice.network.chosen));
+  return choice;
+}
+
+TEST(GrowIntoReach, TakesMoreStationsWhereLinkedOnesAreShort) {
+  const FewestChoice whole = chosen(floor_problem(0.7), 12);
+  ASSERT_EQ(whole.network.violation, 0);
+  const std::size_t stations = whole.network.chosen.size();
+  ASSERT_GT(stations, 2u);
+  FewestChoice choice = short_of(whole, 2, stations + 2);
+  ASSERT_GE(choice.network.link, choice.asked.link);
+  ASSERT_TRUE(out_of_reach(choice));
+  EXPECT_TRUE(grow_into_reach(choice, {}));
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_LE(choice.network.chosen.size(), stations + 2);
+
+  FewestChoice few = short_of(whole, 2, stations - 2);
+  const std::vector<std::size_t> before = few.network.chosen;
+  EXPECT_FALSE(grow_into_reach(few, {})) << "no more are allowed";
+  EXPECT_EQ(few.network.chosen, before);
+  FewestChoice reached = whole;
+  EXPECT_FALSE(grow_into_reach(reached, {})) << "nothing is missing";
+}
+
 }  // namespace
 }  // namespace vantage
