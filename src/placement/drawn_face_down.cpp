@@ -58,7 +58,9 @@ double volume(const SceneData& scene, std::uint32_t triangle, const glm::dvec3& 
 
 struct Shape {
   double up_m2 = 0, down_m2 = 0, volume = 0;
-  bool is_sheet() const { return up_m2 <= kMostUp * down_m2; }
+  Box box;
+  // Copies of a sheet that lie in one another are none.
+  bool is_sheet() const { return up_m2 <= kMostUp * down_m2 && down_m2 <= (1 + kMostUp) * box.size().x * box.size().y; }
   bool is_inside_out() const { return volume < 0 && std::abs(up_m2 - down_m2) <= kMostUp * down_m2; }
 };
 
@@ -69,6 +71,7 @@ Shape shape_of(const SceneData& scene, const std::vector<std::uint32_t>& part) {
     const double area = shown_m2(scene, triangle);
     (area > 0 ? shape.up_m2 : shape.down_m2) += std::abs(area);
     shape.volume += volume(scene, triangle, middle);
+    for (const glm::dvec3& corner : corners_of(scene, triangle)) shape.box.extend(to_vec3(corner));
   }
   return shape;
 }

@@ -72,6 +72,12 @@ TEST(DrawnFaceDown, SolidsThatAreInsideOutCarryAPersonAndRoomsDoNot) {
   EXPECT_TRUE(found_in(room).empty());
 }
 
+TEST(DrawnFaceDown, CopiesInOneAnotherAreNone) {
+  Builder b;
+  for (int k = 0; k < 3; ++k) face_down(b, 0, 0, 8 + k, 8 + k, 0);
+  EXPECT_TRUE(found_in(b).empty());
+}
+
 TEST(DrawnFaceDown, WhatIsLowOrSmallIsNone) {
   Builder b;
   b.floor(0, 0, 8, 8, 0);
