@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
-#include <tuple>
 #include <utility>
 
-#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
+#include "scene/connected_triangles.hpp"
 #include "scene/positions.hpp"
 
 namespace vantage {
@@ -28,26 +26,25 @@ double shown_m2(const SceneData& scene, std::uint32_t triangle) {
   return cross(t[1] - t[0], t[2] - t[0]).z / 2;
 }
 
-// The triangles of each connected part of a mesh. Vertices at one place are one, whatever normals they have.
+// The triangles of each connected part of a mesh.
 std::vector<std::vector<std::uint32_t>> connected_parts(const SceneData& scene, const MeshRange& range) {
-  struct Corner {
-    Float3 at;
-    std::uint32_t triangle;
-    auto place() const { return std::tuple(at.x, at.y, at.z); }
-  };
-  std::vector<Corner> corners;
+  std::vector<Float3> corners;
   corners.reserve(3 * std::size_t{range.triangle_count});
-  for (std::uint32_t k = 0; k < range.triangle_count; ++k)
-    for (const Float3& at : scene.corners(range.first_triangle + k)) corners.push_back({at, k});
-  std::ranges::sort(corners, {}, &Corner::place);
-  DisjointSets sets(range.triangle_count);
-  for (std::size_t c = 1; c < corners.size(); ++c)
-    if (corners[c].place() == corners[c - 1].place()) sets.join(corners[c].triangle, corners[c - 1].triangle);
-  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
-  for (std::uint32_t k = 0; k < range.triangle_count; ++k) parts[sets.find(k)].push_back(range.first_triangle + k);
-  std::vector<std::vector<std::uint32_t>> all;
-  for (auto& [first, part] : parts) all.push_back(std::move(part));
-  return all;
+  std::vector<Triangle> triangles;
+  triangles.reserve(range.triangle_count);
+  for (std::uint32_t k = 0; k < range.triangle_count; ++k) {
+    const auto t = scene.corners(range.first_triangle + k);
+    corners.insert(corners.end(), t.begin(), t.end());
+    triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  const Connected connected = connect<Float3>(triangles, corners);
+  std::vector<std::vector<std::uint32_t>> parts;
+  for (std::size_t part = 0; part + 1 < connected.begin.size(); ++part) {
+    std::vector<std::uint32_t>& own = parts.emplace_back();
+    for (std::uint32_t k = connected.begin[part]; k < connected.begin[part + 1]; ++k)
+      own.push_back(range.first_triangle + connected.triangles[k]);
+  }
+  return parts;
 }
 
 // Six times the volume that a triangle adds to a closed part, seen from `middle`; negative where it shows inwards.
