@@ -9,19 +9,22 @@ if(NOT embree_FOUND)
   find_package(embree 4 REQUIRED)
 endif()
 string(REGEX MATCH "^[0-9]+" VANTAGE_EMBREE_MAJOR "${embree_VERSION}") # which headers src/core/embree.hpp includes
-find_package(spdlog REQUIRED)
 find_package(Vulkan REQUIRED) # headers only: the loader is opened at run time, so that a machine without one still has Embree
 find_path(VANTAGE_VOLK_INCLUDE_DIR volk.h PATH_SUFFIXES Volk volk REQUIRED)
 find_path(VANTAGE_TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp) # what importers may do
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
-pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
-pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip) # BCF files
-pkg_check_modules(proj REQUIRED IMPORTED_TARGET "proj>=7")
+if("plan" IN_LIST VANTAGE_PARTS)
+  pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
+endif()
+if("files" IN_LIST VANTAGE_PARTS)
+  pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+  pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip) # BCF files
+  pkg_check_modules(proj REQUIRED IMPORTED_TARGET "proj>=7")
+endif()
 # The report is a page with three.js in it. It is left out where one of these is missing.
 option(VANTAGE_WITH_REPORT "Write reports where what they take is installed" ON)
 find_file(VANTAGE_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/local/share/javascript/three)
@@ -30,7 +33,9 @@ find_file(VANTAGE_ORBIT_JS OrbitControls.js PATHS /usr/share/javascript/three/ex
 find_package(meshoptimizer QUIET)
 find_package(ZLIB QUIET)
 set(VANTAGE_HAVE_REPORT FALSE)
-if(NOT VANTAGE_WITH_REPORT)
+if(NOT VANTAGE_WHOLE)
+  message(STATUS "No report: the library is built up to its part ${VANTAGE_UP_TO}")
+elseif(NOT VANTAGE_WITH_REPORT)
   message(STATUS "No report: VANTAGE_WITH_REPORT is off")
 elseif(VANTAGE_THREE_JS AND VANTAGE_ORBIT_JS AND meshoptimizer_FOUND AND ZLIB_FOUND)
   set(VANTAGE_HAVE_REPORT TRUE)

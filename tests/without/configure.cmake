@@ -1,5 +1,5 @@
 # cmake -DSOURCE=<vantage> -DFOLDER=<folder> -DGENERATOR=<generator> -DCXX=<compiler> -P configure.cmake
-# Configures vantage with what a report or the editor takes hidden or switched off, and looks at what would be compiled.
+# Configures vantage with what a report, the editor or later parts take hidden or switched off, and looks at what would be compiled.
 file(REMOVE_RECURSE ${FOLDER})
 function(configure name says report edit)
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/${name} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
@@ -22,3 +22,12 @@ configure(no_meshoptimizer "No report: .*libmeshoptimizer-dev" report/write_repo
 configure(no_three "No report: libjs-three" report/write_report_none.cpp cli/edit_none.cpp -DVANTAGE_THREE_JS=OFF)
 configure(no_report "No report: VANTAGE_WITH_REPORT is off" report/write_report_none.cpp cli/edit_none.cpp -DVANTAGE_WITH_REPORT=OFF)
 configure(no_editor "No editor: VANTAGE_WITH_EDITOR is off" report/write_report.cpp cli/edit_none.cpp -DVANTAGE_WITH_EDITOR=OFF)
+# Parts of the library, without what later parts take.
+file(WRITE ${FOLDER}/pkg-config "#!/bin/sh\nfor word; do case $word in cbc|cairo|proj*|minizip) exit 1 ;; esac; done\nexec pkg-config \"$@\"\n")
+file(CHMOD ${FOLDER}/pkg-config PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+configure(up_to_scan "No report: the library is built up to its part scan" site/site.cpp evaluate/evaluator.cpp -DVANTAGE_UP_TO=scan
+          -DVANTAGE_BUILD_TESTS=OFF -DPKG_CONFIG_EXECUTABLE=${FOLDER}/pkg-config)
+file(READ ${FOLDER}/up_to_scan/compile_commands.json commands)
+if(commands MATCHES "src/(optimise|cover|plan|taken|export|report|cli)/")
+  message(FATAL_ERROR "up to scan, ${CMAKE_MATCH_0} is compiled")
+endif()
