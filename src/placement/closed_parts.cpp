@@ -242,14 +242,7 @@ bool GroundField::is_wide(std::uint32_t part) const {
   return false;
 }
 
-bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
-  constexpr double kMostFaces = 0.6;
-  constexpr std::size_t kMost = 2000;
-  struct Rim {
-    std::uint32_t sample;
-    glm::dvec3 out;
-    bool bare;  // no surface goes on
-  };
+std::vector<GroundField::Rim> GroundField::rims_of(std::uint32_t part) const {
   std::vector<Rim> rims;
   const double step = std::max(climb_, 2.2 * std::tan(slope_) * cell_);
   for (const std::uint32_t s : members(part)) {
@@ -268,11 +261,19 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
       if (!goes_on) rims.push_back({s, {double(dx), double(dy), 0}, bare});
     }
   }
+  constexpr std::size_t kMost = 2000;
   const std::size_t stride = std::max<std::size_t>(1, rims.size() / kMost);
-  const std::size_t looked = (rims.size() + stride - 1) / stride;
+  std::vector<Rim> some;
+  for (std::size_t k = 0; k < rims.size(); k += stride) some.push_back(rims[k]);
+  return some;
+}
+
+bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
+  constexpr double kMostFaces = 0.6;
+  const std::vector<Rim> rims = rims_of(part);
   std::atomic<std::size_t> steep = 0;
-  parallel::for_all(std::size_t{0}, looked, [&](std::size_t k) {
-    const Rim& rim = rims[k * stride];
+  parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
+    const Rim& rim = rims[k];
     const glm::dvec2 p = middle(column_[rim.sample]);
     // Beyond a parapet, or beside the bare edge; under eaves.
     const double beyond = rim.bare ? 2 * cell_ : 3.3 * radius_, under = 3 * radius_;
@@ -282,7 +283,36 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
     };
     if (!met(0.8, 0, beyond) && met(-0.25, beyond, -under) && met(-0.8, beyond, -under)) ++steep;
   });
-  return looked > 0 && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(looked);
+  return !rims.empty() && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(rims.size());
+}
+
+bool GroundField::is_gallery(const MeshTree& tree, std::uint32_t part) const {
+  constexpr double kLeastGuarded = 0.8, kLeastOver = 0.02;
+  if (!is_wide(part)) return false;
+  const std::vector<Rim> rims = rims_of(part);
+  std::atomic<std::size_t> guarded = 0, over = 0;
+  const double beyond = 3.3 * radius_;
+  parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
+    const Rim& rim = rims[k];
+    const glm::dvec2 p = middle(column_[rim.sample]);
+    const glm::dvec3 at{p.x, p.y, z_[rim.sample]};
+    const auto met = [&](double above) {
+      const glm::dvec3 from = at + glm::dvec3{0, 0, above * height_};
+      return tree.between(from, from + rim.out * beyond);
+    };
+    if (std::ranges::none_of(std::array{0.25, 0.4, 0.5, 0.57}, met)) return;
+    ++guarded;
+    if (met(0.8)) return;
+    const auto column = column_at(at.x + rim.out.x * beyond, at.y + rim.out.y * beyond);
+    if (!column) return;
+    std::uint32_t below = nowhere;  // what lies highest below
+    for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
+      if (z_[n] < at.z && (below == nowhere || z_[n] > z_[below])) below = n;
+    if (below != nowhere && has_room(below) && access_[part_[below]] == Access::reached) ++over;
+  });
+  const auto all = static_cast<double>(rims.size());
+  return static_cast<double>(guarded.load()) > kLeastGuarded * all &&
+         static_cast<double>(over.load()) > kLeastOver * all;
 }
 
 double GroundField::open_ground_area(const MeshTree& tree) const {
@@ -389,7 +419,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
     return closed;
   }
   const glm::dvec3 inside = closed.middle + glm::dvec3{0, 0, 0.5 * height_};
-  if (tree.inside_solid(inside) || !has_openings(tree, number))
+  if (tree.inside_solid(inside) || !(has_openings(tree, number) || is_gallery(tree, number)))
     closed.kind = ClosedKind::hollow;
   else if (is_attic(number))
     closed.kind = ClosedKind::attic;

@@ -2,6 +2,7 @@
 #include "placement/drawn_face_down.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -119,18 +120,39 @@ bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& ra
   });
 }
 
+// Adds the triangles of a mesh that face down and have room above: they may as well face up.
+void add_with_room(std::vector<std::uint32_t>& found, const SceneData& scene, const MeshTree& tree,
+                   const MeshRange& range, double height_m) {
+  std::vector<std::uint8_t> has_room(range.triangle_count);
+  parallel::for_all(std::uint32_t{0}, range.triangle_count, [&](std::uint32_t k) {
+    const std::uint32_t triangle = range.first_triangle + k;
+    if (!(shown_m2(scene, triangle) < 0)) return;
+    const auto t = corners_of(scene, triangle);
+    const glm::dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
+    // A table may stand on its middle.
+    has_room[k] = std::ranges::any_of(std::array{middle, t[0], t[1], t[2]}, [&](const glm::dvec3& towards) {
+      const auto above = tree.first((middle + towards) / 2.0 + glm::dvec3{0, 0, kSkin_m}, {0, 0, 1});
+      return !above || above->distance >= height_m;
+    });
+  });
+  for (std::uint32_t k = 0; k < range.triangle_count; ++k)
+    if (has_room[k]) found.push_back(range.first_triangle + k);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> drawn_face_down(const SceneData& scene, const MeshTree& tree, double height_m) {
   std::vector<std::uint8_t> may(scene.ranges.size());
   parallel::for_all(std::size_t{0}, may.size(), [&](std::size_t m) {
     const MeshRange& range = scene.ranges[m];
-    may[m] = range.triangle_count <= kMost && may_carry(scene, tree, range, height_m);
+    may[m] = range.triangle_count <= kMost && !tree.wound_either_way(static_cast<std::uint32_t>(m)) &&
+             may_carry(scene, tree, range, height_m);
   });
   std::vector<std::uint32_t> found;
   for (std::size_t m = 0; m < may.size(); ++m) {
-    if (!may[m]) continue;
     const MeshRange& range = scene.ranges[m];
+    if (tree.wound_either_way(static_cast<std::uint32_t>(m))) add_with_room(found, scene, tree, range, height_m);
+    if (!may[m]) continue;
     for (const std::vector<std::uint32_t>& part : connected_parts(scene, range)) {
       const Shape shape = shape_of(scene, part);
       if (shape.down_m2 < kLeast_m2 || !(shape.is_sheet() || shape.is_inside_out())) continue;

@@ -163,8 +163,17 @@ class GroundField {
   }
   bool is_attic(std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
+  struct Rim {
+    std::uint32_t sample;
+    glm::dvec3 out;
+    bool bare;  // no surface goes on
+  };
+  // Some samples where a part ends, of all its sides.
+  std::vector<Rim> rims_of(std::uint32_t part) const;
   // True for the top of something: steep faces lead down under most of its edge.
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
+  // True if one looks down on what is reached over a rail, and nobody falls off.
+  bool is_gallery(const MeshTree& tree, std::uint32_t part) const;
   // True if one sees what is reached, or out of the model, from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
   bool may_be_told(std::uint32_t part) const;

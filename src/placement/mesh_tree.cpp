@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "core/embree.hpp"
+#include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "scene/scene_tree.hpp"
+#include "scene/winding.hpp"
 
 namespace vantage {
 namespace {
@@ -205,6 +207,7 @@ SceneData geometry_of(const SceneData& scene) {
   geometry.positions = scene.positions;
   geometry.triangles = scene.triangles;
   geometry.places = scene.places;
+  geometry.ranges = scene.ranges;
   geometry.set_instances(scene.instances);
   return geometry;
 }
@@ -236,14 +239,37 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
   return std::min({outline, distance_to_triangle(p, a, b, c), distance_to_triangle(q, a, b, c)});
 }
 
+namespace {
+
+// Meshes that are wound either way, as are most others in a scene where those too small to tell are.
+std::vector<std::uint8_t> wound_either_way_in(const SceneData& scene) {
+  std::vector<Winding> windings(scene.ranges.size());
+  parallel::for_all(std::size_t{0}, windings.size(), [&](std::size_t m) {
+    const MeshRange& range = scene.ranges[m];
+    windings[m] =
+        winding_of(range.triangle_count, [&](std::uint32_t k) { return scene.corners(range.first_triangle + k); });
+  });
+  Winding all;
+  for (const Winding& one : windings) all += one;
+  std::vector<std::uint8_t> found(windings.size());
+  for (std::size_t m = 0; m < found.size(); ++m)
+    found[m] = windings[m].told() ? windings[m].either_way() : all.either_way();
+  return found;
+}
+
+}  // namespace
+
 struct MeshTree::Impl {
   SceneData scene;
+  std::vector<std::uint8_t> either_way;  // by mesh
   embree::Device device = embree::new_device();
   SceneTree tree;
   Triangles triangles{scene, &tree};
 
   Impl(const SceneData& whole, std::uint32_t used)
-      : scene(geometry_of(whole)), tree(device.get(), scene, 0, used, {.intersect = keep_nearest}, "for distances") {}
+      : scene(geometry_of(whole)),
+        either_way(wound_either_way_in(whole)),
+        tree(device.get(), scene, 0, used, {.intersect = keep_nearest}, "for distances") {}
 
   Nearest first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
   bool occluded(RTCRay ray) const;
@@ -326,9 +352,14 @@ bool MeshTree::inside_solid(const glm::dvec3& point) const {
     if (!hit) return false;
     const auto [a, b, c] = impl_->triangles.corners(*hit);
     const glm::dvec3 normal = cross(b - a, c - a);
-    if (dot(normal, way) <= 0 && ++fronts > 1) return false;
+    const bool back = dot(normal, way) > 0 && !wound_either_way(impl_->scene.mesh_of(*hit));
+    if (!back && ++fronts > 1) return false;
   }
   return true;
+}
+
+bool MeshTree::wound_either_way(std::uint32_t mesh) const {
+  return mesh < impl_->either_way.size() && impl_->either_way[mesh];
 }
 
 }  // namespace vantage

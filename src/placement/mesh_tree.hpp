@@ -46,8 +46,11 @@ class MeshTree {
   bool between(const glm::dvec3& a, const glm::dvec3& b) const;
   // Whether `point` lies within a closed solid, such as a tank, and not in a room or under a roof that is a mere sheet.
   // Tests the nearest surfaces straight above and level to all four sides: each must show its back, except that one of
-  // the five may show its front, e.g. if another solid stands on this one.
+  // the five may show its front, e.g. if another solid stands on this one. Faces of meshes that are wound either way
+  // show no back.
   bool inside_solid(const glm::dvec3& point) const;
+  // Whether triangles of a mesh are wound as they came, so that they have no front.
+  bool wound_either_way(std::uint32_t mesh) const;
 
  private:
   struct Impl;

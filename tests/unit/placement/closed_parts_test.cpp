@@ -179,6 +179,24 @@ Builder storeys(bool ladder) {
   return b;
 }
 
+TEST(ClosedParts, AGalleryThatNothingLeadsToIsEnteredAndARoofIndoorsIsNot) {
+  const auto hall = [](const Builder& part) {
+    Builder b = part;
+    b.floor(0, 0, 20, 16, 0).box({0, 0, 8}, {20, 16, 8.2});
+    b.box({-0.2, 0, 0}, {0, 16, 8}).box({20, 0, 0}, {20.2, 16, 8}).box({0, 16, 0}, {20, 16.2, 8});
+    b.box({0, -0.2, 0}, {9, 0, 8}).box({11, -0.2, 0}, {20, 0, 8}).box({9, -0.2, 2.2}, {11, 0, 8});
+    return SearchArea::build(b.floor(-10, -20, 30, -0.2, 0).scene());
+  };
+  const Vec3 low{0, 11, 3.8}, high{20, 16, 4};
+  Builder gallery, roof, sail;
+  gallery.box(low, high).box({0, 11, 4}, {20, 11.1, 5});
+  EXPECT_TRUE(holds(hall(gallery), 10, 14, 4));
+  roof.box({4, 4, 0}, {14, 12, 3});  // of a block indoors
+  EXPECT_FALSE(holds(hall(roof), 9, 8, 3));
+  sail.box({4, 4, 4}, {14, 12, 4.1});  // hangs from the ceiling
+  EXPECT_FALSE(holds(hall(sail), 9, 8, 4.1));
+}
+
 TEST(ClosedParts, ALadderIsAWay) {
   const SearchArea up = SearchArea::build(storeys(true).scene());
   EXPECT_TRUE(holds(up, 2, 5, 3.2));

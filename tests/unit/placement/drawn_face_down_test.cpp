@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
 
 #include "placement_scenes.hpp"
@@ -84,6 +85,48 @@ TEST(DrawnFaceDown, WhatIsLowOrSmallIsNone) {
   face_down(b, 0, 0, 8, 8, 2.6), face_down(b, 0, 0, 8, 8, 4);  // a ceiling and a roof above it
   face_down(b, 20, 0, 21, 1, 0);
   EXPECT_TRUE(found_in(b).empty());
+}
+
+// Rooms of sheets that share their corners, with each face wound as it came.
+Builder wound_as_it_came(unsigned seed) {
+  std::mt19937 rng(seed);
+  Builder b;
+  const auto face = [&](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+    rng() % 2 ? b.quad(p, q, r, s) : b.quad(s, r, q, p);
+  };
+  for (int k = 0; k < 4; ++k) {
+    const double x = 6.0 * k, y = 5, z = 2.7;
+    face({x, 0, 0}, {x + 6, 0, 0}, {x + 6, y, 0}, {x, y, 0}), face({x, 0, z}, {x + 6, 0, z}, {x + 6, y, z}, {x, y, z});
+    face({x, 0, 0}, {x + 6, 0, 0}, {x + 6, 0, z}, {x, 0, z}), face({x, y, 0}, {x + 6, y, 0}, {x + 6, y, z}, {x, y, z});
+    if (k == 0) face({x, 0, 0}, {x, y, 0}, {x, y, z}, {x, 0, z});
+    if (k == 3) face({x + 6, 0, 0}, {x + 6, y, 0}, {x + 6, y, z}, {x + 6, 0, z});
+  }
+  return b;
+}
+
+TEST(DrawnFaceDown, FloorsOfMeshesThatAreWoundEitherWayCarryAPersonWhateverTheyFace) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
+    const Builder b = wound_as_it_came(seed);
+    const SceneData scene = b.data();
+    const MeshTree tree(scene);
+    ASSERT_TRUE(tree.wound_either_way(0)) << seed;
+    EXPECT_FALSE(tree.inside_solid({3, 2.5, 1.5})) << seed;
+    const SearchArea area = SearchArea::build(b.scene(), {.enter = {origin + Vec3{1, 1, 0}}});
+    for (const double x : {3.0, 9.0, 15.0, 21.0}) {
+      const auto uv = area.project(origin + Vec3{x, 2.5, 0});
+      ASSERT_TRUE(uv) << seed << " at " << x;
+      EXPECT_NEAR(area.locate(*uv)->z, origin.z, 1e-3) << seed << " at " << x;
+    }
+  }
+}
+
+TEST(DrawnFaceDown, ModelsThatAreWoundAlikeHaveFronts) {
+  Builder solids;
+  for (int k = 0; k < 5; ++k) solids.box({4.0 * k, 0, 0}, {4.0 * k + 4, 3, 3});  // side by side
+  EXPECT_FALSE(MeshTree(solids.data()).wound_either_way(0));
+  Builder both;  // sheets, each with its back
+  for (int k = 0; k < 9; ++k) both.floor(k, 0, k + 1, 1, 0), face_down(both, k, 0, k + 1, 1, 0);
+  EXPECT_FALSE(MeshTree(both.data()).wound_either_way(0));
 }
 
 }  // namespace
