@@ -241,7 +241,7 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
 
 namespace {
 
-// Meshes that are wound either way, as are most others in a scene where those too small to tell are.
+// Meshes that are wound either way, as all are of a scene that is on the whole: a few faces may lie alike by chance.
 std::vector<std::uint8_t> wound_either_way_in(const SceneData& scene) {
   std::vector<Winding> windings(scene.ranges.size());
   parallel::for_all(std::size_t{0}, windings.size(), [&](std::size_t m) {
@@ -253,7 +253,7 @@ std::vector<std::uint8_t> wound_either_way_in(const SceneData& scene) {
   for (const Winding& one : windings) all += one;
   std::vector<std::uint8_t> found(windings.size());
   for (std::size_t m = 0; m < found.size(); ++m)
-    found[m] = windings[m].told() ? windings[m].either_way() : all.either_way();
+    found[m] = all.either_way() || windings[m].either_way();
   return found;
 }
 

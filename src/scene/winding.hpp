@@ -25,10 +25,9 @@ struct Winding {
     edges += other.edges, against += other.against;
     return *this;
   }
-  // Too few edges tell nothing.
-  bool told() const { return edges >= 12; }
-  // Where each face is wound as it came, that is half of the edges between faces, and none of those within a face.
-  bool either_way() const { return told() && static_cast<double>(against) > 0.15 * static_cast<double>(edges); }
+  // Where each face is wound as it came, half of the edges between faces are such, and none of those within a face. Few
+  // edges tell nothing.
+  bool either_way() const { return edges >= 12 && static_cast<double>(against) > 0.15 * static_cast<double>(edges); }
 };
 
 // Of `count` triangles or the first of them that are finite; `corners(k)` has the positions of triangle k, which are

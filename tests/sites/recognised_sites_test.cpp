@@ -2,11 +2,13 @@
 // Unit and up axis of the reference sites, however they are written.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 
 #include "sites/site.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
+#include "vantage/placement.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage {
@@ -35,6 +37,16 @@ std::string text(const Scene& scene) {
   std::string out;
   for (const std::string& note : scene.notes()) out += note + "\n";
   return out;
+}
+
+double ground_m2(const SearchArea& area) {
+  double sum = 0;
+  for (const auto& [a, b, c] : area.mesh().triangles) {
+    const auto& p = area.mesh().positions;
+    const Vec3 n = cross(p[b] - p[a], p[c] - p[a]);
+    sum += std::sqrt(dot(n, n)) / 2;
+  }
+  return sum;
 }
 
 class RecognisedSites : public testing::TestWithParam<const char*> {
@@ -78,6 +90,21 @@ TEST_P(RecognisedSites, AsAreNamelessOnesThatKeepToGltf) {
   const Scene scene = load(variant);
   expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), text(scene));
   EXPECT_EQ(text(scene).find("setting u"), std::string::npos) << text(scene);
+}
+
+// A sketching tool leaves each face as it was drawn.
+TEST_P(RecognisedSites, AsAreThoseWhoseFacesAreWoundEitherWayWithTheirGround) {
+  const Scene whole = load({});
+  const double ground = ground_m2(SearchArea::build(whole));
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Variant variant{.wound = seed};
+    const Scene scene = load(variant);
+    expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), text(scene));
+    EXPECT_EQ(text(scene).find("setting u"), std::string::npos) << text(scene);
+    const SearchArea area = SearchArea::build(scene);
+    EXPECT_FALSE(area.on_plane());
+    EXPECT_NEAR(ground_m2(area) / ground, 1, 0.02) << seed << area.description();
+  }
 }
 
 TEST_P(RecognisedSites, AndOptionsSayTheSame) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <tuple>
 
@@ -123,6 +124,7 @@ void write_site(const KnownSite& site, const Variant& variant, const std::filesy
   if (!variant.nameless) top["name"] = site.name;
   if (variant.utm) top["translation"] = {root.x, root.y, root.z};
   const int parent = glb.node(top);
+  std::mt19937 turns(variant.wound);
   for (const Part& part : site.parts) {
     std::vector<float> positions;
     Box bounds;
@@ -133,6 +135,11 @@ void write_site(const KnownSite& site, const Variant& variant, const std::filesy
     }
     std::vector<std::uint32_t> indices;
     for (const auto& t : part.triangles) indices.insert(indices.end(), t.begin(), t.end());
+    if (variant.wound != 0)
+      for (std::size_t face = 0; face < indices.size(); face += 6)
+        if (turns() % 2)
+          for (std::size_t t = face; t < std::min(face + 6, indices.size()); t += 3)
+            std::swap(indices[t + 1], indices[t + 2]);
     const int points = glb.positions(positions);
     glb.json["accessors"].back()["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
     glb.json["accessors"].back()["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};

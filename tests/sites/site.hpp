@@ -39,6 +39,7 @@ struct Variant {
   bool utm = false;          // 500 km east, 5400 km north, 400 m up, in the translation of the root node
   double per_metre = 1;      // another unit, unless `millimetres` is set
   bool nameless = false;     // without names
+  unsigned wound = 0;        // not 0: the seed by which each face, of two triangles as they stand, is turned or not
 };
 
 struct KnownSite : sites::Site {
