@@ -252,8 +252,7 @@ std::vector<std::uint8_t> wound_either_way_in(const SceneData& scene) {
   Winding all;
   for (const Winding& one : windings) all += one;
   std::vector<std::uint8_t> found(windings.size());
-  for (std::size_t m = 0; m < found.size(); ++m)
-    found[m] = all.either_way() || windings[m].either_way();
+  for (std::size_t m = 0; m < found.size(); ++m) found[m] = all.either_way() || windings[m].either_way();
   return found;
 }
 

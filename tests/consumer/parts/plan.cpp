@@ -7,7 +7,7 @@
 
 int main(int, char** argv) {
   using namespace vantage;
-  Site site = Site::open(argv[1], {.engine = Engine::embree, .user_size_m = 0.5, .spacing_m = 0.3});
+  Site site = Site::open(argv[1], {.user_size_m = 0.5, .spacing_m = 0.3, .engine = Engine::embree});
   SurveyQuestion question;
   question.problem = "coverage-fix";
   question.stations = {2, 2};

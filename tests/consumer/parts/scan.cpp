@@ -6,7 +6,7 @@
 
 int main(int, char** argv) {
   using namespace vantage;
-  Site site = Site::open(argv[1], {.engine = Engine::embree, .user_size_m = 0.5, .spacing_m = 0.3});
+  Site site = Site::open(argv[1], {.user_size_m = 0.5, .spacing_m = 0.3, .engine = Engine::embree});
   const std::vector<PlacedStation> stations{site.place_head({0, -8, 1.5}).station};
   const double coverage = site.evaluate(stations).value("coverage");
   std::printf("coverage %.3f\n", coverage);
