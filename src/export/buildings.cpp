@@ -14,6 +14,7 @@ constexpr double kRoof_m = 1.5;     // a roof is at least so high over the groun
 constexpr double kBridged_m = 0.5;  // ground on both sides of a wall is one building: half of what may lie between
 constexpr double kLeastBuilding_m2 = 15;
 constexpr double kWalled = 0.4;       // share of a building's border where ground ends
+constexpr double kAmid = 0.2;         // share of its cells amid others: along a block runs a seam that its roof covers
 constexpr std::size_t kAcross = 400;  // cells along the longer side of the ground
 
 }  // namespace
@@ -59,7 +60,7 @@ BuildingMap buildings_of(const Scene& scene, const SearchMesh& mesh) {
     }
   struct Found {
     std::vector<std::size_t> cells;
-    std::size_t covered = 0;
+    std::size_t covered = 0, amid = 0;  // amid others
   };
   std::vector<Found> found;
   std::vector<bool> seen(ground.size(), false);
@@ -71,17 +72,21 @@ BuildingMap buildings_of(const Scene& scene, const SearchMesh& mesh) {
     for (std::size_t head = 0; head < one.cells.size(); ++head) {
       const std::size_t cell = one.cells[head];
       one.covered += ground[cell] == covered;
+      bool amid = ground[cell] == covered;
       const auto x = static_cast<std::ptrdiff_t>(cell) % columns, y = static_cast<std::ptrdiff_t>(cell) / columns;
       for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
         if (x + dx < 0 || y + dy < 0 || x + dx >= columns || y + dy >= rows) continue;
         const auto to = static_cast<std::size_t>((y + dy) * columns + x + dx);
+        amid = amid && ground[to] == covered;
         // The border is that of the covered ground. No ground below the same roof: a wall, or what stands along it.
         if (ground[cell] == covered && ground[to] != covered)
           ++border, walled += ground[to] == none && top.z[to] > top.z[cell] - static_cast<float>(kRoof_m);
         if (near[to] && !seen[to]) seen[to] = true, one.cells.push_back(to);
       }
+      one.amid += amid;
     }
     if (static_cast<double>(one.covered) * pixel * pixel >= kLeastBuilding_m2 &&
+        static_cast<double>(one.amid) >= kAmid * static_cast<double>(one.covered) &&
         static_cast<double>(walled) >= kWalled * static_cast<double>(border))
       found.push_back(std::move(one));
   }

@@ -401,11 +401,11 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
       closed.height_m = std::max(closed.height_m, std::abs(double{z_[before]} - z_[s]));
   }
   if (sky) {
-    const bool way = effort <= climb;
-    closed.kind = !is_wide(number)                  ? ClosedKind::top
-                  : !above && !is_top(tree, number) ? ClosedKind::ground
-                  : way                             ? ClosedKind::room
-                                                    : ClosedKind::top;
+    const bool way = effort <= climb, canopy = 2 * part.above_surfaces > part.samples;  // as a stand's, over its seats
+    closed.kind = !is_wide(number)                             ? ClosedKind::top
+                  : !above && !canopy && !is_top(tree, number) ? ClosedKind::ground
+                  : way                                        ? ClosedKind::room
+                                                               : ClosedKind::top;
     return closed;
   }
   if (by_step || effort == climb) {

@@ -500,7 +500,9 @@ void GroundField::find_parts() {
   // Counts samples above a room of another part, such as a roof above its house.
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (part_[s] == nowhere || is_layer(s)) continue;
-    for (std::uint32_t below = first_[column_[s]]; below < s; ++below)
+    const std::uint32_t lowest = first_[column_[s]];
+    parts_[part_[s]].above_surfaces += lowest < s && z_[lowest] <= z_[s] - height_ * 0.8;
+    for (std::uint32_t below = lowest; below < s; ++below)
       if (part_[below] != nowhere && part_[below] != part_[s] && z_[below] <= z_[s] - height_ * 0.8 &&
           parts_[part_[below]].area(cell_) >= room()) {
         ++parts_[part_[s]].above_others;

@@ -107,7 +107,8 @@ class GroundField {
 
  private:
   struct Part {
-    std::uint64_t samples = 0, in_the_sky = 0, above_others = 0;
+    std::uint64_t samples = 0, in_the_sky = 0;
+    std::uint64_t above_others = 0, above_surfaces = 0;  // above a room; above anything level, a person's height below
     std::uint32_t first = 0;
     double mean_z = 0;
     bool at_door = false;

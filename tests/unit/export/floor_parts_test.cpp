@@ -69,6 +69,17 @@ TEST(FloorParts, CountTheGroundOfRoomsInLargeTriangles) {
   EXPECT_NEAR(parts[0].place.y, origin.y + 2.5, 0.4);
 }
 
+// Cells of a large map that lie half on the ground beside a block have its roof above them.
+TEST(FloorParts, BlocksOnAPlaneThatNobodyEntersAreNoBuildings) {
+  test::Builder builder;
+  for (int k = 0; k < 4; ++k) builder.box({45.0 * k + 0.4, 20, 0}, {45.0 * k + 14, 33, 9});
+  const Scene scene = builder.scene();
+  const SearchArea area = SearchArea::build(scene);
+  EXPECT_TRUE(area.on_plane());
+  for (const FloorPart& part : floor_parts(scene, area, {}))
+    ADD_FAILURE() << part.name << ", " << part.area_m2 << " m²";
+}
+
 TEST(FloorParts, AreBuildingsAndRoomsWithTheirStations) {
   const Lawn lawn;
   const std::vector<FloorPart> parts = floor_parts(lawn.scene, lawn.area, Lawn::stations({{4, 4, 0}, {11, -12, 0}}));

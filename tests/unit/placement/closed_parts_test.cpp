@@ -197,6 +197,16 @@ TEST(ClosedParts, AGalleryThatNothingLeadsToIsEnteredAndARoofIndoorsIsNot) {
   EXPECT_FALSE(holds(hall(sail), 9, 8, 4.1));
 }
 
+TEST(ClosedParts, ARoofOverWhereNobodyStandsIsNoGround) {
+  Builder b;
+  b.floor(-10, -30, 40, 0, 0);
+  for (int k = 0; k < 24; ++k) b.box({0, 0.5 * k, 0}, {30, 0.5 * k + 0.5, 0.8 * (k + 1)});  // too steep for a person
+  b.box({-1, -1, 24}, {31, 12.5, 24.3}).box({0, 12, 0}, {30, 12.4, 24});
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_TRUE(holds(area, 15, -15, 0));
+  EXPECT_FALSE(holds(area, 15, 5, 24.3));
+}
+
 TEST(ClosedParts, ALadderIsAWay) {
   const SearchArea up = SearchArea::build(storeys(true).scene());
   EXPECT_TRUE(holds(up, 2, 5, 3.2));
