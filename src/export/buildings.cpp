@@ -13,8 +13,8 @@ namespace {
 constexpr double kRoof_m = 1.5;     // a roof is at least so high over the ground
 constexpr double kBridged_m = 0.5;  // ground on both sides of a wall is one building: half of what may lie between
 constexpr double kLeastBuilding_m2 = 15;
-constexpr double kWalled = 0.4;       // share of a building's border where ground ends
-constexpr double kAmid = 0.2;         // share of its cells amid others: along a block runs a seam that its roof covers
+constexpr double kWalled = 0.55;  // share of a building's border where ground ends: less than half under eaves alone
+constexpr double kAmid = 0.2;     // share of its cells amid others: along a block runs a seam that its roof covers
 constexpr std::size_t kAcross = 400;  // cells along the longer side of the ground
 
 }  // namespace

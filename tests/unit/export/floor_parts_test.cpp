@@ -80,6 +80,16 @@ TEST(FloorParts, BlocksOnAPlaneThatNobodyEntersAreNoBuildings) {
     ADD_FAILURE() << part.name << ", " << part.area_m2 << " m²";
 }
 
+TEST(FloorParts, GroundUnderEavesIsNoBuilding) {
+  test::Builder builder;
+  builder.floor(-20, -20, 60, 20, 0);
+  for (const double x : {0.0, 20.0, 40.0})
+    builder.box({x, 0, 0}, {x + 9, 8, 5}).box({x - 0.8, -0.8, 5}, {x + 9.8, 8.8, 5.3});
+  const Scene scene = builder.scene();
+  for (const FloorPart& part : floor_parts(scene, SearchArea::build(scene), {}))
+    ADD_FAILURE() << part.name << ", " << part.area_m2 << " m²";
+}
+
 TEST(FloorParts, AreBuildingsAndRoomsWithTheirStations) {
   const Lawn lawn;
   const std::vector<FloorPart> parts = floor_parts(lawn.scene, lawn.area, Lawn::stations({{4, 4, 0}, {11, -12, 0}}));
