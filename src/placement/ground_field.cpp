@@ -426,6 +426,15 @@ void GroundField::find_room(const SceneData& scene) {
   for (const auto& some : at_leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
   parallel::sort(leaves_.begin(), leaves_.end(), std::less<>{});
   leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
+  // Nobody stands below a floor that lies on the ground to have more room over the head.
+  const auto lies = static_cast<float>(0.3 * climb_);
+  for (std::uint32_t s = static_cast<std::uint32_t>(z_.size()); s-- > 1;) {
+    const std::uint32_t below = s - 1;
+    const float thick = z_[s] - z_[below];
+    if (column_[below] == column_[s] && thick >= lies && thick <= static_cast<float>(climb_) &&
+        (taken_[s] & kOverhead) && !(taken_[s] & kThin))
+      taken_[below] |= kOverhead | kLow;
+  }
 }
 
 // Whether another surface of the same part lies above within a person's height: a floor's slab below its finish, or

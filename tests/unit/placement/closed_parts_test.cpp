@@ -207,6 +207,15 @@ TEST(ClosedParts, ARoofOverWhereNobodyStandsIsNoGround) {
   EXPECT_FALSE(holds(area, 15, 5, 24.3));
 }
 
+// The slab of a low house lies on the ground, which alone would have room for a head.
+TEST(ClosedParts, NobodyStandsInASlab) {
+  Builder b;
+  b.floor(-10, -10, 20, 20, 0).box({0, 0, 0.05}, {8, 8, 0.25}).box({0, 0, 2.0}, {8, 8, 2.2});
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_TRUE(holds(area, -5, -5, 0));
+  EXPECT_FALSE(holds(area, 4, 4, 0));
+}
+
 TEST(ClosedParts, ALadderIsAWay) {
   const SearchArea up = SearchArea::build(storeys(true).scene());
   EXPECT_TRUE(holds(up, 2, 5, 3.2));
