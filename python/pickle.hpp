@@ -32,9 +32,12 @@ inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
 inline auto members(RegistrationError& e) {
   return std::tie(e.rms_m, e.random_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
 }
+inline auto members(BatteryUse& b) {
+  return std::tie(b.instrument, b.battery_min, b.battery_scans, b.on_min, b.scans, b.batteries, b.in_a_day);
+}
 inline auto members(Round& r) {
   return std::tie(r.order, r.arrive_min, r.stay_min, r.legs_m, r.paths, r.walk_m, r.scan_min, r.set_up_min,
-                  r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked);
+                  r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked, r.batteries);
 }
 inline auto members(Session& s) {
   return std::tuple_cat(members(static_cast<Round&>(s)),

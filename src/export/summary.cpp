@@ -58,6 +58,39 @@ std::string sessions_text(const Visit& visit) {
   return text + "the longest takes " + duration(60 * longest) + ", all together " + duration(60 * all);
 }
 
+// "4 of 2 h each, for 6 h 30 min with the scanner on"; of sessions "at most 2 a session and 4 a day, 7 in all, of 2 h
+// each, …".
+std::string battery_text(const Visit& visit, const BatteryUse& use) {
+  const auto either = [](const std::string& minutes, const std::string& scans) {
+    return minutes + (minutes.empty() || scans.empty() ? "" : " or ") + scans;
+  };
+  const bool by_time = use.battery_min > 0, by_scans = use.battery_scans > 0;
+  const std::string each = either(
+                        by_time ? whole_hours(use.battery_min) : "",
+                        by_scans ? number(use.battery_scans) + (use.battery_scans == 1 ? " scan" : " scans") : ""),
+                    needed = (by_time ? duration(60 * use.on_min) + " with the scanner on" : std::string()) +
+                             (by_time && by_scans ? " and " : "") + (by_scans ? counted(use.scans, "scan") : "");
+  std::string many = std::to_string(use.batteries);
+  if (visit.sessions.size() > 1) {
+    std::size_t most = 0;
+    for (const Session& session : visit.sessions)
+      for (const BatteryUse& one : session.batteries)
+        if (one.instrument == use.instrument) most = std::max(most, one.batteries);
+    many = "at most " + std::to_string(most) + " a session and " + std::to_string(use.in_a_day) + " a day, " + many +
+           " in all,";
+  }
+  return many + " of " + each + " each, for " + needed;
+}
+
+std::vector<SummaryLine> battery_lines(const Visit& visit) {
+  std::vector<SummaryLine> lines;
+  const std::vector<BatteryUse> uses = batteries_of(visit);
+  for (const BatteryUse& use : uses)
+    lines.push_back(
+        {"batteries", (uses.size() > 1 ? use.instrument + ": " : std::string()) + battery_text(visit, use)});
+  return lines;
+}
+
 // "kept at all 5 stations that access windows are for, with 35 min of waiting"
 std::string hours_text(const Visit& visit) {
   const std::string all = counted(visit.bound, "station") + " that access windows are for";
@@ -405,6 +438,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
                                                                    : sessions_text(*evaluation.visit)});
   if (evaluation.visit && evaluation.visit->bound > 0) lines.push_back({"hours", hours_text(*evaluation.visit)});
   if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
+  if (evaluation.visit) std::ranges::move(battery_lines(*evaluation.visit), std::back_inserter(lines));
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };

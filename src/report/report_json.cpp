@@ -109,6 +109,7 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
     one.update(round_json(session, kept));
     one["clock"] = clock_text(session.start_min) + "–" + clock_text(session.start_min + session.minutes);
+    one["batteries"] = batteries_text(session);
     one["waiting_min"] = session.waiting_min, one["begin"] = ordered_json::array();
     for (const double arrive : session.arrive_min) one["begin"].push_back(clock_text(session.start_min + arrive));
     json["sessions"].push_back(std::move(one));

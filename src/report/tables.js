@@ -179,10 +179,11 @@ function sessionTable(holder, network) {
   const sessions = sessionsOf(network), kNamed = 12;
   const names = ({ order }) => order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ') + (order.length > kNamed ? ` → … ${order.length} in all` : '');
   holder.hidden = !sessions.length;
-  const waits = sessions.some((s) => s.waiting_min > 0), titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', 'Links'];
+  const waits = sessions.some((s) => s.waiting_min > 0), batteries = sessions.some((s) => s.batteries);
+  const titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', ...(batteries ? ['Batteries'] : []), 'Links'];
   holder.replaceChildren(table(titles, sessions.map((s) => [sessionName(s), s.clock, names(s),
     duration(60 * (s.minutes - s.walk_min - s.waiting_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, ...(waits ? [s.waiting_min > 0 ? duration(60 * s.waiting_min) : ''] : []),
-    duration(60 * s.minutes), s.links]), [0, 1, 2, titles.length - 1]));
+    duration(60 * s.minutes), ...(batteries ? [s.batteries] : []), s.links]), [0, 1, 2, titles.length - 1]));
 }
 
 function linkTable(holder, wordsHolder, network) {

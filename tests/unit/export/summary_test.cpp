@@ -114,6 +114,36 @@ TEST(Summary, TellsWhatTheScansHoldInAFewDigits) {
   }
 }
 
+TEST(Summary, TellsBatteriesIfItIsKnownHowLongTheyLast) {
+  Evaluation network = seven_stations();
+  Visit& visit = network.visit.emplace();
+  EXPECT_EQ(summary_text(network).find("batteries"), std::string::npos);
+  const BatteryUse use{
+      .instrument = "Mine", .battery_min = 120, .on_min = 390, .scans = 63, .batteries = 4, .in_a_day = 4};
+  const auto told = [&](const std::string& text) {
+    const std::string summary = summary_text(network);
+    EXPECT_NE(summary.find("batteries  " + text + "\n"), std::string::npos) << summary;
+  };
+  visit.batteries = {use};
+  told("4 of 2 h each, for 6 h 30 min with the scanner on");
+  visit.batteries[0].battery_min = 0, visit.batteries[0].battery_scans = 40;
+  told("4 of 40 scans each, for 63 scans");
+  visit.batteries[0].battery_min = 90;
+  told("4 of 1 h 30 min or 40 scans each, for 6 h 30 min with the scanner on and 63 scans");
+  visit.batteries = {use, use};
+  visit.batteries[1].instrument = "Yours";
+  told("Yours: 4 of 2 h each, for 6 h 30 min with the scanner on");
+
+  visit.day_min = 480;
+  for (const std::size_t k : {0, 1, 2}) {
+    Session one;
+    one.day = k / 2 + 1, one.crew = k % 2 + 1, one.order = {2 * k, 2 * k + 1}, one.batteries = {use};
+    one.batteries[0].batteries = k + 1;
+    visit.sessions.push_back(one);
+  }
+  told("at most 3 a session and 3 a day, 6 in all, of 2 h each, for 19 h 30 min with the scanner on");
+}
+
 TEST(Summary, TellsSessionsAndWhereNoLinkHoldsThem) {
   Evaluation network = seven_stations();
   Visit& visit = network.visit.emplace();

@@ -312,6 +312,10 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
     EXPECT_TRUE(find(sheet, "1.") && find(sheet, std::to_string(sessions[s].order.size()) + ".")) << "its own stops";
   }
   EXPECT_TRUE(std::ranges::any_of(sheets, [&](const auto& sheet) { return has(sheet, {"Sessions", "Walking"}); }));
+  const auto told = [&](const std::vector<std::vector<Word>>& all, const std::vector<std::string>& words) {
+    return std::ranges::count_if(all, [&](const auto& sheet) { return has(sheet, words); });
+  };
+  EXPECT_EQ(told(sheets, {"Batteries"}), 0) << "it is not known how long they last";
 
   const auto visit = report_json(report_of(found, survey.site, {}))["networks"][0]["visit"];
   ASSERT_EQ(visit["sessions"].size(), 3u);
@@ -319,7 +323,17 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     EXPECT_EQ(visit["sessions"][s]["order"].size(), sessions[s].order.size());
     EXPECT_EQ(visit["sessions"][s]["ways"].size(), sessions[s].paths.size());
+    EXPECT_EQ(visit["sessions"][s]["batteries"], "");
   }
+
+  Evaluation powered = found;
+  for (Session& session : powered.visit->sessions)
+    session.batteries = {{.instrument = "Mine", .battery_scans = 3, .scans = 4, .batteries = 2, .in_a_day = 2}};
+  write_report(folder / "powered.pdf", powered, survey.site, {});
+  const auto with = words_of(folder / "powered.pdf", folder / "words.html");
+  EXPECT_EQ(told(with, {"Sessions", "Batteries"}), 1) << "in their table";
+  EXPECT_GE(told(with, {"charged", "batteries:", "2"}), 1) << "and over each session's stations";
+  EXPECT_EQ(report_json(report_of(powered, survey.site, {}))["networks"][0]["visit"]["sessions"][1]["batteries"], "2");
 }
 
 TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
