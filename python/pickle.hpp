@@ -58,7 +58,8 @@ inline auto members(Work& w) {
 inline auto members(Evaluation& e) {
   return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.work, e.field, e.values,
                   e.attainable, e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.through_glass,
-                  e.link_overlap, e.link, e.registration, e.data, e.visit, e.storey_ties, e.moves, e.violation);
+                  e.link_overlap, e.link, e.registration, e.calibration, e.data, e.visit, e.storey_ties, e.moves,
+                  e.violation);
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {

@@ -235,10 +235,6 @@ std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const s
   return {text + ": stations at both ends of the stair would tie them better"};
 }
 
-// Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
-constexpr double kLeastTenth = 0.05;
-std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
-
 // " S4 (61 mm), S7 (40 mm) and 3 more": stations whose part of the surface misses the class.
 std::string beyond_text(const Evaluation& evaluation, const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 3;
@@ -265,7 +261,8 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
   if (evaluation.registration) {
     const RegistrationError& error = *evaluation.registration;
     text += error.random_m < error.rms_m
-                ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves)"
+                ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves" +
+                      (evaluation.calibration.empty() ? "" : ": " + evaluation.calibration) + ")"
                 : " by random errors alone (the scanner states no calibration)";
   }
   const auto by = static_cast<std::size_t>(std::ranges::count_if(
@@ -652,6 +649,34 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
   return lines;
 }
 
+std::vector<SummaryLine> again_lines(const Scene& scene, const Evaluation& evaluation) {
+  constexpr std::size_t kNamed = 6;
+  if (!evaluation.visit || evaluation.visit->sessions.size() < 2) return {};
+  const auto existing =
+      static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::vector<std::vector<std::size_t>> in_rooms = stations_in_rooms(scene.rooms(), evaluation.stations);
+  std::size_t again = 0;
+  std::string named;
+  for (std::size_t k = 0; k < in_rooms.size(); ++k) {
+    std::size_t sessions = 0;
+    std::string when;
+    for (const Session& session : evaluation.visit->sessions) {
+      const auto inside = [&](std::size_t station) {
+        return std::ranges::find(in_rooms[k], existing + station) != in_rooms[k].end();
+      };
+      if (std::ranges::none_of(session.order, inside)) continue;
+      when += (++sessions > 1 ? "; " : "") + std::string("day ") + std::to_string(session.day) + ", crew " +
+              std::to_string(session.crew);
+    }
+    if (sessions < 2) continue;
+    if (++again <= kNamed) named += (again > 1 ? ", " : ": ") + scene.rooms()[k].name + " (" + when + ")";
+  }
+  if (again == 0) return {};
+  if (again > kNamed) named += " and " + std::to_string(again - kNamed) + " more";
+  return {
+      {"again", counted(again, "room") + (again == 1 ? " is" : " are") + " entered by more than one session" + named}};
+}
+
 std::string entered_text(const SearchArea& area) {
   const std::span<const ClosedPart> entered = area.entered();
   if (entered.empty()) return {};
@@ -697,6 +722,7 @@ std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))
     lines.insert(line.heading == "ground" ? lines.begin() : lines.end(), std::move(line));
+  std::ranges::move(again_lines(*result.scene, entry), std::back_inserter(lines));
   return lines;
 }
 

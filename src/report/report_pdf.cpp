@@ -372,12 +372,12 @@ void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, Accura
   if (missed.empty()) return;
   sheet.y += 6;
   const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
-  write_table(
-      sheets, a4(), {{accuracy.by_room ? "Room" : "Mesh", Align::start}, {"mean, mm"}, {"worst place, mm"}, {"beyond"}},
-      missed.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
-        const PlaceAccuracy& place = *missed[k];
-        return {place.name, fixed(1000 * place.mean_m, 2), fixed(1000 * place.worst_m, 2), percent(place.beyond)};
-      });
+  write_table(sheets, a4(),
+              {{accuracy.by_room ? "Room" : "Mesh", Align::start}, {"mean, mm"}, {"worst place, mm"}, {"beyond"}},
+              missed.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+                const PlaceAccuracy& place = *missed[k];
+                return {place.name, tenths(1000 * place.mean_m), tenths(1000 * place.worst_m), percent(place.beyond)};
+              });
 }
 
 void rooms_table(std::vector<Sheet>& sheets, const std::vector<RoomFacts>& rooms) {

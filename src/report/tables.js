@@ -166,6 +166,15 @@ function roomTable(holder, rooms) {
     [0, 1, 4], kRows, (n) => `${n} more rooms`));
 }
 
+function elementTable(holder, wordsHolder, { all, rows }) {
+  const kShown = 20, deviation = rows.some((r) => r.deviation_mm !== null), known = (value, text) => (value === null ? null : text(value));
+  wordsHolder.textContent = 'Each element of the model, or mesh: the share of its wanted points, the median incidence and point distance where it is seen'
+    + `${deviation ? ', and the predicted registration error there' : ''}; those with most surface that is not captured first.${all > rows.length ? ` ${rows.length} of ${all}; elements.csv has all.` : ''}`;
+  holder.replaceChildren(...foldedTable(['Element', 'Surface (m²)', 'Captured', 'Incidence (°)', 'Point distance (mm)', ...(deviation ? ['Deviation (mm)'] : [])],
+    rows.map((r) => [r.name, r.area_m2.toFixed(1), percent(r.captured), known(r.incidence, (v) => v.toFixed(0)), known(r.point_distance_mm, (v) => v.toFixed(1)),
+      ...(deviation ? [known(r.deviation_mm, tenths)] : [])]), [0], kShown, (n) => `${n} more elements`));
+}
+
 // The round in a sentence.
 function roundWords(network) {
   if (sessionsOf(network).length) return 'Each session begins and ends at the entrance; stops and walks below are of the sessions.';

@@ -91,6 +91,11 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
   EXPECT_EQ(told(2),
             "to about 2.0 mm, as predicted (random 0.4 mm, the rest by what a calibration leaves), with 1 target that "
             "ties scans together (20.0 mm without); LOA30 (15 mm at 95 %) is met with 11.1 mm to spare");
+  network.calibration = "18″, 1 mm and 10 ppm";
+  EXPECT_TRUE(
+      told(2).starts_with("to about 2.0 mm, as predicted (random 0.4 mm, the rest by what a calibration leaves: "
+                          "18″, 1 mm and 10 ppm), with "))
+      << told(2);
   EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 1);
   network.targets.clear(), network.without_targets_m.reset();
   network.registration->rms_m = network.registration->random_m = 0.00004;
