@@ -47,8 +47,4 @@ inline std::string lower_case(std::string text) {
 // "85.3 %" of a share of 0.853.
 inline std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
 
-// Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
-inline constexpr double kLeastTenth = 0.05;
-inline std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
-
 }  // namespace vantage

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/left_out_hatch.hpp"

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "evaluate/known_points.hpp"
 #include "evaluate/steep_checks.hpp"

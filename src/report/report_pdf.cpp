@@ -6,6 +6,7 @@
 
 #include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/missed_colours.hpp"
