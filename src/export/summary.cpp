@@ -15,6 +15,7 @@
 #include "evaluate/steep_checks.hpp"
 #include "plan/answer.hpp"
 #include "scene/room_floors.hpp"
+#include "vantage/missed.hpp"
 
 namespace vantage {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "export/front_view.hpp"
 #include "plan/answer.hpp"
 #include "vantage/export.hpp"
@@ -33,12 +30,6 @@ std::vector<RoomFacts> rooms_of(const Report& report, const Scene& scene) {
   return facts;
 }
 
-std::vector<SummaryLine> lines_on_site(const Report& report, Site& site) {
-  std::vector<SummaryLine> lines = ground_lines(site.scene(), site.area(), report.shown().stations);
-  std::ranges::move(again_lines(site.scene(), report.shown()), std::back_inserter(lines));
-  return lines;
-}
-
 }  // namespace
 
 Report report_of(const PlanResult& result, Site& site, const ReportOptions& options) {
@@ -61,7 +52,8 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
     report.facts.insert(report.facts.begin(), {"planned", std::move(planned)});
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
-  report.ground = lines_on_site(report, site);
+  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
+  report.again = again_lines(site.scene(), report.shown());
   return report;
 }
 
@@ -78,7 +70,8 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
   report.facts = report_facts(report, site.simulator());
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
-  report.ground = lines_on_site(report, site);
+  report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
+  report.again = again_lines(site.scene(), report.shown());
   return report;
 }
 

@@ -278,6 +278,7 @@ ordered_json report_json(const Report& report) {
     networks.back()["dominated"] = network.dominated;
     for (ordered_json& line : lines_json(report.ground)) networks.back()["summary"].push_back(std::move(line));
   }
+  for (ordered_json& line : lines_json(report.again)) networks[report.answer]["summary"].push_back(std::move(line));
   ordered_json& stations = networks[report.answer]["stations"];
   for (std::size_t k = 0; k < report.pictures.size(); ++k)
     if (!report.pictures[k].empty()) stations[k]["picture"] = base64(report.pictures[k]);

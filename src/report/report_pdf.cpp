@@ -111,6 +111,7 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   std::size_t more = 0;
   std::vector<SummaryLine> lines = summary_lines(network, report.requirements);
   lines.insert(lines.end(), report.ground.begin(), report.ground.end());
+  lines.insert(lines.end(), report.again.begin(), report.again.end());
   for (const auto& [heading, text] : lines) {
     if (heading == "to do" && sheet.left() < kLeastLeft)
       ++more;
