@@ -523,7 +523,7 @@ std::vector<BatteryUse> batteries_of(const Visit& visit) {
     for (const BatteryUse& use : session.batteries) {
       auto found = std::ranges::find_if(all, [&](const BatteryUse& other) { return shared(use, other); });
       if (found == all.end())
-        found = all.insert(all.end(), use);
+        found = all.insert(all.end(), use), found->in_a_day = 0;
       else
         found->on_min += use.on_min, found->scans += use.scans, found->batteries += use.batteries;
       std::size_t& today = by_day[{static_cast<std::size_t>(found - all.begin()), session.day}];

@@ -137,7 +137,9 @@ TEST(Summary, TellsBatteriesIfItIsKnownHowLongTheyLast) {
   told("4 of 1 h 30 min or 40 scans each, for 6 h 30 min with the scanner on and 63 scans");
   visit.batteries = {use, use};
   visit.batteries[1].instrument = "Yours";
-  told("Yours: 4 of 2 h each, for 6 h 30 min with the scanner on");
+  told(
+      "Mine: 4 of 2 h each, for 6 h 30 min with the scanner on\n           Yours: 4 of 2 h each, for 6 h 30 min with "
+      "the scanner on");
 
   visit.day_min = 480;
   for (const std::size_t k : {0, 1, 2}) {

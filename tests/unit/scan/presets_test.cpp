@@ -306,7 +306,7 @@ TEST(Presets, BrokenFilesSayWhere) {
        [](auto& d) {
          d["scanners"]["rtc360"]["battery"] = {{"minutes", 90}};
        }},
-      {"battery_min must be 0, or from 1",
+      {"battery_min is 0.5, but must be 0",
        [](auto& d) {
          d["scanners"]["rtc360"]["battery"] = {{"minutes", 0.5}, {"source", "assumed"}};
        }},
