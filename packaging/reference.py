@@ -311,7 +311,7 @@ PARTS = {
     "Ground": "SearchArea ClashChecker",
     "Simulation": "Simulator BeamOptions Scan write_point_cloud EngineInfo list_engines all_devices RayTracer RayHits",
     "Evaluation": "Evaluation RegistrationOptions RegistrationError Connectivity Target read_targets_csv UncoveredVoxels uncovered MissedVoxels why_missed",
-    "On site": "OnSite OnSiteOptions Visit Round Session ClosedStation NextResult",
+    "On site": "OnSite OnSiteOptions Visit Round Session ClosedStation BatteryUse NextResult",
     "Plans": "PlanResult PlanEntry MeasuredValue PlanProgress",
     "Problems and objectives": "SurveyProblem coverage_fix coverage_overlap_fix coverage_min coverage_overlap_min fitness_min fewest_stations Objective "
                                "objective_names minimise maximise Scale Requirement MeasuredNetwork",

@@ -81,6 +81,21 @@ void add_visits(py::module_& m) {
   options.attributes(type);
   options.pickles(type);
 
+  py::class_<BatteryUse> battery(m, "BatteryUse",
+                                 "Charged batteries that an instrument takes, changed between stations.");
+  battery.def_readonly("instrument", &BatteryUse::instrument, "The scanner's name without a setting.")
+      .def_readonly("battery_min", &BatteryUse::battery_min, "Minutes that a battery lasts; 0: not stated.")
+      .def_readonly("battery_scans", &BatteryUse::battery_scans, "Scans that it lasts for; 0: not stated.")
+      .def_readonly("on_min", &BatteryUse::on_min,
+                    "Minutes with the scanner on: from its first stay to its last, walks included, waiting left out.")
+      .def_readonly("scans", &BatteryUse::scans, "Its scans.")
+      .def_readonly("batteries", &BatteryUse::batteries, "Charged batteries for these minutes and scans.")
+      .def_readonly("in_a_day", &BatteryUse::in_a_day, "The most in one day, of all crews.")
+      .def("__repr__", [](const BatteryUse& b) {
+        return "<vantage.BatteryUse of " + b.instrument + ": " + std::to_string(b.batteries) + " batteries>";
+      });
+  add_pickle(battery);
+
   py::class_<Round> round(m, "Round", "In at the entrance, to every station, and back out.");
   round.def_readonly("order", &Round::order, "Indices of the stations; unusable ones are left out.")
       .def_readonly("arrive_min", &Round::arrive_min, "Minutes from the start until the stay at each begins.")
@@ -94,8 +109,9 @@ void add_visits(py::module_& m) {
       .def_readonly("walk_min", &Round::walk_min, "Minutes of walking.")
       .def_readonly("minutes", &Round::minutes, "Scan, set-up, photos, walking and waiting together.")
       .def_readonly("unconnected", &Round::unconnected, "Legs that the search area does not connect.")
-      .def_readonly("unlinked", &Round::unlinked,
-                    "Stations without a link to the one before; 0 if no links are known.");
+      .def_readonly("unlinked", &Round::unlinked, "Stations without a link to the one before; 0 if no links are known.")
+      .def_readonly("batteries", &Round::batteries,
+                    "A BatteryUse of each instrument that states how long a battery lasts.");
 
   py::class_<Session, Round> session(m, "Session", "Stations of a longer round, for one crew within a day.");
   session.def_readonly("day", &Session::day, "From 1.")
@@ -127,6 +143,7 @@ void add_visits(py::module_& m) {
       .def_readonly("not_split", &Visit::not_split, "What keeps it from being split into sessions; empty: nothing.")
       .def_readonly("closed", &Visit::closed, "ClosedStations: in no session, since none keeps their access windows.")
       .def_readonly("bound", &Visit::bound, "Stations that access windows are for.")
+      .def_property_readonly("batteries", &batteries_of, "As of a Round; of sessions together, if it has some.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
                std::string(py::str(py::float_(v.minutes))) + " minutes>";

@@ -32,9 +32,12 @@ inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
 inline auto members(RegistrationError& e) {
   return std::tie(e.rms_m, e.random_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
 }
+inline auto members(BatteryUse& b) {
+  return std::tie(b.instrument, b.battery_min, b.battery_scans, b.on_min, b.scans, b.batteries, b.in_a_day);
+}
 inline auto members(Round& r) {
   return std::tie(r.order, r.arrive_min, r.stay_min, r.legs_m, r.paths, r.walk_m, r.scan_min, r.set_up_min,
-                  r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked);
+                  r.photos_min, r.walk_min, r.minutes, r.unconnected, r.unlinked, r.batteries);
 }
 inline auto members(Session& s) {
   return std::tuple_cat(members(static_cast<Round&>(s)),
@@ -55,7 +58,8 @@ inline auto members(Work& w) {
 inline auto members(Evaluation& e) {
   return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.work, e.field, e.values,
                   e.attainable, e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.through_glass,
-                  e.link_overlap, e.link, e.registration, e.data, e.visit, e.storey_ties, e.moves, e.violation);
+                  e.link_overlap, e.link, e.registration, e.calibration, e.data, e.visit, e.storey_ties, e.moves,
+                  e.violation);
 }
 inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
 inline auto members(MeshInfo& m) {

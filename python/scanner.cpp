@@ -103,6 +103,9 @@ Options<Scanner> scanner_options() {
       .add("min_range_m", &Scanner::min_range_m, "Nearest distance measured, metres.")
       .add("max_range_m", &Scanner::max_range_m, "Farthest distance measured, metres.")
       .add("points_per_second", &Scanner::points_per_second, "Measurement rate, for the time on site.")
+      .add("battery_min", &Scanner::battery_min,
+           "Minutes that a charged battery lasts with the scanner on, 1 or more; 0: not stated.")
+      .add("battery_scans", &Scanner::battery_scans, "The same in scans.")
       .add<py::object>(
           "noise", [](const Scanner& s) { return noise_of(s.noise); },
           [](Scanner& s, const py::object& noise) { s.noise = noise_from(noise); },

@@ -52,6 +52,18 @@ Settings settings(const OnSiteOptions& options);
 /// One row for each setting that users give, and its bounds.
 const SettingTable<OnSiteOptions>& on_site_settings();
 
+/// Charged batteries that an instrument takes. It is on from the begin of its first stay to the end of its last, on the
+/// ways between them too, and off while a crew waits; a battery is changed between stations.
+struct BatteryUse {
+  std::string instrument;     ///< `Scanner::name` without a setting: settings of one scanner share batteries.
+  double battery_min = 0;     ///< `Scanner::battery_min`.
+  double battery_scans = 0;   ///< `Scanner::battery_scans`.
+  double on_min = 0;          ///< Minutes with the scanner on.
+  std::size_t scans = 0;      ///< Scans of the instrument.
+  std::size_t batteries = 0;  ///< Charged batteries for these minutes and scans.
+  std::size_t in_a_day = 0;   ///< The most in one day, of all crews; those of a round that is not split.
+};
+
 /// One round: in at the entrance, to every station, and back out.
 struct Round {
   std::vector<std::size_t> order;  ///< Indices of the stations; unusable ones are left out.
@@ -65,6 +77,8 @@ struct Round {
   double minutes = 0;           ///< Scan, set-up, photos, walking and waiting together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
   std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
+  /// Of each instrument that states how long a battery lasts, in the order of scanners.
+  std::vector<BatteryUse> batteries = {};
 };
 
 /// Stations of a longer round, as a round of their own that one crew does within a day: consecutive ones, unless access
@@ -92,6 +106,9 @@ struct Visit : Round {
   std::vector<ClosedStation> closed;  ///< Stations in no session, since none can keep their access windows.
   std::size_t bound = 0;              ///< Stations that access windows are for.
 };
+
+/// Batteries that a visit takes: of its sessions, each of which begins with charged ones, together; else of its round.
+std::vector<BatteryUse> batteries_of(const Visit& visit);
 
 /// Strength of the link between two stations, by their indices: 0 if they are not linked, else at most 1.
 using LinkStrength = std::function<double(std::size_t, std::size_t)>;

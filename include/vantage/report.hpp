@@ -4,9 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "vantage/evaluation.hpp"
+#include "vantage/export.hpp"
 #include "vantage/missed.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"
@@ -23,10 +25,11 @@ struct ReportOptions {
   std::string command = {};  ///< The command that made the report, as it was typed.
   /// Points of every voxel under the answer. Null: the answer's own, or from a sample.
   const VoxelField* field = nullptr;
-  const MissedVoxels* missed = nullptr;  ///< Why voxels of the answer are not captured. Null: left out.
-  bool pictures = true;                  ///< Show the views of the answer's stations in report.html.
-  std::filesystem::path logo = {};       ///< Picture at the head, .png or .jpg; empty: none.
-  std::string date = {};                 ///< Date at the head, as it is to be read; empty: none.
+  const MissedVoxels* missed = nullptr;         ///< Why voxels of the answer are not captured. Null: left out.
+  std::span<const ElementShare> elements = {};  ///< Of the answer, for a table in report.html; empty: left out.
+  bool pictures = true;                         ///< Show the views of the answer's stations in report.html.
+  std::filesystem::path logo = {};              ///< Picture at the head, .png or .jpg; empty: none.
+  std::string date = {};                        ///< Date at the head, as it is to be read; empty: none.
 };
 
 /// Writes the front of a plan, its answer first, as a page (.html), or the answer as sheets A4 or A3 (.pdf): its

@@ -79,6 +79,10 @@ struct Scanner {
   /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;
+  /// How long a charged battery lasts: minutes with the scanner on, and scans. Of a scanner that takes two at once, a
+  /// half of what both last. Each is 0, not stated, or 1 and more; if both are stated, the one that ends first counts.
+  double battery_min = 0;
+  double battery_scans = 0;  ///< See `battery_min`.
 
   std::uint32_t rows() const;                                               ///< Zenith steps.
   std::uint32_t columns() const;                                            ///< Azimuth steps.

@@ -29,7 +29,7 @@ namespace vantage {
 struct SiteOptions {
   SceneOptions scene = {};  ///< How the file is read.
 
-  /// The scanners that stations choose from, complete. Empty: one, made of the members up to `points_per_second`.
+  /// The scanners that stations choose from, complete. Empty: one, made of the members up to `battery`.
   std::vector<Scanner> scanners = {};
   /// A preset, in the form of `load_scanner()`. Empty: `usual_scanner`, unless `steps` describe another.
   std::optional<std::string> scanner = {};
@@ -45,6 +45,8 @@ struct SiteOptions {
   /// A calibration's: `Scanner::angle_accuracy` in arc seconds, `range_accuracy_m` in mm, `range_accuracy_ppm`.
   std::optional<std::array<double, 3>> calibration = {};
   std::optional<double> points_per_second = {};  ///< As in `Scanner`.
+  /// `Scanner::battery_min` and `battery_scans`; {0, 0}: not known.
+  std::optional<std::array<double, 2>> battery = {};
 
   std::optional<double> user_size_m = {};  ///< Upper bound of the voxel size.
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.

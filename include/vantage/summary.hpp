@@ -67,6 +67,8 @@ std::vector<FloorPart> floor_parts(const Scene& scene, const SearchArea& area, s
 /// buildings and rooms that hold no station, closed floor that is planned as if entered, and closed floor that is not.
 std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area,
                                       std::span<const PlacedStation> stations);
+/// A line on the rooms that more than one session enters, which have to be open again; none if there is no such room.
+std::vector<SummaryLine> again_lines(const Scene& scene, const Evaluation& evaluation);
 /// One sentence on all closed floor that is planned as if entered, for a headline; empty if there is none.
 std::string entered_text(const SearchArea& area);
 /// Lines as they stand in a terminal: each heading once, texts below each other.

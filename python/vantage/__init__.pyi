@@ -214,6 +214,8 @@ class Scanner:
         min_range_m: float = 0.1,
         max_range_m: float = 130.0,
         points_per_second: float = 1000000.0,
+        battery_min: float = 0.0,
+        battery_scans: float = 0.0,
         noise: Optional[Dict[str, npt.ArrayLike]] = None,
         beam_divergence_mrad: float = 0.0,
         exit_diameter_mm: float = 0.0,
@@ -240,6 +242,8 @@ class Scanner:
     min_range_m: float
     max_range_m: float
     points_per_second: float
+    battery_min: float
+    battery_scans: float
     noise: Optional[Dict[str, Any]]
     beam_divergence_mrad: float
     exit_diameter_mm: float
@@ -537,6 +541,22 @@ class Target:
 
 def read_targets_csv(file: Path) -> List[Target]: ...
 
+class BatteryUse:
+    @property
+    def instrument(self) -> str: ...
+    @property
+    def battery_min(self) -> float: ...
+    @property
+    def battery_scans(self) -> float: ...
+    @property
+    def on_min(self) -> float: ...
+    @property
+    def scans(self) -> int: ...
+    @property
+    def batteries(self) -> int: ...
+    @property
+    def in_a_day(self) -> int: ...
+
 class Round:
     @property
     def order(self) -> List[int]: ...
@@ -564,6 +584,8 @@ class Round:
     def unconnected(self) -> int: ...
     @property
     def unlinked(self) -> int: ...
+    @property
+    def batteries(self) -> List[BatteryUse]: ...
 
 class Session(Round):
     @property
@@ -598,6 +620,8 @@ class Visit(Round):
     def closed(self) -> List[ClosedStation]: ...
     @property
     def bound(self) -> int: ...
+    @property
+    def batteries(self) -> List[BatteryUse]: ...
 
 class OnSite:
     def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...
@@ -928,6 +952,7 @@ class Site:
         calibration: Setting = None,
         detection: Setting = None,
         rate: Setting = None,
+        battery: Setting = None,
         user_size: Setting = None,
         incidence: Setting = None,
         spacing: Setting = None,
@@ -985,6 +1010,7 @@ class Site:
         calibration: Setting = None,
         detection: Setting = None,
         rate: Setting = None,
+        battery: Setting = None,
         user_size: Setting = None,
         incidence: Setting = None,
         spacing: Setting = None,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "cli/command.hpp"
 #include "cli/dropped_points.hpp"
@@ -230,12 +231,18 @@ StationLinks drawn_links(const EvaluateCommandOptions& options, const Evaluation
   return links_to_draw(found);
 }
 
+std::vector<SummaryLine> lines_on_site(Site& site, const Evaluation& found) {
+  std::vector<SummaryLine> lines = ground_lines(site.scene(), site.area(), found.stations);
+  std::ranges::move(again_lines(site.scene(), found), std::back_inserter(lines));
+  return lines;
+}
+
 // `judged`: where it was looked at.
 void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& simulator, const Evaluation& found,
                  const std::vector<std::string>& names, const MissedVoxels* judged, Program& program) {
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field, options.ply);
   std::vector<ElementShare> elements;
-  if (options.elements || (judged && options.missed.with_elements()))
+  if (options.elements || (judged && (options.missed.with_elements() || !options.reports.empty())))
     elements = element_shares(simulator, found, found.field);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
@@ -267,7 +274,7 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
   for (const std::string& file : options.waypoint_files) write_waypoints(file, found, site.scanners(), site.crs());
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, site,
-                  options.report_head.with({.missed = judged}), program, program.abort);
+                  options.report_head.with({.missed = judged, .elements = elements}), program, program.abort);
 }
 
 // `traced`: with every ray, also where a sample has all voxels.
@@ -398,7 +405,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     nlohmann::json json = json_of(options, site, simulator, found);
     if (site.has_area()) {
       json["floor"] = nlohmann::json::parse(floor_json(site.scene(), site.area(), placed).dump());
-      for (const auto& [heading, line] : ground_lines(site.scene(), site.area(), placed))
+      for (const auto& [heading, line] : lines_on_site(site, found))
         json["summary"].push_back({{"heading", heading}, {"text", line}});
     }
     json["stations"] = stations_json(stations, found, names, !options.sampled(), site.scanners());
@@ -406,7 +413,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     program.console.print(json);
   } else {
     std::string text = evaluation_text(found, names, !options.sampled(), site.scanners());
-    if (site.has_area()) text += lines_text(ground_lines(site.scene(), site.area(), placed));
+    if (site.has_area()) text += lines_text(lines_on_site(site, found));
     program.console.print(text);
   }
   return closed_stations(found) == 0 ? exit_ok : exit_unmet;

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/part_of.hpp"
+#include "core/text.hpp"
 #include "evaluate/scan_data.hpp"
 #include "evaluate/sight_targets.hpp"
 #include "evaluate/visibility.hpp"
@@ -39,6 +42,34 @@ RegistrationOptions registration_of(const RequiredInputs& needs, const Evaluatio
 EveryRayOptions registered_by(EveryRayOptions counting, std::uint64_t voxels) {
   if (voxels > 0) counting.registration_voxels = voxels, counting.registration_known = nullptr;
   return counting;
+}
+
+// "18″, 1 mm and 10 ppm"; empty: it states no calibration.
+std::string calibration_text(const Scanner& scanner) {
+  std::vector<std::string> parts;
+  const auto add = [&](double value, const char* unit) {
+    if (value > 0) parts.push_back(number(std::round(10 * value) / 10) + unit);
+  };
+  add(3600 * scanner.angle_accuracy.in_degrees(), "″");
+  add(kMillimetres * scanner.range_accuracy_m, " mm");
+  add(scanner.range_accuracy_ppm, " ppm");
+  std::string text;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
+  return text;
+}
+
+// Of all scanners that stations have.
+std::string calibrations_text(std::span<const PlacedStation> stations, std::span<const Scanner> scanners) {
+  std::vector<std::string> told;
+  for (const PlacedStation& station : stations) {
+    if (!active(station)) continue;
+    std::string text = calibration_text(scanners[station.setup.scanner]);
+    if (!text.empty() && std::ranges::find(told, text) == told.end()) told.push_back(std::move(text));
+  }
+  std::string all;
+  for (const std::string& text : told) all += (all.empty() ? "" : "; ") + text;
+  return all;
 }
 
 std::size_t existing_of(std::span<const PlacedStation> stations) {
@@ -129,6 +160,8 @@ Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
   Evaluation made = evaluation_of(measured, measures_, registration, sighted);
   take_options(made, options_);
   made.data = scan_data(network, site_.simulator, site_.surroundings);
+  if (made.values.contains("registration") || registration)
+    made.calibration = calibrations_text(made.stations, site_.simulator.scanners());
   made.targets = std::move(targets);
   if (registration && !made.targets.empty())
     made.without_targets_m = registration_error(network.surveyed, measured.voxels, *registration, network.surroundings,

@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/first_numbers.hpp"
@@ -21,6 +23,7 @@
 #include "core/text.hpp"
 #include "evaluate/check_day.hpp"
 #include "evaluate/cut_round.hpp"
+#include "evaluate/steep_checks.hpp"
 #include "evaluate/timed_sessions.hpp"
 #include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
@@ -267,6 +270,14 @@ std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::
   return best;
 }
 
+// Whether both are of batteries that fit one instrument.
+bool shared(const BatteryUse& a, const BatteryUse& b) {
+  return std::tie(a.instrument, a.battery_min, a.battery_scans) ==
+         std::tie(b.instrument, b.battery_min, b.battery_scans);
+}
+
+constexpr double kRounding = 1e-9;  // of sums of minutes
+
 }  // namespace
 
 struct OnSite::Impl {
@@ -277,19 +288,25 @@ struct OnSite::Impl {
     std::vector<Vec3> path = {};
   };
 
-  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans,
+  // What counts of a scanner.
+  struct Instrument {
+    double scan_min = 0;
+    BatteryUse battery = {};  // what is known before a round
+  };
+
+  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<Instrument> given,
        const Vec3& centre, WindowsAt rooms)
       : options(o),
         origin(centre),
         windows_at(std::move(rooms)),
-        scan_min(std::move(scans)),
+        scanners(std::move(given)),
         entered(area.entries().begin(), area.entries().end()),
         ways(walked_ground(area), [clash](const Vec3& a, const Vec3& b) {
           const Vec3 hip{0, 0, person::kHip_m}, knee{0, 0, person::kKnee_m};
           return clash.sees(a + hip, b + hip) && clash.sees(a + knee, b + knee);
         }) {}
   double stay_min(const PlacedStation& station) const {
-    return scan_min.at(station.setup.scanner) + options.set_up_min + options.photos_min;
+    return scanners.at(station.setup.scanner).scan_min + options.set_up_min + options.photos_min;
   }
   // `way`: of the search area, if it connects them.
   Leg leg(const Vec3& from, const Vec3& to, const std::optional<double>& way) const {
@@ -300,9 +317,9 @@ struct OnSite::Impl {
 
   // Sums by scanner, so that equal stations make a product, without rounding of a sum.
   void stand(Round& round, std::span<const PlacedStation> stations, const std::vector<std::size_t>& at) const {
-    std::vector<double> scans(scan_min.size());
+    std::vector<double> scans(scanners.size());
     for (const std::size_t i : at) scans.at(stations[i].setup.scanner) += 1;
-    for (std::size_t k = 0; k < scans.size(); ++k) round.scan_min += scans[k] * scan_min[k];
+    for (std::size_t k = 0; k < scans.size(); ++k) round.scan_min += scans[k] * scanners[k].scan_min;
     const auto count = static_cast<double>(at.size());
     round.set_up_min = count * options.set_up_min;
     round.photos_min = count * options.photos_min;
@@ -327,7 +344,9 @@ struct OnSite::Impl {
     }
     round.walk_min = walk_min(round.walk_m);
     round.minutes += round.walk_min;
+    round.batteries = batteries_over(round, stations);
   }
+  std::vector<BatteryUse> batteries_over(const Round& round, std::span<const PlacedStation> stations) const;
 
   struct Part;
   std::vector<DayHours> hours_at(const Vec3& ground) const;
@@ -347,8 +366,8 @@ struct OnSite::Impl {
   OnSiteOptions options;
   Vec3 origin;  // of the scene
   WindowsAt windows_at;
-  std::vector<double> scan_min;  // by scanner
-  std::vector<Vec3> entered;     // where the search area is entered, as far as is known
+  std::vector<Instrument> scanners;
+  std::vector<Vec3> entered;  // where the search area is entered, as far as is known
   Ways ways;
 };
 
@@ -374,10 +393,14 @@ OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<cons
                const OnSiteOptions& options, const Vec3& origin, WindowsAt windows_at) {
   check(options, origin);
   if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
-  std::vector<double> scan_min;
-  for (const Scanner& scanner : scanners) scan_min.push_back(minutes_of_scan(scanner));
+  std::vector<Impl::Instrument> instruments;
+  for (const Scanner& scanner : scanners)
+    instruments.push_back({.scan_min = minutes_of_scan(scanner),
+                           .battery = {.instrument = instrument_of(scanner),
+                                       .battery_min = scanner.battery_min,
+                                       .battery_scans = scanner.battery_scans}});
   check_day(options, scanners);
-  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min), origin, std::move(windows_at));
+  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(instruments), origin, std::move(windows_at));
 }
 
 std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const {
@@ -391,7 +414,7 @@ std::vector<std::uint8_t> OnSite::longer(std::span<const Vec3> points, std::span
   for (const Vec3& point : points) require_in_reach(point, impl_->origin, "the end of a way is");
   return impl_->ways.longer(points, than);
 }
-double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
+double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scanners.at(scanner).scan_min; }
 const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
 
 Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength& link, double most_min) const {
@@ -457,6 +480,57 @@ Visit OnSite::visit(std::span<const PlacedStation> stations, const LinkStrength&
   });
   impl_->walk(visit, stations, std::move(visited), std::move(legs));
   return visit;
+}
+
+std::vector<BatteryUse> OnSite::Impl::batteries_over(const Round& round,
+                                                     std::span<const PlacedStation> stations) const {
+  std::vector<BatteryUse> uses;
+  for (const Instrument& one : scanners) {
+    const BatteryUse& battery = one.battery;
+    const auto same = [&](const BatteryUse& other) { return shared(battery, other); };
+    if ((battery.battery_min == 0 && battery.battery_scans == 0) || std::ranges::any_of(uses, same)) continue;
+    BatteryUse use = battery;
+    const auto empty = [](double used, double lasts) { return lasts > 0 && used > lasts * (1 + kRounding); };
+    double on_min = 0, charged_min = 0, scans = 0;  // minutes at which the battery in use was new, and its scans
+    for (std::size_t k = 0; k < round.order.size(); ++k) {
+      const double stay = round.stay_min[k];
+      const bool own = shared(battery, scanners[stations[round.order[k]].setup.scanner].battery);
+      if (use.scans > 0) on_min += walk_min(round.legs_m[k]);
+      if (own) {
+        if (use.scans == 0 || empty(on_min + stay - charged_min, battery.battery_min) ||
+            empty(scans + 1, battery.battery_scans))
+          ++use.batteries, charged_min = on_min, scans = 0;
+        if (empty(on_min + stay - charged_min, battery.battery_min)) {  // a stay that takes several
+          const double more = std::ceil(stay / battery.battery_min * (1 - kRounding)) - 1;
+          use.batteries += static_cast<std::size_t>(more), charged_min += more * battery.battery_min;
+        }
+        ++scans, ++use.scans, use.on_min = on_min + stay;
+      }
+      if (use.scans > 0) on_min += stay;
+    }
+    if (use.scans == 0) continue;
+    use.in_a_day = use.batteries;
+    uses.push_back(std::move(use));
+  }
+  return uses;
+}
+
+std::vector<BatteryUse> batteries_of(const Visit& visit) {
+  if (visit.sessions.empty()) return visit.batteries;
+  std::vector<BatteryUse> all;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> by_day;  // of an instrument, on a day
+  for (const Session& session : visit.sessions)
+    for (const BatteryUse& use : session.batteries) {
+      auto found = std::ranges::find_if(all, [&](const BatteryUse& other) { return shared(use, other); });
+      if (found == all.end())
+        found = all.insert(all.end(), use), found->in_a_day = 0;
+      else
+        found->on_min += use.on_min, found->scans += use.scans, found->batteries += use.batteries;
+      std::size_t& today = by_day[{static_cast<std::size_t>(found - all.begin()), session.day}];
+      today += use.batteries;
+      found->in_a_day = std::max(found->in_a_day, today);
+    }
+  return all;
 }
 
 // A session before its legs are known.

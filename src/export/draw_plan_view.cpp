@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/left_out_hatch.hpp"
@@ -149,7 +150,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   if (const double scale = view.ellipse_scale(); scale > 0) {
     canvas.circle({at.x + 12, at.y}, 8, {.colour = {0.72, 0.12, 0.12}, .width = 1.3});
     words("standard ellipse of a head:");
-    canvas.text({at.x + 34, at.y + 17}, "the widest " + fixed(1000 * kWidestEllipse / scale, 2) + " mm", text);
+    canvas.text({at.x + 34, at.y + 17}, "the widest " + tenths(1000 * kWidestEllipse / scale) + " mm", text);
     at.y += 45;
   }
   const auto holes = std::ranges::count(view.stations, StationStatus::hole, &PlacedStation::status);

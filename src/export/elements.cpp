@@ -132,7 +132,7 @@ void write_elements_csv(const std::filesystem::path& file, std::span<const Eleme
     text += csv_cell(one.name) + "," + csv_cell(one.ifc_class) + "," + csv_cell(one.global_id) + "," +
             fixed(one.area_m2, 3) + "," + number(one.voxels) + cell(one.captured, 4) +
             cell(one.incidence ? std::optional(one.incidence->in_degrees()) : std::nullopt, 1) +
-            cell(in(one.point_distance_m, 1000), 1) + cell(in(one.deviation_m, 1000), 2) + "\n";
+            cell(in(one.point_distance_m, 1000), 1) + cell(in(one.deviation_m, 1000), 1) + "\n";
   }
   write_atomically(file, text);
 }

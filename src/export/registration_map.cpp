@@ -96,7 +96,7 @@ void draw_registration(const std::filesystem::path& file, Site& site, const Voxe
       canvas.fill({at.x, at.y + kHeight * (kSteps - 1 - step) / kSteps, 24, kHeight / kSteps + 0.5},
                   ramp(kRisingRamp, (step + 0.5) / kSteps));
     for (const double share : {0.0, 0.5, 1.0})
-      canvas.text({at.x + 34, at.y + kHeight * (1 - share)}, fixed(share * most, most < 10 ? 2 : 0) + " mm",
+      canvas.text({at.x + 34, at.y + kHeight * (1 - share)}, fixed(share * most, most < 10 ? 1 : 0) + " mm",
                   {.size = 12.5});
     at.y += kHeight + 24;
     canvas.fill({at.x, at.y - 7, 24, 14}, kUnseen);

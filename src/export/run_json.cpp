@@ -79,6 +79,19 @@ void add_ties(ordered_json& json, const Evaluation& evaluation) {
         {{"stations", {tie.a + 1, tie.b + 1}}, {"overlap", tie.value}, {"apart_m", tie.apart_m}, {"way_m", tie.way_m}});
 }
 
+ordered_json batteries_json(const std::vector<BatteryUse>& uses) {
+  ordered_json json = ordered_json::array();
+  for (const BatteryUse& use : uses) {
+    ordered_json one{{"instrument", use.instrument}};
+    if (use.battery_min > 0) one["battery_min"] = use.battery_min;
+    if (use.battery_scans > 0) one["battery_scans"] = use.battery_scans;
+    one["on_min"] = use.on_min, one["scans"] = use.scans;
+    one["batteries"] = use.batteries, one["in_a_day"] = use.in_a_day;
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
 // Stations are numbered from 1, in the order of visiting.
 ordered_json round_json(const Round& round, std::size_t kept) {
   ordered_json order = ordered_json::array();
@@ -97,6 +110,7 @@ ordered_json sessions_json(const std::vector<Session>& sessions, std::size_t kep
     one["arrive_min"] = session.arrive_min;
     one["wait_min"] = session.wait_min;
     one["parts"] = session.parts, one["linked"] = session.linked;
+    if (!session.batteries.empty()) one["batteries"] = batteries_json(session.batteries);
     json.push_back(std::move(one));
   }
   return json;
@@ -215,6 +229,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   if (entry.visit) {
     const std::size_t kept = result.problem.existing.size();
     json["on_site"] = round_json(*entry.visit, kept);
+    if (const auto uses = batteries_of(*entry.visit); !uses.empty())
+      json["on_site"]["batteries"] = batteries_json(uses);
     if (!entry.visit->sessions.empty()) json["on_site"]["sessions"] = sessions_json(entry.visit->sessions, kept);
     if (!entry.visit->not_split.empty()) json["on_site"]["not_split"] = entry.visit->not_split;
     if (entry.visit->bound > 0) json["on_site"]["closed"] = closed_json(entry.visit->closed, kept);
@@ -333,6 +349,8 @@ std::string evaluation_json(const Evaluation& evaluation) {
     json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
   if (evaluation.data) json["data"] = data_json(*evaluation.data);
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
+  if (evaluation.visit)
+    if (const auto uses = batteries_of(*evaluation.visit); !uses.empty()) json["batteries"] = batteries_json(uses);
   const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
   if (evaluation.visit && !evaluation.visit->sessions.empty())
     json["sessions"] = sessions_json(evaluation.visit->sessions, kept);

@@ -9,11 +9,13 @@
 #include <set>
 #include <utility>
 
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "evaluate/known_points.hpp"
 #include "evaluate/steep_checks.hpp"
 #include "plan/answer.hpp"
 #include "scene/room_floors.hpp"
+#include "vantage/missed.hpp"
 
 namespace vantage {
 namespace {
@@ -56,6 +58,39 @@ std::string sessions_text(const Visit& visit) {
                      counted(days, "day") + (crews > 1 ? " with " + counted(crews, "crew") : "") + "; ";
   if (sessions.size() == 1) return text + "it takes " + duration(60 * all);
   return text + "the longest takes " + duration(60 * longest) + ", all together " + duration(60 * all);
+}
+
+// "4 of 2 h each, for 6 h 30 min with the scanner on"; of sessions "at most 2 a session and 4 a day, 7 in all, of 2 h
+// each, …".
+std::string battery_text(const Visit& visit, const BatteryUse& use) {
+  const auto either = [](const std::string& minutes, const std::string& scans) {
+    return minutes + (minutes.empty() || scans.empty() ? "" : " or ") + scans;
+  };
+  const bool by_time = use.battery_min > 0, by_scans = use.battery_scans > 0;
+  const std::string each = either(
+                        by_time ? whole_hours(use.battery_min) : "",
+                        by_scans ? number(use.battery_scans) + (use.battery_scans == 1 ? " scan" : " scans") : ""),
+                    needed = (by_time ? duration(60 * use.on_min) + " with the scanner on" : std::string()) +
+                             (by_time && by_scans ? " and " : "") + (by_scans ? counted(use.scans, "scan") : "");
+  std::string many = std::to_string(use.batteries);
+  if (visit.sessions.size() > 1) {
+    std::size_t most = 0;
+    for (const Session& session : visit.sessions)
+      for (const BatteryUse& one : session.batteries)
+        if (one.instrument == use.instrument) most = std::max(most, one.batteries);
+    many = "at most " + std::to_string(most) + " a session and " + std::to_string(use.in_a_day) + " a day, " + many +
+           " in all,";
+  }
+  return many + " of " + each + " each, for " + needed;
+}
+
+std::vector<SummaryLine> battery_lines(const Visit& visit) {
+  std::vector<SummaryLine> lines;
+  const std::vector<BatteryUse> uses = batteries_of(visit);
+  for (const BatteryUse& use : uses)
+    lines.push_back(
+        {"batteries", (uses.size() > 1 ? use.instrument + ": " : std::string()) + battery_text(visit, use)});
+  return lines;
 }
 
 // "kept at all 5 stations that access windows are for, with 35 min of waiting"
@@ -202,10 +237,6 @@ std::vector<std::string> storeys_advice(std::span<const StoreyTie> ties, const s
   return {text + ": stations at both ends of the stair would tie them better"};
 }
 
-// Millimetres of a prediction, whose hundredths mean nothing: "0.4", "less than 0.1".
-constexpr double kLeastTenth = 0.05;
-std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
-
 // " S4 (61 mm), S7 (40 mm) and 3 more": stations whose part of the surface misses the class.
 std::string beyond_text(const Evaluation& evaluation, const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 3;
@@ -232,7 +263,8 @@ std::string registered_text(const Evaluation& evaluation, const Estimate& regist
   if (evaluation.registration) {
     const RegistrationError& error = *evaluation.registration;
     text += error.random_m < error.rms_m
-                ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves)"
+                ? " (random " + tenths(1000 * error.random_m) + " mm, the rest by what a calibration leaves" +
+                      (evaluation.calibration.empty() ? "" : ": " + evaluation.calibration) + ")"
                 : " by random errors alone (the scanner states no calibration)";
   }
   const auto by = static_cast<std::size_t>(std::ranges::count_if(
@@ -405,6 +437,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
                                                                    : sessions_text(*evaluation.visit)});
   if (evaluation.visit && evaluation.visit->bound > 0) lines.push_back({"hours", hours_text(*evaluation.visit)});
   if (evaluation.data && evaluation.data->points > 0) lines.push_back({"data", data_text(*evaluation.data)});
+  if (evaluation.visit) std::ranges::move(battery_lines(*evaluation.visit), std::back_inserter(lines));
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
@@ -618,6 +651,34 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
   return lines;
 }
 
+std::vector<SummaryLine> again_lines(const Scene& scene, const Evaluation& evaluation) {
+  constexpr std::size_t kNamed = 6;
+  if (!evaluation.visit || evaluation.visit->sessions.size() < 2) return {};
+  const auto existing =
+      static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::vector<std::vector<std::size_t>> in_rooms = stations_in_rooms(scene.rooms(), evaluation.stations);
+  std::size_t again = 0;
+  std::string named;
+  for (std::size_t k = 0; k < in_rooms.size(); ++k) {
+    std::size_t sessions = 0;
+    std::string when;
+    for (const Session& session : evaluation.visit->sessions) {
+      const auto inside = [&](std::size_t station) {
+        return std::ranges::find(in_rooms[k], existing + station) != in_rooms[k].end();
+      };
+      if (std::ranges::none_of(session.order, inside)) continue;
+      when += (++sessions > 1 ? "; " : "") + std::string("day ") + std::to_string(session.day) + ", crew " +
+              std::to_string(session.crew);
+    }
+    if (sessions < 2) continue;
+    if (++again <= kNamed) named += (again > 1 ? ", " : ": ") + scene.rooms()[k].name + " (" + when + ")";
+  }
+  if (again == 0) return {};
+  if (again > kNamed) named += " and " + std::to_string(again - kNamed) + " more";
+  return {
+      {"again", counted(again, "room") + (again == 1 ? " is" : " are") + " entered by more than one session" + named}};
+}
+
 std::string entered_text(const SearchArea& area) {
   const std::span<const ClosedPart> entered = area.entered();
   if (entered.empty()) return {};
@@ -663,6 +724,7 @@ std::vector<SummaryLine> summary_lines(const PlanResult& result) {
   if (!result.area || !result.scene) return lines;
   for (SummaryLine& line : ground_lines(*result.scene, *result.area, result.front[answer(result)].stations))
     lines.insert(line.heading == "ground" ? lines.begin() : lines.end(), std::move(line));
+  std::ranges::move(again_lines(*result.scene, entry), std::back_inserter(lines));
   return lines;
 }
 

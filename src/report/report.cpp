@@ -53,6 +53,7 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
   report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
+  report.again = again_lines(site.scene(), report.shown());
   return report;
 }
 
@@ -70,6 +71,7 @@ Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& 
   report.accuracy = accuracy_of(report.shown(), report.options.field, site.simulator());
   report.rooms = rooms_of(report, site.scene());
   report.ground = ground_lines(site.scene(), site.area(), report.shown().stations);
+  report.again = again_lines(site.scene(), report.shown());
   return report;
 }
 

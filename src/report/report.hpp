@@ -44,6 +44,7 @@ struct Report {
   std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
   std::vector<TradeOffPoint> trade_off = {};   // stations against what they capture; empty: not known
   std::vector<SummaryLine> ground = {};        // a plane laid under the model, and floor that is not entered
+  std::vector<SummaryLine> again = {};         // rooms that sessions of the answer enter again
   std::string parameters = "{}";               // JSON text of an object
   std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
   std::optional<Accuracy> accuracy = {};                        // of the answer, by room or mesh

@@ -64,6 +64,8 @@
     at('accuracy-section').hidden = k !== report.answer || !report.accuracy;
     roomTable(at('rooms'), report.rooms);
     at('rooms-section').hidden = k !== report.answer || !report.rooms.length;
+    elementTable(at('elements'), at('elements-words'), report.elements);
+    at('elements-section').hidden = k !== report.answer || !report.elements.rows.length;
     linkTable(at('links'), at('links-words'), network);
     valuesTable(at('values'), report, network);
     only = null;

@@ -42,9 +42,11 @@ std::string time_text(const Visit& visit) {
   Round all = visit;
   double waiting = 0;
   if (!visit.sessions.empty()) {
-    all.walk_m = all.walk_min = all.minutes = 0;
-    for (const Session& one : visit.sessions)
+    all = {};
+    for (const Session& one : visit.sessions) {
+      all.scan_min += one.scan_min, all.set_up_min += one.set_up_min, all.photos_min += one.photos_min;
       all.walk_m += one.walk_m, all.walk_min += one.walk_min, all.minutes += one.minutes, waiting += one.waiting_min;
+    }
   }
   return "scans " + minutes_text(all.scan_min) + ", setting up " + minutes_text(all.set_up_min) +
          (all.photos_min > 0 ? ", photos " + minutes_text(all.photos_min) : "") + ", walking " +

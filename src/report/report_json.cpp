@@ -109,6 +109,7 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
     one.update(round_json(session, kept));
     one["clock"] = clock_text(session.start_min) + "–" + clock_text(session.start_min + session.minutes);
+    one["batteries"] = batteries_text(session);
     one["waiting_min"] = session.waiting_min, one["begin"] = ordered_json::array();
     for (const double arrive : session.arrive_min) one["begin"].push_back(clock_text(session.start_min + arrive));
     json["sessions"].push_back(std::move(one));
@@ -230,6 +231,30 @@ ordered_json rooms_json(const std::vector<RoomFacts>& rooms) {
   return rows;
 }
 
+// What is missed of each first; those with most of it are kept.
+ordered_json elements_json(std::span<const ElementShare> elements) {
+  constexpr std::size_t kMost = 1000;
+  std::vector<const ElementShare*> judged;
+  for (const ElementShare& one : elements)
+    if (one.captured) judged.push_back(&one);
+  std::ranges::stable_sort(judged, std::ranges::greater{},
+                           [](const ElementShare* one) { return one->area_m2 * (1 - *one->captured); });
+  ordered_json rows = ordered_json::array();
+  const auto value = [](const std::optional<double>& known, double factor) {
+    return known ? ordered_json(factor * *known) : ordered_json();
+  };
+  for (std::size_t k = 0; k < std::min(kMost, judged.size()); ++k) {
+    const ElementShare& one = *judged[k];
+    rows.push_back({{"name", one.name},
+                    {"area_m2", one.area_m2},
+                    {"captured", *one.captured},
+                    {"incidence", one.incidence ? ordered_json(one.incidence->in_degrees()) : ordered_json()},
+                    {"point_distance_mm", value(one.point_distance_m, 1000)},
+                    {"deviation_mm", value(one.deviation_m, 1000)}});
+  }
+  return {{"all", judged.size()}, {"rows", std::move(rows)}};
+}
+
 // As the address of a picture in a page; empty: none.
 std::string logo_json(const std::filesystem::path& file) {
   if (file.empty()) return "";
@@ -253,6 +278,7 @@ ordered_json report_json(const Report& report) {
     networks.back()["dominated"] = network.dominated;
     for (ordered_json& line : lines_json(report.ground)) networks.back()["summary"].push_back(std::move(line));
   }
+  for (ordered_json& line : lines_json(report.again)) networks[report.answer]["summary"].push_back(std::move(line));
   ordered_json& stations = networks[report.answer]["stations"];
   for (std::size_t k = 0; k < report.pictures.size(); ++k)
     if (!report.pictures[k].empty()) stations[k]["picture"] = base64(report.pictures[k]);
@@ -273,6 +299,7 @@ ordered_json report_json(const Report& report) {
           {"missed", missed_json(report)},
           {"accuracy", accuracy_json(report)},
           {"rooms", rooms_json(report.rooms)},
+          {"elements", elements_json(report.options.elements)},
           {"trade_off", trade_off_json(report.trade_off)},
           {"registration_jump", registration_jump_text(report.trade_off)},
           {"parameters", ordered_json::parse(report.parameters)}};

@@ -6,6 +6,7 @@
 
 #include "core/first_numbers.hpp"
 #include "core/parallel.hpp"
+#include "core/tenths.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "export/missed_colours.hpp"
@@ -110,6 +111,7 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   std::size_t more = 0;
   std::vector<SummaryLine> lines = summary_lines(network, report.requirements);
   lines.insert(lines.end(), report.ground.begin(), report.ground.end());
+  lines.insert(lines.end(), report.again.begin(), report.again.end());
   for (const auto& [heading, text] : lines) {
     if (heading == "to do" && sheet.left() < kLeastLeft)
       ++more;
@@ -144,38 +146,46 @@ void begin_section(std::vector<Sheet>& sheets, std::size_t lines) {
 void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<std::string>& names) {
   const std::vector<Session>& sessions = network.visit->sessions;
   const std::vector<SheetRound> rounds = sheet_rounds(network);
+  const bool batteries = !batteries_of(*network.visit).empty();
   begin_section(sheets, sessions.size());
   Sheet& sheet = sheets.back();
   sheet.heading("Sessions");
   sheet.words(Sheet::kMargin,
               "Each begins and ends at the entrance, at these times of the day; its stations stand in the table of "
-              "stations in their order. Links: "
-              "whether its scans hold together by themselves, and with those of other sessions.",
+              "stations in their order. " +
+                  std::string(batteries ? "Batteries: charged ones that it takes. " : "") +
+                  "Links: whether its scans hold together by themselves, and with those of other sessions.",
               {.size = 9, .colour = kFaintInk});
   sheet.y += 6;
-  write_table(sheets, a4(),
-              {{"Session", Align::start},
-               {"Time"},
-               {"Stations"},
-               {"From, to", Align::start},
-               {"At stations"},
-               {"Walking"},
-               {"Walk, m"},
-               {"In all"},
-               {"Links", Align::start}},
-              sessions.size(), sessions.size(), "", [&](std::size_t k) -> std::vector<std::string> {
-                const Session& one = sessions[k];
-                const std::vector<std::size_t>& stations = rounds[k].stations;
-                return {rounds[k].name,
-                        clock_text(one.start_min) + "–" + clock_text(one.start_min + one.minutes),
-                        std::to_string(stations.size()),
-                        names[stations.front()] + ", " + names[stations.back()],
-                        minutes_text(one.minutes - one.walk_min - one.waiting_min),
-                        minutes_text(one.walk_min),
-                        fixed(one.walk_m, 0),
-                        minutes_text(one.minutes),
-                        session_links(one, network)};
-              });
+  std::vector<SheetColumn> columns{{"Session", Align::start},
+                                   {"Time"},
+                                   {"Stations"},
+                                   {"From, to", Align::start},
+                                   {"At stations"},
+                                   {"Walking"},
+                                   {"Walk, m"},
+                                   {"In all"},
+                                   {"Batteries"},
+                                   {"Links", Align::start}};
+  constexpr std::size_t kBatteries = 8;  // their column
+  if (!batteries) columns.erase(columns.begin() + kBatteries);
+  write_table(
+      sheets, a4(), columns, sessions.size(), sessions.size(), "", [&](std::size_t k) -> std::vector<std::string> {
+        const Session& one = sessions[k];
+        const std::vector<std::size_t>& stations = rounds[k].stations;
+        std::vector<std::string> cells{rounds[k].name,
+                                       clock_text(one.start_min) + "–" + clock_text(one.start_min + one.minutes),
+                                       std::to_string(stations.size()),
+                                       names[stations.front()] + ", " + names[stations.back()],
+                                       minutes_text(one.minutes - one.walk_min - one.waiting_min),
+                                       minutes_text(one.walk_min),
+                                       fixed(one.walk_m, 0),
+                                       minutes_text(one.minutes),
+                                       batteries_text(one),
+                                       session_links(one, network)};
+        if (!batteries) cells.erase(cells.begin() + kBatteries);
+        return cells;
+      });
 }
 
 // All of them, in the order of visiting. `first_map`: the number of the first map's sheet.
@@ -248,9 +258,12 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
     sheet.y += 2;
     table(stations);
   };
-  for (const SheetRound& round : sheet_rounds(network))
-    part(round.name + ", from " + clock_text(*round.start_min) + ": " + minutes_text(round.round->minutes),
+  for (const SheetRound& round : sheet_rounds(network)) {
+    const std::string batteries = batteries_text(*round.round);
+    part(round.name + ", from " + clock_text(*round.start_min) + ": " + minutes_text(round.round->minutes) +
+             (batteries.empty() ? "" : "; charged batteries: " + batteries),
          round.stations);
+  }
   if (!order.empty()) part("In no session", order);
 }
 
@@ -361,12 +374,12 @@ void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, Accura
   if (missed.empty()) return;
   sheet.y += 6;
   const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
-  write_table(
-      sheets, a4(), {{accuracy.by_room ? "Room" : "Mesh", Align::start}, {"mean, mm"}, {"worst place, mm"}, {"beyond"}},
-      missed.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
-        const PlaceAccuracy& place = *missed[k];
-        return {place.name, fixed(1000 * place.mean_m, 2), fixed(1000 * place.worst_m, 2), percent(place.beyond)};
-      });
+  write_table(sheets, a4(),
+              {{accuracy.by_room ? "Room" : "Mesh", Align::start}, {"mean, mm"}, {"worst place, mm"}, {"beyond"}},
+              missed.size(), rows, "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+                const PlaceAccuracy& place = *missed[k];
+                return {place.name, tenths(1000 * place.mean_m), tenths(1000 * place.worst_m), percent(place.beyond)};
+              });
 }
 
 void rooms_table(std::vector<Sheet>& sheets, const std::vector<RoomFacts>& rooms) {

@@ -190,6 +190,14 @@ std::string session_links(const Session& session, const Evaluation& network) {
   return within + (session.parts > 1 ? "; " : ", and ") + (session.linked ? "to others" : "to no other session");
 }
 
+std::string batteries_text(const Round& round) {
+  std::string text;
+  for (const BatteryUse& use : round.batteries)
+    text += (text.empty() ? "" : ", ") + std::to_string(use.batteries) +
+            (round.batteries.size() > 1 ? " of " + use.instrument : "");
+  return text;
+}
+
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts) {
   std::vector<std::size_t> order = first_numbers(facts.size());
   std::ranges::stable_sort(order, {},

@@ -53,6 +53,9 @@ std::vector<SheetRound> sheet_rounds(const Evaluation& network);
 // "within, and to others", "in 2 parts; to no other session".
 std::string session_links(const Session& session, const Evaluation& network);
 
+// "2", of several instruments "2 of Leica RTC360, 1 of Trimble X7"; nothing if it is not known how long they last.
+std::string batteries_text(const Round& round);
+
 // Stations by their place in the round, the others behind them.
 std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts);
 

@@ -166,6 +166,15 @@ function roomTable(holder, rooms) {
     [0, 1, 4], kRows, (n) => `${n} more rooms`));
 }
 
+function elementTable(holder, wordsHolder, { all, rows }) {
+  const kShown = 20, deviation = rows.some((r) => r.deviation_mm !== null), known = (value, text) => (value === null ? null : text(value));
+  wordsHolder.textContent = 'Each element of the model, or mesh: the share of its wanted points, the median incidence and point distance where it is seen'
+    + `${deviation ? ', and the predicted registration error there' : ''}; those with most surface that is not captured first.${all > rows.length ? ` ${rows.length} of ${all}; elements.csv has all.` : ''}`;
+  holder.replaceChildren(...foldedTable(['Element', 'Surface (m²)', 'Captured', 'Incidence (°)', 'Point distance (mm)', ...(deviation ? ['Deviation (mm)'] : [])],
+    rows.map((r) => [r.name, r.area_m2.toFixed(1), percent(r.captured), known(r.incidence, (v) => v.toFixed(0)), known(r.point_distance_mm, (v) => v.toFixed(1)),
+      ...(deviation ? [known(r.deviation_mm, tenths)] : [])]), [0], kShown, (n) => `${n} more elements`));
+}
+
 // The round in a sentence.
 function roundWords(network) {
   if (sessionsOf(network).length) return 'Each session begins and ends at the entrance; stops and walks below are of the sessions.';
@@ -179,10 +188,11 @@ function sessionTable(holder, network) {
   const sessions = sessionsOf(network), kNamed = 12;
   const names = ({ order }) => order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ') + (order.length > kNamed ? ` → … ${order.length} in all` : '');
   holder.hidden = !sessions.length;
-  const waits = sessions.some((s) => s.waiting_min > 0), titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', 'Links'];
+  const waits = sessions.some((s) => s.waiting_min > 0), batteries = sessions.some((s) => s.batteries);
+  const titles = ['Session', 'Time', 'Stations', 'At stations', 'Walking', ...(waits ? ['Waiting'] : []), 'In all', ...(batteries ? ['Batteries'] : []), 'Links'];
   holder.replaceChildren(table(titles, sessions.map((s) => [sessionName(s), s.clock, names(s),
     duration(60 * (s.minutes - s.walk_min - s.waiting_min)), `${duration(60 * s.walk_min)}, ${s.walk_m.toFixed(0)} m`, ...(waits ? [s.waiting_min > 0 ? duration(60 * s.waiting_min) : ''] : []),
-    duration(60 * s.minutes), s.links]), [0, 1, 2, titles.length - 1]));
+    duration(60 * s.minutes), ...(batteries ? [s.batteries] : []), s.links]), [0, 1, 2, titles.length - 1]));
 }
 
 function linkTable(holder, wordsHolder, network) {

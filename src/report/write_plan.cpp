@@ -98,11 +98,11 @@ class FolderWriter {
                        if (!known) return;
                        judge(*known);
                        // Looks at the surfaces that judging has just made.
-                       const auto elements = element_shares(site_.simulator(), entry_, *known);
-                       write_elements_csv(folder_ / "elements.csv", elements);
+                       elements_ = element_shares(site_.simulator(), entry_, *known);
+                       write_elements_csv(folder_ / "elements.csv", elements_);
                        if (written_.missed)
-                         write_missed_bcf(folder_ / "missed.bcf", elements, written_.missed->shares, site_);
-                       else if (std::ranges::any_of(elements, [](const auto& one) { return !one.global_id.empty(); }))
+                         write_missed_bcf(folder_ / "missed.bcf", elements_, written_.missed->shares, site_);
+                       else if (std::ranges::any_of(elements_, [](const auto& one) { return !one.global_id.empty(); }))
                          leave_out("missed.bcf");
                      });
     if (options_.reports && why_no_report().empty()) report(known);
@@ -239,6 +239,7 @@ class FolderWriter {
     ReportOptions shown = options_.report;
     shown.field = field;
     shown.missed = written_.missed ? &*written_.missed : nullptr;
+    shown.elements = elements_;
     const Deadline due(seconds(), watch_.stop);
     for (const std::string& name : write_reports(folder_, result_, site_, shown, plan_, progress(kReport, 0, 1, due)))
       leave_out(name);
@@ -254,6 +255,7 @@ class FolderWriter {
   std::vector<std::string> names_;
   StationLinks links_;
   std::vector<PlanPage> plan_;
+  std::vector<ElementShare> elements_;
   std::mutex adding_;
   WrittenFolder written_;
 };

@@ -257,7 +257,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
              "angle_accuracy_arcsec",
              "range_accuracy_mm",
              "range_accuracy_ppm",
-             "tilt_accuracy_arcsec"});
+             "tilt_accuracy_arcsec",
+             "battery"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -296,6 +297,14 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   if (node.has("range_accuracy_ppm")) scanner.range_accuracy_ppm = node.member("range_accuracy_ppm").figure();
   if (node.has("tilt_accuracy_arcsec"))
     scanner.tilt_accuracy = Angle::degrees(node.member("tilt_accuracy_arcsec").figure() / 3600);
+  if (node.has("battery")) {
+    const Node battery = node.member("battery");
+    battery.only({"minutes", "scans", "source", "note"});
+    battery.sourced();
+    if (!battery.has("minutes") && !battery.has("scans")) battery.fail("needs minutes or scans");
+    if (battery.has("minutes")) scanner.battery_min = battery.member("minutes").number();
+    if (battery.has("scans")) scanner.battery_scans = battery.member("scans").number();
+  }
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
   if (chosen.has("noise_factor")) {
     const Node factor = chosen.member("noise_factor");

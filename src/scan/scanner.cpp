@@ -260,6 +260,11 @@ void Scanner::check() const {
   if (!(tilt_arcsec >= 0 && tilt_arcsec <= 18'000))
     refuse("tilt_accuracy in arc seconds", tilt_arcsec, "from 0 to 18000");
   check_number(points_per_second, "scanner: points_per_second", measurable);
+  const auto check_battery = [](double lasts, const char* what) {
+    if (lasts != 0 && !(lasts >= 1 && lasts <= 1e6)) refuse(what, lasts, "0, or from 1 to 1e6");
+  };
+  check_battery(battery_min, "battery_min");
+  check_battery(battery_scans, "battery_scans");
   check_noise(noise);
 }
 

@@ -40,6 +40,9 @@ Settings settings(const Scanner& scanner) {
   // It enters a plan by the registration's own setting.
   if (scanner.tilt_accuracy.in_radians() > 0)
     list.add("tilt_accuracy_arcsec", scanner.tilt_accuracy.in_degrees() * 3600, {.decides = false});
+  if (scanner.battery_min > 0 || scanner.battery_scans > 0)
+    list.add("battery_min", scanner.battery_min, {"battery", false})
+        .add("battery_scans", scanner.battery_scans, {"battery", false});
   if (scanner.detection_range_m > 0)
     list.add("detection_range_m", scanner.detection_range_m, {"detection"})
         .add("detection_reflectivity", scanner.detection_reflectivity, {"detection"});

@@ -132,6 +132,11 @@ void add_scene(Rows& rows) {
       .advanced();
 }
 
+void check_battery(const std::array<double, 2>& battery, const std::string& what) {
+  for (const double lasts : battery)
+    if (lasts != 0) check_number(lasts, what, {.low = 1, .high = 1e6});
+}
+
 void add_scanner(Rows& rows) {
   rows.group("Scanner")
       .text("scanner", "PRESET", "A scanner that `vantage info` lists, such as rtc360 or rtc360@6mm",
@@ -207,6 +212,21 @@ void add_scanner(Rows& rows) {
       .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
               &SiteOptions::points_per_second, measurable)
+      .advanced()
+      .by_preset()
+      .optional("battery", "MIN[,SCANS]",
+                "How long a charged battery lasts: minutes with the scanner on, and scans; 0: not stated. That of the "
+                "preset otherwise",
+                &SiteOptions::battery,
+                [](const std::string& text, const std::string& what) {
+                  const auto values = parse_numbers(text, what, 1, 2, not_negative);
+                  const std::array battery{values.front(), values.size() > 1 ? values.back() : 0};
+                  check_battery(battery, what);
+                  return battery;
+                })
+      .checked([](const SiteOptions& o, const std::string& what) {
+        if (o.battery) check_battery(*o.battery, what);
+      })
       .advanced()
       .by_preset();
 }

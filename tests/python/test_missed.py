@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Why points are missed, what a round takes, and clouds in files."""
 import os
+import pickle
 import struct
 import tempfile
 import unittest
@@ -63,6 +64,12 @@ class AfterASearch(unittest.TestCase):
         at_six = vantage.OnSite(self.site, vantage.OnSiteOptions(set_up_min=5, day_min=480, day_start_min=360)).visit(BEFORE_EACH_WALL)
         self.assertEqual([(s.start_min, s.waiting_min) for s in at_six.sessions], [(360, 0)])
         self.assertEqual((at_six.bound, at_six.closed), (0, []))
+        self.assertEqual((visit.batteries, split.batteries), ([], []))
+        powered = vantage.Site(self.simulator.scene, scanners=[vantage.Scanner(azimuth_step_deg=2, zenith_step_deg=2, battery_scans=3)], user_size=0.5, engine="embree")
+        for days, batteries, a_day in ((None, 2, 2), (day, 2, 2)):
+            round = vantage.OnSite(powered, vantage.OnSiteOptions(set_up_min=5, walking_m_per_s=1, entrance=(0, 0, 0), day_min=days, crews=2 if days else 1)).visit(BEFORE_EACH_WALL)
+            use, = pickle.loads(pickle.dumps(round)).batteries
+            self.assertEqual((use.instrument, use.scans, use.battery_scans, use.batteries, use.in_a_day), ("custom", 4, 3, batteries, a_day))
         problem = vantage.SurveyProblem(objectives=["time"], on_site=options)
         self.assertEqual(problem.on_site.set_up_min, 5)
 

@@ -27,7 +27,7 @@ PLANS = {
     "kept": ["--problem", "coverage-fix", "--stations", "2", "--keep", "x=8,y=3,z=1.5,heading=30,tilt=80,scanner=rtc360,step=2.5", *SEARCH],
     "survey": ["--capture", "0.5", "--max-time", "5s"],
     "paying": ["--max-time", "5s"],
-    "days": ["--problem", "coverage-fix", "--stations", "4", "--keep", "8,0,1.5", "--day", "8min", "--crews", "2", *SEARCH],
+    "days": ["--problem", "coverage-fix", "--stations", "4", "--keep", "8,0,1.5", "--day", "8min", "--crews", "2", "--battery", "5,3", *SEARCH],
     "targets": ["--problem", "coverage-fix", "--stations", "1", "--keep", "7,1,1.5", "--keep", "7.5,-1,1.5", "--targets", "2", "--targets-from",
                 "have.csv", *SEARCH],
 }
@@ -103,6 +103,8 @@ def check_sessions(folder, written):
     for row in table:
         require(holds, row, "sessions.csv")
         assert row["name"] == entry["stations"][row["station"] - 1]["name"]
+        assert row["batteries"] == sessions[row["session"] - 1]["batteries"][0]["batteries"]
+    assert sum(session["batteries"][0]["batteries"] for session in sessions) == entry["on_site"]["batteries"][0]["batteries"]
     assert not holds.is_valid({**table[0], "day": 0}) and not holds.is_valid({**table[0], "more": 1})
 
 

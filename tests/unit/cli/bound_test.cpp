@@ -130,6 +130,17 @@ TEST_F(Bound, EvaluateTellsOfRooms) {
                            "begin,end\n"))
       << sessions;
   EXPECT_NE(sessions.find(",07:30,"), std::string::npos) << sessions;
+  EXPECT_EQ(kept.out.find("\nagain "), std::string::npos) << "one session";
+  const auto in_days = [&](const std::string& other) {
+    return run_program({"evaluate", path("rooms.glb"), "--engine", "embree", "--station", "-2,0,1.5", "--station",
+                        other, "--step", "2", "--user-size", "0.5", "--day", "5min"})
+        .out;
+  };
+  const std::string again = in_days("-4,0,1.5");
+  EXPECT_NE(again.find("\nagain      1 room is entered by more than one session: 7 (day 1, crew 1; day 2, crew 1)\n"),
+            std::string::npos)
+      << again;
+  EXPECT_EQ(in_days("2,0,1.5").find("\nagain "), std::string::npos) << "the other one is not in the room";
   const Outcome closed = evaluate("7=04:00-05:59");
   EXPECT_EQ(closed.exit_code, 3) << closed.err;
   EXPECT_NE(closed.out.find("S1 is in no session: it takes "), std::string::npos) << closed.out;

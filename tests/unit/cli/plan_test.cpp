@@ -165,6 +165,23 @@ TEST_F(Plan, SplitsARoundThatIsLongerThanADay) {
     for (const char* key : {"day", "crew", "order", "minutes", "arrive_min"})
       EXPECT_EQ(again["sessions"][s][key], sessions[s][key]) << s << " " << key;
   EXPECT_EQ(read("again.csv"), table);
+  EXPECT_FALSE(again.contains("batteries") || again["sessions"][0].contains("batteries")) << "not known";
+
+  // Two scans a battery: one for a session of two, as the table says in its last column.
+  const auto powered = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
+                                "--stations", path("plan/front.json"), "--day", "8min", "--crews", "2", "--battery",
+                                "0,2", "--sessions", path("powered.csv")});
+  std::size_t taken = 0;
+  for (const auto& session : powered["sessions"]) {
+    EXPECT_EQ(session["batteries"][0]["batteries"], (session["order"].size() + 1) / 2);
+    taken += session["batteries"][0]["batteries"].get<std::size_t>();
+  }
+  ASSERT_EQ(powered["batteries"].size(), 1u);
+  EXPECT_EQ(powered["batteries"][0]["batteries"], taken);
+  EXPECT_EQ(powered["batteries"][0]["battery_scans"], 2);
+  EXPECT_FALSE(powered["batteries"][0].contains("battery_min"));
+  EXPECT_EQ(powered["stations"], again["stations"]);
+  EXPECT_NE(read("powered.csv").find(",begin,end,batteries\n1,1,1,1,"), std::string::npos);
 
   // Nothing of it without a day, and no file of an earlier plan.
   const auto whole = json_of(plan("plan", with({"--force"})));

@@ -103,6 +103,30 @@ TEST(EvaluateStations, TellsWhatTheScansHold) {
   EXPECT_NE(summary_text(counted).find("\ndata       about "), std::string::npos) << summary_text(counted);
 }
 
+TEST(EvaluateStations, TellsTheCalibrationThatTheRegistrationRestsOn) {
+  std::vector<Scanner> scanners(4, test::coarse_scanner(0.5));
+  scanners[1].angle_accuracy = Angle::degrees(18.0 / 3600), scanners[1].range_accuracy_m = 0.001;
+  scanners[1].range_accuracy_ppm = 10;
+  scanners[2].range_accuracy_m = 0.0025;
+  scanners[3] = scanners[1];
+  Site site = test::site_of(Simulator(test::wall_and_floor().scene(), scanners,
+                                      {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
+  const auto told = [&](const std::vector<std::uint32_t>& of, bool registered) {
+    std::vector<PlacedStation> stations;
+    for (const std::uint32_t scanner : of) {
+      const double k = static_cast<double>(stations.size());
+      stations.push_back({.position = {1 + 0.5 * k, 1 - 0.5 * k, 0.5}, .setup = {.scanner = scanner}});
+    }
+    EvaluationOptions options;
+    if (registered) options.registration.emplace();
+    return evaluate_stations({.simulator = site.simulator()}, stations, options).calibration;
+  };
+  EXPECT_EQ(told({0, 0}, true), "") << "it states none";
+  EXPECT_EQ(told({1, 3}, true), "18″, 1 mm and 10 ppm");
+  EXPECT_EQ(told({1, 2}, true), "18″, 1 mm and 10 ppm; 2.5 mm");
+  EXPECT_EQ(told({1, 1}, false), "") << "nobody asked for it";
+}
+
 TEST(EvaluateStations, LevelsScansAsTheirScannerDoesIfAsked) {
   const std::vector<PlacedStation> stations{{.position = {1, 1, 0.5}}, {.position = {2, 0, 1.5}}};
   const auto rms = [&](Angle stated, const RegistrationOptions& registration) {

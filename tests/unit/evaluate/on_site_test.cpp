@@ -456,6 +456,75 @@ TEST(Sessions, ADayTakesAsManyStationsOfACorridorAsFit) {
   EXPECT_TRUE(whole.sessions[0].linked);
 }
 
+// Two minutes of setting up and one of scanning at each, and 4.5 m, 9 s, from one to the next: 3 min, then 3.15 min
+// each.
+TEST(Batteries, AreChangedBetweenStationsBeforeTheyAreEmpty) {
+  const Corridor corridor;
+  const auto used = [&](double battery_min, double battery_scans, OnSiteOptions options) {
+    Yard yard;
+    yard.scanner.name = "Mine @fine", yard.scanner.battery_min = battery_min,
+    yard.scanner.battery_scans = battery_scans;
+    options.set_up_min = 2, options.walking_m_per_s = 0.5, options.entrance = Corridor::kEntrance;
+    const OnSite on_site = yard.on_site(options);
+    Visit visit = on_site.visit(corridor.stations, corridor.chain());
+    visit.sessions = on_site.sessions(corridor.stations, visit, corridor.chain());
+    return visit;
+  };
+  const auto batteries = [&](double battery_min, double battery_scans) {
+    const std::vector<BatteryUse> uses = used(battery_min, battery_scans, {}).batteries;
+    EXPECT_EQ(uses.size(), 1u);
+    return uses.empty() ? BatteryUse{} : uses.front();
+  };
+  EXPECT_TRUE(used(0, 0, {}).batteries.empty()) << "nothing is known";
+  const BatteryUse one = batteries(60, 0);
+  EXPECT_EQ(one.instrument, "Mine");
+  EXPECT_EQ(one.batteries, 1u);
+  EXPECT_EQ(one.scans, 8u);
+  EXPECT_NEAR(one.on_min, 8 * 3 + 7 * 4.5 / 0.5 / 60, 0.1) << "from the first to the last, not from the entrance";
+  EXPECT_EQ(batteries(0, 3).batteries, 3u);
+  EXPECT_EQ(batteries(0, 4).batteries, 2u);
+  EXPECT_EQ(batteries(10, 0).batteries, 3u) << "three stations take 9.3 min";
+  EXPECT_EQ(batteries(9, 0).batteries, 4u) << "two stations each, although three times 9 are more than all 25 min";
+  EXPECT_EQ(batteries(10, 2).batteries, 4u) << "whichever ends first";
+  EXPECT_EQ(batteries(2, 0).batteries, 16u) << "two within each stay";
+
+  const Visit split = used(4, 0, {.day_min = 8.5, .crews = 2});
+  ASSERT_EQ(split.sessions.size(), 4u) << "two stations each";
+  for (const Session& session : split.sessions) {
+    ASSERT_EQ(session.batteries.size(), 1u);
+    EXPECT_EQ(session.batteries[0].batteries, 2u);
+  }
+  const std::vector<BatteryUse> all = batteries_of(split);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].batteries, 8u);
+  EXPECT_EQ(all[0].in_a_day, 4u) << "two crews";
+  EXPECT_EQ(all[0].scans, 8u);
+}
+
+TEST(Batteries, SettingsOfOneScannerShareThemAndOthersDoNot) {
+  const Corridor corridor;
+  std::vector<Scanner> scanners(3, Yard().scanner);
+  scanners[0].name = "Mine @fine", scanners[1].name = "Mine @fast", scanners[2].name = "Yours";
+  scanners[0].battery_scans = scanners[1].battery_scans = 2, scanners[2].battery_min = 5;
+  std::vector<PlacedStation> stations = corridor.stations;
+  const auto scanner_at = [&](int place) -> std::uint32_t& {
+    const auto k = std::ranges::find(corridor.place, place) - corridor.place.begin();
+    return stations[static_cast<std::size_t>(k)].setup.scanner;
+  };
+  scanner_at(1) = 1, scanner_at(3) = 2, scanner_at(4) = 0, scanner_at(5) = 2;
+  const OnSite on_site =
+      Yard().site(scanners).on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Corridor::kEntrance});
+  const std::vector<BatteryUse> uses = on_site.visit(stations, corridor.chain()).batteries;
+  ASSERT_EQ(uses.size(), 2u);
+  EXPECT_EQ(uses[0].instrument, "Mine");
+  EXPECT_EQ(uses[0].scans, 6u);
+  EXPECT_EQ(uses[0].batteries, 3u);
+  EXPECT_EQ(uses[1].instrument, "Yours");
+  EXPECT_EQ(uses[1].scans, 2u);
+  EXPECT_NEAR(uses[1].on_min, 3 * 3 + 2 * 4.5 / 0.5 / 60, 0.1) << "carried while the other one scans";
+  EXPECT_EQ(uses[1].batteries, 2u);
+}
+
 TEST(Sessions, AreCutWhereLinksAllowItAndTellWhereTheyDoNot) {
   const Corridor corridor;
   // Five would fit a day, but the corridor falls apart after the third station.

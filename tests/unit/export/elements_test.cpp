@@ -105,7 +105,7 @@ TEST(Elements, AreATable) {
   write_elements_csv(folder / "elements.csv", elements);
   EXPECT_EQ(test::content(folder / "elements.csv"),
             "name,class,global_id,area_m2,voxels,captured,incidence,point_distance_mm,deviation_mm\n"
-            "\"'=wall, \"\"A\"\"\",,,2.500,40,0.5124,31.3,12.3,1.26\n"
+            "\"'=wall, \"\"A\"\"\",,,2.500,40,0.5124,31.3,12.3,1.3\n"
             "IfcDoor,IfcDoor,,1.000,0,,,,\n");
 }
 

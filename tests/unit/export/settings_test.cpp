@@ -76,6 +76,8 @@ const std::vector<Change<Scanner>> kScanner{
     {"max_range_m", [](Scanner& s) { s.max_range_m = 99; }},
     {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }},
     {"points_per_second", [](Scanner& s) { s.points_per_second = 2e6; }},
+    {"battery_min", [](Scanner& s) { s.battery_min = 90; }, false},
+    {"battery_scans", [](Scanner& s) { s.battery_scans = 40; }, false},
     {"beam_divergence", [](Scanner& s) { s.beam_divergence = Angle::radians(3e-4); }},
     {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }},
     {"detection_range_m", [](Scanner& s) { s.detection_range_m = 80; }},
@@ -84,7 +86,7 @@ const std::vector<Change<Scanner>> kScanner{
     {"range_accuracy_ppm", [](Scanner& s) { s.range_accuracy_ppm = 10; }},
     {"tilt_accuracy", [](Scanner& s) { s.tilt_accuracy = Angle::degrees(0.05); }, false},  // the registration's decides
     {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
-static_assert(member_count<Scanner>() == 23);
+static_assert(member_count<Scanner>() == 25);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{

@@ -91,6 +91,11 @@ TEST(Summary, JudgesTheRegistrationAndSaysWhereItMisses) {
   EXPECT_EQ(told(2),
             "to about 2.0 mm, as predicted (random 0.4 mm, the rest by what a calibration leaves), with 1 target that "
             "ties scans together (20.0 mm without); LOA30 (15 mm at 95 %) is met with 11.1 mm to spare");
+  network.calibration = "18″, 1 mm and 10 ppm";
+  EXPECT_TRUE(
+      told(2).starts_with("to about 2.0 mm, as predicted (random 0.4 mm, the rest by what a calibration leaves: "
+                          "18″, 1 mm and 10 ppm), with "))
+      << told(2);
   EXPECT_EQ(std::ranges::count(summary_lines(network), "to check", &SummaryLine::heading), 1);
   network.targets.clear(), network.without_targets_m.reset();
   network.registration->rms_m = network.registration->random_m = 0.00004;
@@ -112,6 +117,38 @@ TEST(Summary, TellsWhatTheScansHoldInAFewDigits) {
     const std::string told = summary_text(network);
     EXPECT_NE(told.find(std::string("\ndata       about ") + text + " as LAS\n"), std::string::npos) << told;
   }
+}
+
+TEST(Summary, TellsBatteriesIfItIsKnownHowLongTheyLast) {
+  Evaluation network = seven_stations();
+  Visit& visit = network.visit.emplace();
+  EXPECT_EQ(summary_text(network).find("batteries"), std::string::npos);
+  const BatteryUse use{
+      .instrument = "Mine", .battery_min = 120, .on_min = 390, .scans = 63, .batteries = 4, .in_a_day = 4};
+  const auto told = [&](const std::string& text) {
+    const std::string summary = summary_text(network);
+    EXPECT_NE(summary.find("batteries  " + text + "\n"), std::string::npos) << summary;
+  };
+  visit.batteries = {use};
+  told("4 of 2 h each, for 6 h 30 min with the scanner on");
+  visit.batteries[0].battery_min = 0, visit.batteries[0].battery_scans = 40;
+  told("4 of 40 scans each, for 63 scans");
+  visit.batteries[0].battery_min = 90;
+  told("4 of 1 h 30 min or 40 scans each, for 6 h 30 min with the scanner on and 63 scans");
+  visit.batteries = {use, use};
+  visit.batteries[1].instrument = "Yours";
+  told(
+      "Mine: 4 of 2 h each, for 6 h 30 min with the scanner on\n           Yours: 4 of 2 h each, for 6 h 30 min with "
+      "the scanner on");
+
+  visit.day_min = 480;
+  for (const std::size_t k : {0, 1, 2}) {
+    Session one;
+    one.day = k / 2 + 1, one.crew = k % 2 + 1, one.order = {2 * k, 2 * k + 1}, one.batteries = {use};
+    one.batteries[0].batteries = k + 1;
+    visit.sessions.push_back(one);
+  }
+  told("at most 3 a session and 3 a day, 6 in all, of 2 h each, for 19 h 30 min with the scanner on");
 }
 
 TEST(Summary, TellsSessionsAndWhereNoLinkHoldsThem) {

@@ -312,6 +312,10 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
     EXPECT_TRUE(find(sheet, "1.") && find(sheet, std::to_string(sessions[s].order.size()) + ".")) << "its own stops";
   }
   EXPECT_TRUE(std::ranges::any_of(sheets, [&](const auto& sheet) { return has(sheet, {"Sessions", "Walking"}); }));
+  const auto told = [&](const std::vector<std::vector<Word>>& all, const std::vector<std::string>& words) {
+    return std::ranges::count_if(all, [&](const auto& sheet) { return has(sheet, words); });
+  };
+  EXPECT_EQ(told(sheets, {"Batteries"}), 0) << "it is not known how long they last";
 
   const auto visit = report_json(report_of(found, survey.site, {}))["networks"][0]["visit"];
   ASSERT_EQ(visit["sessions"].size(), 3u);
@@ -319,7 +323,50 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     EXPECT_EQ(visit["sessions"][s]["order"].size(), sessions[s].order.size());
     EXPECT_EQ(visit["sessions"][s]["ways"].size(), sessions[s].paths.size());
+    EXPECT_EQ(visit["sessions"][s]["batteries"], "");
   }
+
+  Evaluation powered = found;
+  for (Session& session : powered.visit->sessions)
+    session.batteries = {{.instrument = "Mine", .battery_scans = 3, .scans = 4, .batteries = 2, .in_a_day = 2}};
+  write_report(folder / "powered.pdf", powered, survey.site, {});
+  const auto with = words_of(folder / "powered.pdf", folder / "words.html");
+  EXPECT_EQ(told(with, {"Sessions", "Batteries"}), 1) << "in their table";
+  EXPECT_GE(told(with, {"charged", "batteries:", "2"}), 1) << "and over each session's stations";
+  EXPECT_EQ(report_json(report_of(powered, survey.site, {}))["networks"][0]["visit"]["sessions"][1]["batteries"], "2");
+
+  // Where hours keep stations out of all sessions, times are those of the others.
+  Evaluation fewer = found;
+  fewer.visit->sessions.pop_back();
+  const Report of_fewer = report_of(fewer, survey.site, {});
+  const auto in_all = std::ranges::find(of_fewer.facts, "in all", &std::pair<std::string, std::string>::first);
+  ASSERT_NE(in_all, of_fewer.facts.end());
+  const double scanned = sessions[0].scan_min + sessions[1].scan_min, set_up = 8 * 3;
+  EXPECT_TRUE(in_all->second.starts_with("scans " + minutes_text(scanned) + ", setting up " + minutes_text(set_up)))
+      << in_all->second;
+}
+
+TEST(Report, ListsElementsWithMostUncapturedSurfaceFirst) {
+  Survey survey;
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {-2, 0, 0.3}, .ground = {-2, 0, -1.5}}};
+  const Evaluation found = survey.site.evaluate(stations, {});
+  const std::vector<ElementShare> elements{{.name = "small", .area_m2 = 1, .voxels = 9, .captured = 0.1},
+                                           {.name = "not surveyed", .area_m2 = 100},
+                                           {.name = "large",
+                                            .area_m2 = 50,
+                                            .voxels = 400,
+                                            .captured = 0.9,
+                                            .incidence = Angle::degrees(31),
+                                            .point_distance_m = 0.0123,
+                                            .deviation_m = 0.0012}};
+  const auto table = report_json(report_of(found, survey.site, {.elements = elements}))["elements"];
+  EXPECT_EQ(table["all"], 2);
+  ASSERT_EQ(table["rows"].size(), 2u);
+  EXPECT_EQ(table["rows"][0]["name"], "large");
+  EXPECT_NEAR(table["rows"][0]["point_distance_mm"].get<double>(), 12.3, 1e-9);
+  EXPECT_NEAR(table["rows"][0]["deviation_mm"].get<double>(), 1.2, 1e-9);
+  EXPECT_TRUE(table["rows"][1]["incidence"].is_null());
+  EXPECT_EQ(report_json(report_of(found, survey.site, {}))["elements"]["rows"].size(), 0u);
 }
 
 TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {

@@ -249,6 +249,26 @@ TEST(Presets, EveryFigureHasASource) {
   }
 }
 
+TEST(Presets, TellHowLongABatteryLastsIfTheFileStatesIt) {
+  std::ifstream in(presets);
+  auto document = nlohmann::json::parse(in);
+  auto& mine = document["scanners"]["mine"] = document["scanners"]["rtc360"];
+  mine.erase("battery");
+  const test::TemporaryFolder folder;
+  const auto load = [&] {
+    std::ofstream(folder / "scanners.json") << document;
+    return load_scanner("mine", folder / "scanners.json");
+  };
+  EXPECT_EQ(load().battery_min, 0);
+  EXPECT_EQ(load().battery_scans, 0);
+  mine["battery"] = {{"minutes", 90}, {"source", "assumed"}, {"note", "an old one"}};
+  EXPECT_EQ(load().battery_min, 90);
+  EXPECT_EQ(load().battery_scans, 0);
+  mine["battery"]["scans"] = 40;
+  EXPECT_EQ(load().battery_min, 90);
+  EXPECT_EQ(load().battery_scans, 40);
+}
+
 TEST(Presets, BrokenFilesSayWhere) {
   std::ifstream in(presets);
   const auto good = nlohmann::json::parse(in);
@@ -277,6 +297,18 @@ TEST(Presets, BrokenFilesSayWhere) {
       {"noise_factor / value: must be above 0",
        [](auto& d) {
          d["scanners"]["rtc360"]["settings"]["6mm"]["noise_factor"] = {{"value", 0}, {"source", "assumed"}};
+       }},
+      {"battery: needs minutes or scans",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["battery"] = {{"source", "assumed"}};
+       }},
+      {"battery: \"source\" is missing",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["battery"] = {{"minutes", 90}};
+       }},
+      {"battery_min is 0.5, but must be 0",
+       [](auto& d) {
+         d["scanners"]["rtc360"]["battery"] = {{"minutes", 0.5}, {"source", "assumed"}};
        }},
       {"leave out \"vertical_angle_deg\"",
        [](auto& d) {

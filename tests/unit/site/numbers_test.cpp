@@ -194,6 +194,10 @@ TEST(Bounds, OfTheProgramHoldForMembersToo) {
        {"spacing", [](SiteOptions& o, double v) { o.spacing_m = v; }},
        {"user-size", [](SiteOptions& o, double v) { o.user_size_m = v; }},
        {"rate", [](SiteOptions& o, double v) { o.points_per_second = v; }},
+       {"battery",
+        [](SiteOptions& o, double v) {
+          o.battery = {90, v};
+        }},
        {"headroom", [](SiteOptions& o, double v) { o.headroom_m = v; }},
        {"min-area", [](SiteOptions& o, double v) { o.min_area_m2 = v; }},
        {"climb", [](SiteOptions& o, double v) { o.climb_m = v; }},

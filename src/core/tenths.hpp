@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Millimetres of a prediction, whose hundredths mean nothing.
+#pragma once
+
+#include <string>
+
+#include "core/text.hpp"
+
+namespace vantage {
+
+inline constexpr double kLeastTenth = 0.05;  // millimetres
+
+// "0.4", "less than 0.1".
+inline std::string tenths(double mm) { return mm < kLeastTenth ? "less than 0.1" : fixed(mm, 1); }
+
+}  // namespace vantage
