@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,6 +11,9 @@
 #include "core/site_reach.hpp"
 #include "core/text.hpp"
 #include "scene/scene_data.hpp"
+#include "shared/own_ray_types.h"
+#include "trace/embree/embree_tracer.hpp"
+#include "trace/rays/ray_batches.hpp"
 #include "trace/rays/sheared_ray.hpp"
 #include "trace/rays/widened_tree.hpp"
 #include "vantage/error.hpp"
@@ -19,7 +23,10 @@ namespace vantage {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
+constexpr std::uint32_t kNoTriangle = no_primitive;
+// A ray that enters the scene further away than so many of its sizes is the processor's: roundings of the way there, in
+// double precision, are less than a device allows for up to here.
+constexpr double kFarthestEntry = 0x1p18;
 // Rays between two reports of progress, and of one task.
 constexpr std::size_t kAtOnce = std::size_t{1} << 18, kGrain = 256;
 
@@ -148,58 +155,110 @@ Vec3 normal_of(const SceneData& scene, const NearestQuery& found, const Vec3& un
 }  // namespace
 
 struct RayTracer::Impl {
-  explicit Impl(const Scene& of) : scene(of), tree(share(of)) {}
+  Impl(const Scene& of, const DeviceChoice& device)
+      : scene(of), data(share(of)), tree(data), batches([shared = data, device] {
+          return shared->triangle_count() > 0 ? make_ray_finder(device, shared) : nullptr;
+        }) {}
 
   static std::shared_ptr<const SceneData> share(const Scene& scene) {
     const auto kept = std::make_shared<const Scene>(scene);
     return {kept, &kept->data()};
   }
 
-  // Calls trace(k, ray, end) for each ray in parallel; `end`: of the triangles that count. False if stopped.
+  // Calls trace(k, ray, end, answer) for each ray in parallel; `end`: of the triangles that count; `answer`: the
+  // device's, or open_answer. False if stopped.
   template <class Trace>
   bool for_each(const Rays& rays, std::size_t n, const RayOptions& options, const Progress& progress,
-                const Trace& trace) const {
-    const SceneData& data = scene.data();
-    const std::uint32_t end = options.glass ? data.triangle_count() : data.opaque_count();
+                RayQuestion question, const Trace& trace) const {
+    const std::uint32_t end = options.glass ? data->triangle_count() : data->opaque_count();
+    const auto ray_at = [&](std::size_t k) {
+      return LocalRay{one_of(rays.origins, k) - data->origin, unit_of(one_of(rays.directions, k)), options.from_m,
+                      rays.ranges_m.empty() ? kInfinity : one_of(rays.ranges_m, k)};
+    };
+    const auto in_parallel = [](std::size_t first, std::size_t last, const auto& each) {
+      parallel::for_all(tbb::blocked_range<std::size_t>(first, last, kGrain), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) each(k);
+      });
+    };
+    if (batches.on_device())
+      return batches.run(n,
+                         {question, end,
+                          [&](std::size_t first, std::span<OwnRay> to) {
+                            in_parallel(0, to.size(), [&](std::size_t k) { to[k] = own_ray(ray_at(first + k)); });
+                          },
+                          [&](std::size_t first, std::span<const std::uint32_t> answers) {
+                            in_parallel(0, answers.size(),
+                                        [&](std::size_t k) { trace(first + k, ray_at(first + k), end, answers[k]); });
+                          }},
+                         progress);
     for (std::size_t first = 0; first < n; first += kAtOnce) {
       if (progress.stopped()) return false;
       const std::size_t last = std::min(n, first + kAtOnce);
-      parallel::for_all(tbb::blocked_range<std::size_t>(first, last, kGrain), [&](const auto& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k)
-          trace(k,
-                LocalRay{one_of(rays.origins, k) - data.origin, unit_of(one_of(rays.directions, k)), options.from_m,
-                         rays.ranges_m.empty() ? kInfinity : one_of(rays.ranges_m, k)},
-                end);
-      });
+      in_parallel(first, last, [&](std::size_t k) { trace(k, ray_at(k), end, open_answer); });
       progress(static_cast<double>(last) / static_cast<double>(n));
     }
     return !progress.stopped();
   }
 
+  // As a device takes it: from where it enters the scene. Limits that lie outside the scene are none, so that no
+  // rounding makes hits at its ends doubtful.
+  OwnRay own_ray(const LocalRay& ray) const {
+    OwnRay own{.origin = {}, .from = 0, .direction = {}, .range = own_ray_misses};
+    const auto way = ray.from < ray.range ? tree.way_of(ray.origin, ray.unit, ray.from, ray.range) : std::nullopt;
+    if (!way) return own;
+    if (way->begin > kFarthestEntry * tree.size()) {
+      own.range = own_ray_open;
+      return own;
+    }
+    const Float3 at = narrow(ray.origin + ray.unit * way->begin), unit = narrow(ray.unit);
+    own.origin = {at.x, at.y, at.z};
+    own.direction = {unit.x, unit.y, unit.z};
+    own.from = way->begin > ray.from ? -std::numeric_limits<float>::infinity() : 0;
+    own.range =
+        way->end < ray.range ? std::numeric_limits<float>::infinity() : static_cast<float>(ray.range - way->begin);
+    return own;
+  }
+
   template <class Query>
   Query run(const LocalRay& ray, std::uint32_t end) const {
-    Query query(scene.data(), ray, end);
+    Query query(*data, ray, end);
     if (ray.from < ray.range) tree.run(ray.origin, ray.unit, ray.from, ray.range, query);
     return query;
   }
 
+  // The nearest hit, which a device may have found already.
+  NearestQuery nearest(const LocalRay& ray, std::uint32_t end, std::uint32_t answer) const {
+    if (answer != open_answer) {
+      NearestQuery known(*data, ray, end);
+      if (answer != kNoTriangle) known.take(answer);
+      if (known.triangle == answer) return known;
+      assert(false);  // a device is sure of what it answers
+    }
+    return run<NearestQuery>(ray, end);
+  }
+
   std::size_t checked(const Rays& rays, const RayOptions& options) const {
     const std::size_t n = number_of(rays);
-    check(rays, options, scene.data().origin);
+    check(rays, options, data->origin);
     return n;
   }
 
   Scene scene;
+  std::shared_ptr<const SceneData> data;
   WidenedTree tree;
+  mutable RayBatches batches;
+  EngineInfo engine = batches.on_device() ? batches.info() : embree_engine_info();
 };
 
-RayTracer::RayTracer(const Scene& scene) : impl_(std::make_shared<const Impl>(scene)) {}
+RayTracer::RayTracer(const Scene& scene, const DeviceChoice& device)
+    : impl_(std::make_shared<const Impl>(scene, device)) {}
 
 const Scene& RayTracer::scene() const noexcept { return impl_->scene; }
+const EngineInfo& RayTracer::engine() const noexcept { return impl_->engine; }
 
 RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Progress& progress) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const SceneData& data = impl_->scene.data();
+  const SceneData& data = *impl_->data;
   const std::size_t n = impl_->checked(rays, options);
   RayHits hits;
   hits.range_m.assign(n, kInfinity);
@@ -209,22 +268,23 @@ RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Pr
   hits.diffuse.resize(n);
   hits.mesh.assign(n, -1);
   hits.primitive.assign(n, kNoTriangle);
-  const bool whole =
-      impl_->for_each(rays, n, options, progress, [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
-        const NearestQuery found = impl_->run<NearestQuery>(ray, end);
-        if (found.triangle == kNoTriangle) return;
-        const std::uint32_t mesh = data.mesh_of(found.triangle);
-        const Vec3 normal = normal_of(data, found, ray.unit);
-        const double diffuse = data.meshes[mesh].diffuse;
-        hits.range_m[k] = found.hit.t;
-        hits.position[k] = one_of(rays.origins, k) + ray.unit * found.hit.t;
-        const Float3 narrowed = narrow(normal);
-        hits.normal[k] = {narrowed.x, narrowed.y, narrowed.z};
-        hits.reflectivity[k] = static_cast<float>(std::clamp(-diffuse * dot(normal, ray.unit), 0.0, 1.0));
-        hits.diffuse[k] = static_cast<float>(diffuse);
-        hits.mesh[k] = static_cast<std::int32_t>(mesh);
-        hits.primitive[k] = found.triangle;
-      });
+  const bool whole = impl_->for_each(rays, n, options, progress, RayQuestion::nearest,
+                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end, std::uint32_t answer) {
+                                       const NearestQuery found = impl_->nearest(ray, end, answer);
+                                       if (found.triangle == kNoTriangle) return;
+                                       const std::uint32_t mesh = data.mesh_of(found.triangle);
+                                       const Vec3 normal = normal_of(data, found, ray.unit);
+                                       const double diffuse = data.meshes[mesh].diffuse;
+                                       hits.range_m[k] = found.hit.t;
+                                       hits.position[k] = one_of(rays.origins, k) + ray.unit * found.hit.t;
+                                       const Float3 narrowed = narrow(normal);
+                                       hits.normal[k] = {narrowed.x, narrowed.y, narrowed.z};
+                                       hits.reflectivity[k] =
+                                           static_cast<float>(std::clamp(-diffuse * dot(normal, ray.unit), 0.0, 1.0));
+                                       hits.diffuse[k] = static_cast<float>(diffuse);
+                                       hits.mesh[k] = static_cast<std::int32_t>(mesh);
+                                       hits.primitive[k] = found.triangle;
+                                     });
   if (!whole) return {};
   return hits;
 }
@@ -232,10 +292,11 @@ RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Pr
 std::vector<std::uint8_t> RayTracer::blocked(const Rays& rays, const RayOptions& options,
                                              const Progress& progress) const {
   std::vector<std::uint8_t> blocked(impl_->checked(rays, options));
-  const bool whole = impl_->for_each(rays, blocked.size(), options, progress,
-                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
-                                       blocked[k] = impl_->run<BlockedQuery>(ray, end).found;
-                                     });
+  const bool whole =
+      impl_->for_each(rays, blocked.size(), options, progress, RayQuestion::blocked,
+                      [&](std::size_t k, const LocalRay& ray, std::uint32_t end, std::uint32_t answer) {
+                        blocked[k] = answer == open_answer ? impl_->run<BlockedQuery>(ray, end).found : answer != 0;
+                      });
   if (!whole) return {};
   return blocked;
 }
@@ -243,9 +304,10 @@ std::vector<std::uint8_t> RayTracer::blocked(const Rays& rays, const RayOptions&
 std::vector<std::uint32_t> RayTracer::count(const Rays& rays, const RayOptions& options,
                                             const Progress& progress) const {
   std::vector<std::uint32_t> counts(impl_->checked(rays, options));
-  const bool whole = impl_->for_each(rays, counts.size(), options, progress,
-                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end) {
-                                       counts[k] = impl_->run<CountQuery>(ray, end).count;
+  const bool whole = impl_->for_each(rays, counts.size(), options, progress, RayQuestion::count,
+                                     [&](std::size_t k, const LocalRay& ray, std::uint32_t end, std::uint32_t answer) {
+                                       counts[k] =
+                                           answer == open_answer ? impl_->run<CountQuery>(ray, end).count : answer;
                                      });
   if (!whole) return {};
   return counts;
