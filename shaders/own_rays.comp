@@ -21,7 +21,7 @@ struct Found {
 
 // Adds what is known of one more triangle. Returns whether nothing else can change the answer.
 bool take(inout Found found, OwnRay ray, Crossing met, uint triangle) {
-  if (!met.possible || !(met.far > ray.from && met.near <= ray.range)) return false;
+  if (!met.possible || met.far <= ray.from || met.near > ray.range) return false;
   const bool sure = met.sure && met.near > ray.from && met.far <= ray.range;
   if (question == own_rays_nearest) {
     if (sure && met.far < found.far) {

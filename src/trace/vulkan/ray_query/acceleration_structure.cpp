@@ -47,8 +47,8 @@ std::vector<double> widenings_of(const TraversalScene& scene) {
   std::vector<double> doubts(widenings.size());
   for (const MeshPlacement& place : scene.placed.placements) {
     const glm::dvec3 at = place.origin();
-    doubts[place.mesh] = std::max(
-        doubts[place.mesh], 2 * double{bvh_placement(place, 0).doubt} * std::max(size, largest_of({at.x, at.y, at.z})));
+    doubts[place.mesh] = std::max(doubts[place.mesh], 2 * double{bvh_placement(place, 0).doubt} *
+                                                          std::max(size, largest_of(Vec3{at.x, at.y, at.z})));
   }
   std::ranges::transform(widenings, doubts, widenings.begin(), std::plus());
   return widenings;
