@@ -51,10 +51,11 @@ std::vector<Vec3> directions_of(const RayPattern& pattern, Order order) {
 
 // All rays through a finder; counts those that it leaves open.
 std::size_t open_of(RayFinder& finder, const Vec3& origin, std::span<const Vec3> directions, const RayPattern& pattern,
-                    RayQuestion question, std::uint32_t end) {
+                    RayQuestion question, std::uint32_t end, std::size_t batch) {
   std::size_t open = 0;
-  for (std::size_t first = 0; first < directions.size(); first += finder.most_rays()) {
-    const std::size_t count = std::min(finder.most_rays(), directions.size() - first);
+  if (batch == 0) batch = finder.most_rays();
+  for (std::size_t first = 0; first < directions.size(); first += batch) {
+    const std::size_t count = std::min(batch, directions.size() - first);
     finder.reserve(count);
     const std::span<OwnRay> rays = finder.rays(0);
     parallel::for_all(std::size_t{0}, count, [&](std::size_t k) {
@@ -83,6 +84,8 @@ struct Line {
 void OwnRaysOptions::add(CLI::App& command) {
   site.add(command);
   command.add_option("--most", most, "Most rays of a whole call")->capture_default_str();
+  command.add_option("--batch", batch, "Rays that a device alone has at once; 0: as many as in whole calls")
+      ->capture_default_str();
 }
 
 void run_own_rays(const OwnRaysOptions& options) {
@@ -109,16 +112,17 @@ void run_own_rays(const OwnRaysOptions& options) {
     own.push_back(std::make_unique<RayTracer>(scene, device));
     for (std::size_t k = 0; k < kOrders.size(); ++k)
       for (const auto& [question, what] : kQuestions)
-        ways.emplace_back(Line{name, std::string("whole ") + what, kOrders[k].second, some},
-                          [&, question = question, tracer = own.back().get(), k](Line& line) {
-                            const Rays given{{&origin, 1}, std::span(directions[k]).first(some), {&range, 1}};
-                            const RayOptions from{.from_m = pattern.min_range};
-                            const Stopwatch watch;
-                            if (question == RayQuestion::nearest) tracer->nearest(given, from);
-                            if (question == RayQuestion::blocked) tracer->blocked(given, from);
-                            if (question == RayQuestion::count) tracer->count(given, from);
-                            line.best = std::min(line.best, watch.seconds());
-                          });
+        ways.emplace_back(
+            Line{name, std::string("whole ") + what, kOrders[k].second, some},
+            [&, question = question, tracer = own.back().get(), k](Line& line) {
+              const Rays given{{&origin, 1}, std::span(directions[k]).subspan((rays - some) / 2, some), {&range, 1}};
+              const RayOptions from{.from_m = pattern.min_range};
+              const Stopwatch watch;
+              if (question == RayQuestion::nearest) tracer->nearest(given, from);
+              if (question == RayQuestion::blocked) tracer->blocked(given, from);
+              if (question == RayQuestion::count) tracer->count(given, from);
+              line.best = std::min(line.best, watch.seconds());
+            });
     if (!on_device) continue;
     tracers.push_back(make_tracer(info.engine, info.device_index, site.scene));
     tracers.back()->set_goal_density(site.goal_density);
@@ -132,8 +136,8 @@ void run_own_rays(const OwnRaysOptions& options) {
         ways.emplace_back(Line{name, std::string("device ") + what, kOrders[k].second, rays},
                           [&, question = question, finder = finders.back().get(), k](Line& line) {
                             const double before = finder->device_seconds();
-                            const std::size_t open =
-                                open_of(*finder, local, directions[k], pattern, question, data->opaque_count());
+                            const std::size_t open = open_of(*finder, local, directions[k], pattern, question,
+                                                             data->opaque_count(), options.batch);
                             line.best = std::min(line.best, finder->device_seconds() - before);
                             line.open = static_cast<double>(open) / static_cast<double>(rays);
                           });

@@ -11,6 +11,7 @@ namespace vantage::bench {
 struct OwnRaysOptions {
   SiteOptions site;
   std::size_t most = std::size_t{1} << 24;  // rays of a whole call
+  std::size_t batch = 0;                    // rays that a device alone has at once; 0: as many as in whole calls
 
   void add(CLI::App& command);
 };

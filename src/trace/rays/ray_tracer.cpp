@@ -55,18 +55,33 @@ std::size_t number_of(const Rays& rays) {
   return n;
 }
 
+// The first of the values that is not good, or their number.
+template <class T, class Good>
+std::size_t first_bad(std::span<const T> values, const Good& good) {
+  return parallel::reduce(
+      tbb::blocked_range<std::size_t>(0, values.size(), kGrain * kGrain), values.size(),
+      [&](const auto& range, std::size_t first) {
+        for (std::size_t k = range.begin(); k < std::min(range.end(), first); ++k)
+          if (!good(values[k])) return k;
+        return first;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+}
+
 void check(const Rays& rays, const RayOptions& options, const Vec3& origin) {
-  for (std::size_t k = 0; k < rays.origins.size(); ++k)
-    if (!in_reach(rays.origins[k], origin)) refuse_position(rays.origins[k], "rays: the origin in " + row(k) + "is");
-  for (std::size_t k = 0; k < rays.directions.size(); ++k) {
+  std::size_t k = first_bad(rays.origins, [&](const Vec3& from) { return in_reach(from, origin); });
+  if (k < rays.origins.size()) refuse_position(rays.origins[k], "rays: the origin in " + row(k) + "is");
+  k = first_bad(rays.directions, [](const Vec3& d) {
+    return std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z) && !(d == Vec3{});
+  });
+  if (k < rays.directions.size()) {
     const Vec3& d = rays.directions[k];
-    if (!(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z)) || d == Vec3{})
-      refuse("the direction in " + row(k) + "is (" + number(d.x) + ", " + number(d.y) + ", " + number(d.z) +
-             "); a direction must be finite and longer than 0");
+    refuse("the direction in " + row(k) + "is (" + number(d.x) + ", " + number(d.y) + ", " + number(d.z) +
+           "); a direction must be finite and longer than 0");
   }
-  for (std::size_t k = 0; k < rays.ranges_m.size(); ++k)
-    if (!(rays.ranges_m[k] > 0))
-      refuse("the range in " + row(k) + "is " + number(rays.ranges_m[k]) + " m; a range must be above 0");
+  k = first_bad(rays.ranges_m, [](double range) { return range > 0; });
+  if (k < rays.ranges_m.size())
+    refuse("the range in " + row(k) + "is " + number(rays.ranges_m[k]) + " m; a range must be above 0");
   if (!(options.from_m >= 0 && std::isfinite(options.from_m)))
     refuse("hits count from " + number(options.from_m) + " m on; that must be finite and 0 or more");
 }
@@ -74,6 +89,12 @@ void check(const Rays& rays, const RayOptions& options, const Vec3& origin) {
 // Returns the unit vector along a direction, whose components may be as small or as large as doubles are.
 Vec3 unit_of(const Vec3& direction) {
   const double most = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  // Scaling by a power of 2 changes no bit of the result unless it keeps squares and quotients within range.
+  const auto usual = [](double part) { return part == 0 || std::abs(part) > 0x1p-300; };
+  if (most < 0x1p300 && usual(direction.x) && usual(direction.y) && usual(direction.z)) {
+    const double length = std::sqrt(dot(direction, direction));
+    return {direction.x / length, direction.y / length, direction.z / length};
+  }
   int exponent = 0;
   std::frexp(most, &exponent);
   const Vec3 scaled{std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent),
@@ -261,13 +282,14 @@ RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Pr
   const SceneData& data = *impl_->data;
   const std::size_t n = impl_->checked(rays, options);
   RayHits hits;
-  hits.range_m.assign(n, kInfinity);
-  hits.position.assign(n, {nan, nan, nan});
-  hits.normal.resize(n);
-  hits.reflectivity.resize(n);
-  hits.diffuse.resize(n);
-  hits.mesh.assign(n, -1);
-  hits.primitive.assign(n, kNoTriangle);
+  // Side by side, since what takes time is memory that nobody has touched before.
+  tbb::task_group arrays;
+  arrays.run([&] { hits.position.assign(n, {nan, nan, nan}); });
+  arrays.run([&] { hits.normal.resize(n); });
+  arrays.run([&] { hits.range_m.assign(n, kInfinity); });
+  arrays.run([&] { hits.reflectivity.resize(n), hits.diffuse.resize(n); });
+  arrays.run([&] { hits.mesh.assign(n, -1), hits.primitive.assign(n, kNoTriangle); });
+  parallel::wait(arrays);
   const bool whole = impl_->for_each(rays, n, options, progress, RayQuestion::nearest,
                                      [&](std::size_t k, const LocalRay& ray, std::uint32_t end, std::uint32_t answer) {
                                        const NearestQuery found = impl_->nearest(ray, end, answer);

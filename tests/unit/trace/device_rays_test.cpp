@@ -254,13 +254,17 @@ TEST(DeviceRays, DevicesDecideMostRays) {
     for (const auto& [question, most] :
          {std::pair{RayQuestion::nearest, 0.005}, {RayQuestion::blocked, 0.005}, {RayQuestion::count, 0.01}}) {
       finder->find(1, many, question, data->triangle_count());
-      std::size_t open = 0;
+      std::size_t open = 0, wrong = 0;
       for (std::size_t k = 0; k < many; ++k) {
         const std::uint32_t answer = finder->answers(1)[k];
-        if (k % 10 == 0) ASSERT_EQ(answer, question == RayQuestion::nearest ? no_primitive : 0);
-        if (k % 10 == 1) ASSERT_EQ(answer, open_answer);
-        open += k % 10 > 1 && answer == open_answer;
+        if (k % 10 == 0)
+          wrong += answer != (question == RayQuestion::nearest ? no_primitive : 0);
+        else if (k % 10 == 1)
+          wrong += answer != open_answer;
+        else
+          open += answer == open_answer;
       }
+      EXPECT_EQ(wrong, 0u);
       EXPECT_LT(static_cast<double>(open), most * many);
       EXPECT_GT(open, 0u);
     }
@@ -287,9 +291,9 @@ TEST(DeviceRays, NoRaysOneRayAndManyBatches) {
     EXPECT_GT(expect_same(processor, device, {{&origin, 1}, given.directions, {&range, 1}}, {}), 1000u);
     EXPECT_GT(expect_same(processor, device, given.rays(), {}), 1000u);
     std::vector<double> told;
-    const Progress progress{.report = [&](double done) { told.push_back(done); }};
+    const Progress progress{.report = [&](double done) { told.push_back(done); }, .stop = {}};
     EXPECT_EQ(device.count(given.rays(), {}, progress).size(), given.origins.size());
-    EXPECT_GT(told.size(), 2u);
+    EXPECT_GT(told.size(), info.software ? 2u : 0u);  // graphics cards take more at once
     EXPECT_TRUE(std::ranges::is_sorted(told));
     EXPECT_EQ(told.back(), 1);
     std::stop_source stop;
@@ -328,7 +332,7 @@ TEST(DeviceRays, ErrorsAreThoseOfTheProcessor) {
     const Vec3 origin{}, along{1, 0, 0};
     const Rays rays{{&origin, 1}, {&along, 1}};
     const auto again = [&](double) { device.blocked(rays); };
-    EXPECT_NE(refusal_of(Errc::invalid_argument, [&] { device.nearest(rays, {}, {.report = again}); }), "");
+    EXPECT_NE(refusal_of(Errc::invalid_argument, [&] { device.nearest(rays, {}, {.report = again, .stop = {}}); }), "");
     EXPECT_EQ(device.blocked(rays).size(), 1u);
     EXPECT_NE(refusal_of(Errc::no_suitable_device, [&] { RayTracer(scene, {info.engine, 99}); }), "");
   }
