@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces rays that belong to no scanner: own_rays SCENE X Y Z
+// Traces rays that belong to no scanner: own_rays SCENE X Y Z [ENGINE]
 //
 // Looks around from a point with 100 000 rays, says what is nearest and how open the place is, and which of a line of
 // points it sees.
@@ -26,11 +26,12 @@ std::vector<Vec3> all_around(std::size_t many) {
 }
 
 int main(int argc, char** argv) try {
-  if (argc != 5) return std::fprintf(stderr, "usage: own_rays SCENE X Y Z\n"), 2;
+  if (argc != 5 && argc != 6) return std::fprintf(stderr, "usage: own_rays SCENE X Y Z [ENGINE]\n"), 2;
   const Scene scene = Scene::load(argv[1]);
   const Vec3 eye{std::atof(argv[2]), std::atof(argv[3]), std::atof(argv[4])};
 
-  const RayTracer tracer(scene);
+  // "auto" is the best graphics card, if there is one. The answers are the same.
+  const RayTracer tracer(scene, {argc == 6 ? engine_from_string(argv[5]) : Engine::embree});
   const std::vector<Vec3> directions = all_around(100'000);
   const RayHits hits = tracer.nearest({.origins = {&eye, 1}, .directions = directions});
 

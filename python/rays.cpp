@@ -87,21 +87,25 @@ void add_rays(py::module_& m) {
   add_hits(m);
   py::class_<RayTracer> tracer(
       m, "RayTracer",
-      "Traces rays of any origins and directions in a scene: on the processor, in double precision, whichever engine a "
-      "Simulator\nhas. Any number of rays a call; other Python threads run meanwhile.\n\norigins, directions: arrays "
-      "of "
-      "(n, 3), or one row for all rays; survey frame, metres; directions of any finite length\nabove 0. ranges_m: "
-      "farthest hit that counts, a number or (n,); None: any. from_m: only hits further than this count.\nglass: it "
-      "stops rays, which otherwise pass it as those of a scan do. progress as in `Simulator`; arrays are empty if "
-      "it\nstopped the call.\nRaises Error invalid_argument, with the row, for values that are not finite or out of "
-      "reach.");
+      "Traces rays of any origins and directions in a scene, in double precision: on the processor, or on a graphics "
+      "card by the\nengine 'compute_bvh' or 'ray_query' ('auto': on the best one, if there is any). Every engine gives "
+      "the same answers, to the\nbit. A graphics card leaves to the processor what float arithmetic cannot decide: rays "
+      "that pass an edge or end at a surface.\nAny number of rays a call; other Python threads run meanwhile.\n\n"
+      "origins, directions: arrays of (n, 3), or one row for all rays; survey frame, metres; directions of any finite "
+      "length\nabove 0. ranges_m: farthest hit that counts, a number or (n,); None: any. from_m: only hits further than "
+      "this count.\nglass: it stops rays, which otherwise pass it as those of a scan do. progress as in `Simulator`; "
+      "arrays are empty if it\nstopped the call, and on a graphics card it must not call the same tracer.\nRaises Error: "
+      "invalid_argument, with the row, for values that are not finite or out of reach; no_suitable_device, "
+      "out_of_memory,\ndevice_failure.");
   tracer
-      .def(py::init([](const Scene& scene) {
+      .def(py::init([](const Scene& scene, Engine engine, std::optional<std::uint32_t> device_index) {
              const py::gil_scoped_release unlocked;
-             return RayTracer(scene);
+             return RayTracer(scene, {engine, device_index});
            }),
-           py::arg("scene"))
-      .def_property_readonly("scene", &RayTracer::scene, "Its scene.");
+           py::arg("scene"), py::kw_only(), py::arg("engine") = Engine::embree, py::arg("device_index") = py::none())
+      .def_property_readonly("scene", &RayTracer::scene, "Its scene.")
+      .def_property_readonly(
+          "engine", [](const RayTracer& self) { return self.engine(); }, "The chosen engine.");
   const auto add = [&](const char* name, const auto& call, const char* doc) {
     tracer.def(name, call, py::arg("origins"), py::arg("directions"), py::kw_only(), py::arg("ranges_m") = py::none(),
                py::arg("from_m") = 0.0, py::arg("glass") = false, py::arg("progress") = py::none(), doc);

@@ -11,6 +11,7 @@
 
 #include "vantage/progress.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -41,22 +42,34 @@ struct RayHits {
   std::size_t size() const { return range_m.size(); }  ///< Number of rays.
 };
 
-/// Traces rays of any origins and directions in a scene: on the processor and in double precision, whichever engine
-/// simulates. The triangles that a ray passes through are decided exactly for the rounded coordinates of the scene, on
-/// every processor alike, and no ray passes between two triangles that share an edge. A mirror is a surface like any
-/// other. Search areas are never hit.
-/// Shares ownership of the scene. Immutable; copies share storage; safe to use from any thread.
+/// Traces rays of any origins and directions in a scene, in double precision: on the processor, or on a graphics card.
+/// Every engine gives the same answers, to the bit. The triangles that a ray passes through are decided exactly for the
+/// rounded coordinates of the scene, and no ray passes between two triangles that share an edge. A mirror is a surface
+/// like any other. Search areas are never hit.
+///
+/// A graphics card answers in float, with bounds of all its errors, and the processor decides what these leave open:
+/// rays that pass within some ten millionths of the scene's size and of the distance of an edge, that begin or end as
+/// near to a surface, or that meet two surfaces as near to each other. Distances, positions and normals are the
+/// processor's. On hundreds of thousands of rays a call or fewer, or rays that mostly begin on surfaces, the processor
+/// alone is as fast.
+///
+/// Shares ownership of the scene. Immutable; copies share storage; safe to use from any thread. Calls on one tracer's
+/// graphics card take turns.
 class RayTracer {
  public:
-  /// Throws Error: out_of_memory, device_failure.
-  explicit RayTracer(const Scene& scene);
+  /// `Engine::automatic` takes the best graphics card, or else the processor. A graphics card that fails is set up anew
+  /// once, and its work repeated; fewer rays are taken at once where its memory is short. Throws Error:
+  /// no_suitable_device with every refusal, out_of_memory, device_failure.
+  explicit RayTracer(const Scene& scene, const DeviceChoice& device = {.engine = Engine::embree});
 
-  const Scene& scene() const noexcept;  ///< The scene that it traces in.
+  const Scene& scene() const noexcept;        ///< The scene that it traces in.
+  const EngineInfo& engine() const noexcept;  ///< Engine and device in use.
 
   /// The nearest hit of each ray; of equally near triangles, that with the lowest number. All calls return empty arrays
   /// if stopped, and throw Error invalid_argument, with the row, for an origin that is not finite or further than
-  /// 1000 km from the scene, a direction that is not finite or 0, a range that is not above 0, and arrays that do not
-  /// fit together.
+  /// 1000 km from the scene, a direction that is not finite or 0, a range that is not above 0, arrays that do not fit
+  /// together, and a call on a graphics card from the progress of another. A graphics card that fails twice throws
+  /// out_of_memory or device_failure.
   RayHits nearest(const Rays& rays, const RayOptions& options = {}, const Progress& progress = {}) const;
   /// 1 for a ray that meets anything, else 0. Faster than `nearest`.
   std::vector<std::uint8_t> blocked(const Rays& rays, const RayOptions& options = {},

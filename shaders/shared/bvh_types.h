@@ -53,7 +53,7 @@ struct BvhPlacement {
   vec3 row2;
   float widening;  // of the mesh's boxes
   vec3 origin;     // of the mesh, in the local frame
-  uint unused;
+  float doubt;     // by which its corners may be elsewhere for a ray, in its frame, per metre of the distances involved
 };
 
 // A node at which rays of a tile may start, and the distance of its box; infinity if there is none.

@@ -9,6 +9,7 @@
 #include "trace/choose_engine.hpp"
 #include "trace/device_fault.hpp"
 #include "trace/embree/embree_tracer.hpp"
+#include "trace/rays/ray_finder.hpp"
 #include "trace/rebuilding_tracer.hpp"
 #include "trace/spread/spread_tracer.hpp"
 #include "trace/tracer.hpp"
@@ -36,18 +37,24 @@ DeviceChoice resolved(Engine engine, std::optional<std::uint32_t> device_index) 
   return {chosen.engine, device_index};
 }
 
-std::unique_ptr<Tracer> make_once(const DeviceChoice& device, const TraceScene& scene) {
+// Null: the processor. Throws Error: no_suitable_device, invalid_argument.
+const vulkan::VulkanEngine* vulkan_engine_of(const DeviceChoice& device) {
   if (device.engine == Engine::embree) {
     if (device.index.value_or(0) != 0)
       throw Error(Errc::no_suitable_device,
                   "there is no device " + std::to_string(*device.index) + " for embree, which has only device 0");
-    return make_embree_tracer(scene);
+    return nullptr;
   }
   const auto chosen = std::find_if(std::begin(vulkan_engines), std::end(vulkan_engines),
                                    [&](const vulkan::VulkanEngine* each) { return each->engine == device.engine; });
   if (chosen == std::end(vulkan_engines))
     throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(device.engine)));
-  return make_vulkan_tracer(**chosen, device.index, scene);
+  return *chosen;
+}
+
+std::unique_ptr<Tracer> make_once(const DeviceChoice& device, const TraceScene& scene) {
+  const vulkan::VulkanEngine* const engine = vulkan_engine_of(device);
+  return engine ? make_vulkan_tracer(*engine, device.index, scene) : make_embree_tracer(scene);
 }
 
 }  // namespace
@@ -106,6 +113,12 @@ std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> 
   const DeviceChoice device = lists ? DeviceChoice{Engine::embree, std::nullopt} : resolved(engine, device_index);
   if (device.engine == Engine::embree) return make_once(device, scene);
   return std::make_unique<RebuildingTracer>([=] { return make_once(device, scene); }, std::move(warn));
+}
+
+std::unique_ptr<RayFinder> make_ray_finder(const DeviceChoice& device, const std::shared_ptr<const SceneData>& scene) {
+  const DeviceChoice chosen = resolved(device.engine, device.index);
+  const vulkan::VulkanEngine* const engine = vulkan_engine_of(chosen);
+  return engine ? make_vulkan_ray_finder(*engine, chosen.index, *scene) : nullptr;
 }
 
 std::vector<DeviceChoice> all_devices(Engine engine) {

@@ -15,6 +15,7 @@
 #include "gap.hpp"
 #include "growth.hpp"
 #include "intervals.hpp"
+#include "own_rays.hpp"
 #include "plan_stages.hpp"
 #include "population.hpp"
 #include "ranks.hpp"
@@ -28,6 +29,9 @@ int main(int argc, char** argv) {
   vantage::bench::RatesOptions rates;
   rates.add(
       *app.add_subcommand("rates", "Rays a second of every engine, with and without skipping, counting included"));
+  vantage::bench::OwnRaysOptions own_rays;
+  own_rays.add(*app.add_subcommand(
+      "own-rays", "Rays of a caller's own, on devices alone and in whole calls, beside counting every ray"));
   vantage::bench::PopulationOptions population;
   population.add(
       *app.add_subcommand("population", "Sampled evaluation of many networks: time and error at several sample sizes"));
@@ -65,6 +69,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
+    if (app.got_subcommand("own-rays")) vantage::bench::run_own_rays(own_rays);
     if (app.got_subcommand("embree")) vantage::bench::run_bare_embree(bare_embree);
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
     if (app.got_subcommand("error")) vantage::bench::run_error(error);

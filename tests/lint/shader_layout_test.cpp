@@ -95,6 +95,7 @@ TEST(ShaderLayout, EveryShaderPlacesSharedMembersAsTheHostDoes) {
         {"half1", 48},
         {"unused", 60}}},
       {"BvhTriangle", {{"a", 0}, {"id", 12}, {"b", 16}, {"unused0", 28}, {"c", 32}, {"unused1", 44}}},
+      {"OwnRay", {{"origin", 0}, {"from", 12}, {"direction", 16}, {"range", 28}}},
       {"VoxelBrick", {{"x", 0}, {"y", 4}, {"z", 8}, {"first", 12}, {"mask", 16}}}};
   for (const auto& [name, members] : by_quarters) {
     ASSERT_TRUE(host.contains(name)) << name;

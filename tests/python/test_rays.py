@@ -50,6 +50,27 @@ class Rays(unittest.TestCase):
         self.assertGreater(same.mean(), 0.999)
         self.assertLess(np.abs(hits.range_m[::6] - scan.range_m[np.isfinite(scan.range_m)])[same].max(), 1e-3)
 
+    def test_every_engine_gives_the_same_answers(self):
+        scene = vantage.Scene.load(FOUR_WALLS)
+        processor = vantage.RayTracer(scene)
+        self.assertEqual(processor.engine.engine, "embree")
+        random = np.random.default_rng(2)
+        origins, directions = random.uniform(-9, 9, (200_000, 3)), random.normal(size=(200_000, 3))
+        expected = processor.nearest(origins, directions, from_m=0.01)
+        for info in vantage.list_engines():
+            if not info.usable:
+                continue
+            tracer = vantage.RayTracer(scene, engine=info.engine, device_index=info.device_index)
+            self.assertEqual(tracer.engine.engine, info.engine)
+            hits = tracer.nearest(origins, directions, from_m=0.01)
+            for name in ("range_m", "position", "normal", "reflectivity", "diffuse", "mesh", "primitive"):
+                np.testing.assert_array_equal(getattr(hits, name), getattr(expected, name))
+            np.testing.assert_array_equal(tracer.count(origins, directions), processor.count(origins, directions))
+            np.testing.assert_array_equal(tracer.blocked(origins, directions, ranges_m=3),
+                                          processor.blocked(origins, directions, ranges_m=3))
+        with self.assertRaisesRegex(vantage.Error, "no Vulkan device can run"):
+            vantage.RayTracer(scene, engine="compute_bvh", device_index=99)
+
     def test_what_is_no_ray_is_refused_by_its_row(self):
         tracer = vantage.RayTracer(one_wall())
         origins, directions = np.zeros((5, 3)), np.ones((5, 3))

@@ -146,10 +146,17 @@ void WidenedTree::add_shared_meshes() {
   }
 }
 
-void WidenedTree::run(const Vec3& origin, const Vec3& unit, double from, double reach, Query& query) const {
+std::optional<WidenedTree::Way> WidenedTree::way_of(const Vec3& origin, const Vec3& unit, double from,
+                                                    double reach) const {
   const auto [in, out] = passage(scene_->local_bounds, widening_, origin, unit);
-  const double begin = std::max(from, in), end = std::min(reach, out);
-  if (!(begin <= end)) return;
+  const Way way{std::max(from, in), std::min(reach, out)};
+  return way.begin <= way.end ? std::optional(way) : std::nullopt;
+}
+
+void WidenedTree::run(const Vec3& origin, const Vec3& unit, double from, double reach, Query& query) const {
+  const auto way = way_of(origin, unit, from, reach);
+  if (!way) return;
+  const auto [begin, end] = *way;
   // Embree's ray begins where the scene does: a direction that is rounded far away would pass beside it.
   const Vec3 at = origin + unit * begin;
   Walk walk{{}, runs_, query, begin, widening_};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/embree.hpp"
@@ -25,6 +26,13 @@ class WidenedTree {
     // Returns the distance, in metres from the ray's origin, beyond which nothing matters any more.
     virtual double take(std::uint32_t triangle) = 0;
   };
+  // The part of a ray that matters: where it is in the scene's box, between its own ends. None if that is empty.
+  struct Way {
+    double begin, end;  // metres from the origin
+  };
+  std::optional<Way> way_of(const Vec3& origin, const Vec3& unit, double from, double reach) const;
+  double size() const { return size_; }  // of the scene, metres
+
   // REQUIRES: an origin within reach of the scene, local frame; a unit direction; 0 <= from < reach.
   void run(const Vec3& origin, const Vec3& unit, double from, double reach, Query& query) const;
 

@@ -18,11 +18,12 @@ double MeshPlacement::condition() const {
   return vantage::condition({m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]});
 }
 
-PlacedMeshes placed_meshes(const SceneData& scene) {
+PlacedMeshes placed_meshes(const SceneData& scene, bool with_glass) {
+  const std::uint32_t end = with_glass ? scene.triangle_count() : scene.opaque_count();
   PlacedMeshes placed;
   std::map<std::uint32_t, std::uint32_t> known;  // by first stored triangle
   for (const MeshInstance& instance : scene.instances) {
-    if (instance.place == MeshInstance::kNoPlace || instance.first_triangle >= scene.opaque_count()) continue;
+    if (instance.place == MeshInstance::kNoPlace || instance.first_triangle >= end) continue;
     const auto [mesh, first] = known.emplace(instance.first_stored, static_cast<std::uint32_t>(placed.meshes.size()));
     if (first) placed.meshes.push_back(scene.stored(instance));
     const bool surveyed = scene.meshes[scene.mesh_of(instance.first_triangle)].role == Role::surveyed;

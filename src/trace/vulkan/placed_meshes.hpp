@@ -40,7 +40,8 @@ std::vector<T> per_surface(const SceneData& scene, const OfMesh& of_mesh) {
   return values;
 }
 
-// Of meshes that stop rays. Both are empty if the scene shares none. The result borrows the scene's triangles.
-PlacedMeshes placed_meshes(const SceneData& scene);
+// Of meshes that stop rays, or of those of glass too. Both are empty if the scene shares none. The result borrows the
+// scene's triangles.
+PlacedMeshes placed_meshes(const SceneData& scene, bool with_glass = false);
 
 }  // namespace vantage::vulkan

@@ -23,6 +23,25 @@ struct TraversalScene {
   std::span<const std::uint32_t> ids;   // per triangle, for Hit::id: its number, with surveyed_bit if its points count
   bool sort = true;                     // as TraceScene::sort_triangles
   const PlacedMeshes& placed;           // empty unless the engine has VulkanEngine::places_meshes
+  Box bounds = {};                      // of all triangles where they stand, for a RayWalk
+};
+
+// Inputs of shaders that walk a structure.
+struct TraversalBinding {
+  std::array<VkDeviceAddress, traversal_arrays> arrays{};  // TraceParameters::traversal
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;   // at binding 1, if any
+};
+
+// A structure for rays of a caller's own. Ids have no surveyed_bit, and all meshes are placed that nodes share.
+class RayWalk {
+ public:
+  RayWalk() = default;
+  virtual ~RayWalk() = default;
+  RayWalk(const RayWalk&) = delete;
+  RayWalk& operator=(const RayWalk&) = delete;
+
+  virtual Shader own_rays() const = 0;  // own_rays.comp with the engine's own find.glsl
+  virtual TraversalBinding binding() const = 0;
 };
 
 // Made for one scene on one device.
@@ -39,11 +58,7 @@ class Traversal {
   };
   virtual TraceShaders shaders() const = 0;
 
-  // Inputs of its trace().
-  struct Binding {
-    std::array<VkDeviceAddress, traversal_arrays> arrays{};  // TraceParameters::traversal
-    VkAccelerationStructureKHR structure = VK_NULL_HANDLE;   // at binding 1, if any
-  };
+  using Binding = TraversalBinding;  // of its trace()
   virtual Binding binding() const = 0;
 
   // Whether, on every device, no ray passes between two triangles that share an edge.
@@ -65,6 +80,8 @@ struct VulkanEngine {
   std::unique_ptr<Traversal> (*build)(Device& device, Commands& commands, const TraversalScene& scene);
   // Whether it keeps meshes that nodes share once. Other engines are given every mesh where it stands.
   bool places_meshes = false;
+  // Null: the engine has no rays of a caller's own.
+  std::unique_ptr<RayWalk> (*build_walk)(Device& device, Commands& commands, const TraversalScene& scene) = nullptr;
 };
 
 }  // namespace vantage::vulkan

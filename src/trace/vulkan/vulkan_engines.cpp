@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "trace/vulkan/vulkan_ray_finder.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 #include "vantage/error.hpp"
 
@@ -25,9 +26,44 @@ EngineInfo describe(const VulkanEngine& engine, const DeviceAbilities& abilities
   return info;
 }
 
-bool validation_wanted(const TraceScene& scene) {
+bool validation_wanted() {
   const char* variable = std::getenv("VANTAGE_VALIDATION");
-  return scene.validation || (variable && *variable && std::string(variable) != "0");
+  return variable && *variable && std::string(variable) != "0";
+}
+
+// The device that an engine runs on.
+struct Selected {
+  std::shared_ptr<Instance> instance;
+  VkPhysicalDevice device;
+  DeviceAbilities abilities;
+  EngineInfo info;
+};
+
+Selected select_device(const VulkanEngine& engine, std::optional<std::uint32_t> device, bool validation) {
+  const auto instance = Instance::get(validation || validation_wanted());
+  const auto devices = instance->physical_devices();
+  std::vector<std::string> refusals;
+  std::optional<std::uint32_t> best;
+  DeviceAbilities best_abilities;
+  for (std::uint32_t d = 0; d < devices.size(); ++d) {
+    if (device && *device != d) continue;
+    const DeviceAbilities abilities = abilities_of(*instance, devices[d]);
+    const std::string refusal = abilities.refusal(engine.needs);
+    if (!refusal.empty())
+      refusals.push_back("device " + std::to_string(d) + ", " + abilities.name + ": " + refusal);
+    else if (!best || abilities.better_than(best_abilities)) {
+      best = d;
+      best_abilities = abilities;
+    }
+  }
+  if (device && *device >= devices.size())
+    refusals.push_back("there are only " + std::to_string(devices.size()) + " devices, counted from 0");
+  if (!best)
+    throw Error(
+        Errc::no_suitable_device,
+        "no Vulkan device can run the engine " + to_string(engine.engine) + "; it needs " + who_has(engine.needs),
+        std::move(refusals));
+  return {instance, devices[*best], best_abilities, describe(engine, best_abilities, *best)};
 }
 
 }  // namespace
@@ -69,31 +105,14 @@ std::unique_ptr<Tracer> make_vulkan_tracer(const VulkanEngine& engine, std::opti
                                            const TraceScene& given) {
   TraceScene scene = given;
   if (!engine.places_meshes) scene.scene = flattened(scene.scene);
-  const auto instance = Instance::get(validation_wanted(scene));
-  const auto devices = instance->physical_devices();
-  std::vector<std::string> refusals;
-  std::optional<std::uint32_t> best;
-  DeviceAbilities best_abilities;
-  for (std::uint32_t d = 0; d < devices.size(); ++d) {
-    if (device && *device != d) continue;
-    const DeviceAbilities abilities = abilities_of(*instance, devices[d]);
-    const std::string refusal = abilities.refusal(engine.needs);
-    if (!refusal.empty())
-      refusals.push_back("device " + std::to_string(d) + ", " + abilities.name + ": " + refusal);
-    else if (!best || abilities.better_than(best_abilities)) {
-      best = d;
-      best_abilities = abilities;
-    }
-  }
-  if (device && *device >= devices.size())
-    refusals.push_back("there are only " + std::to_string(devices.size()) + " devices, counted from 0");
-  if (!best)
-    throw Error(
-        Errc::no_suitable_device,
-        "no Vulkan device can run the engine " + to_string(engine.engine) + "; it needs " + who_has(engine.needs),
-        std::move(refusals));
-  return std::make_unique<VulkanTracer>(engine, describe(engine, best_abilities, *best), instance, devices[*best],
-                                        best_abilities, scene);
+  const Selected on = select_device(engine, device, scene.validation);
+  return std::make_unique<VulkanTracer>(engine, on.info, on.instance, on.device, on.abilities, scene);
+}
+
+std::unique_ptr<RayFinder> make_vulkan_ray_finder(const VulkanEngine& engine, std::optional<std::uint32_t> device,
+                                                  const SceneData& scene) {
+  const Selected on = select_device(engine, device, false);
+  return std::make_unique<VulkanRayFinder>(engine, on.info, on.instance, on.device, on.abilities, scene);
 }
 
 }  // namespace vantage

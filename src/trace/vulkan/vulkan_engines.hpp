@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "trace/rays/ray_finder.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/traversal.hpp"
 
@@ -27,5 +28,8 @@ std::optional<std::uint64_t> free_device_memory(std::uint32_t device);
 // no_suitable_device with the reason for each refusal.
 std::unique_ptr<Tracer> make_vulkan_tracer(const vulkan::VulkanEngine& engine, std::optional<std::uint32_t> device,
                                            const TraceScene& scene);
+// The same for rays of a caller's own. REQUIRES: a scene with triangles.
+std::unique_ptr<RayFinder> make_vulkan_ray_finder(const vulkan::VulkanEngine& engine,
+                                                  std::optional<std::uint32_t> device, const SceneData& scene);
 
 }  // namespace vantage

@@ -266,8 +266,7 @@ Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::
   parallel::for_all(std::size_t{0}, items.size(), [&](std::size_t k) {
     const std::uint32_t t = items[k].triangle;
     if (t >= triangles.size()) return;  // no leaf refers to it
-    const Float3 a = positions[triangles[t][0]], b = positions[triangles[t][1]], c = positions[triangles[t][2]];
-    bvh.triangles[k] = {{a.x, a.y, a.z}, ids[t], {b.x, b.y, b.z}, 0, {c.x, c.y, c.z}, 0};
+    bvh.triangles[k] = bvh_triangle(positions, triangles[t], ids[t]);
   });
   return bvh;
 }
@@ -364,6 +363,33 @@ Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> trian
   return tree_over(items, positions, triangles, ids);
 }
 
+BvhTriangle bvh_triangle(std::span<const Float3> positions, const Triangle& triangle, std::uint32_t id) {
+  const Float3 a = positions[triangle[0]], b = positions[triangle[1]], c = positions[triangle[2]];
+  return {{a.x, a.y, a.z}, id, {b.x, b.y, b.z}, 0, {c.x, c.y, c.z}, 0};
+}
+
+// Roundings of a ray that is moved into the mesh's frame, and of corners where the mesh stands, are some 22 times the
+// place's condition in units of 2^-24 of the distances involved; they grow as the inverse does.
+BvhPlacement bvh_placement(const vulkan::MeshPlacement& place, float widening) {
+  const glm::dmat3 inverse = glm::inverse(place.linear());
+  const glm::dvec3 origin = place.origin();
+  double growth = 0;
+  for (int r = 0; r < 3; ++r)
+    growth = std::max(growth, std::abs(inverse[0][r]) + std::abs(inverse[1][r]) + std::abs(inverse[2][r]));
+  const auto row = [&](int r) {
+    return vec3{static_cast<float>(inverse[0][r]), static_cast<float>(inverse[1][r]),
+                static_cast<float>(inverse[2][r])};
+  };
+  return {.row0 = row(0),
+          .root = 0,
+          .row1 = row(1),
+          .base = place.base_id,
+          .row2 = row(2),
+          .widening = widening,
+          .origin = {static_cast<float>(origin.x), static_cast<float>(origin.y), static_cast<float>(origin.z)},
+          .doubt = static_cast<float>(0x1p-19 * place.condition() * growth)};
+}
+
 Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
                      std::span<const std::uint32_t> ids, const vulkan::PlacedMeshes& placed) {
   std::vector<Bvh> meshes(placed.meshes.size());
@@ -379,21 +405,7 @@ Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle
   std::vector<BvhPlacement> placements(placed.placements.size());
   parallel::for_all(std::size_t{0}, placements.size(), [&](std::size_t k) {
     const vulkan::MeshPlacement& place = placed.placements[k];
-    const glm::dmat3 inverse = glm::inverse(place.linear());
-    const glm::dvec3 origin = place.origin();
-    const auto row = [&](int r) {
-      return vec3{static_cast<float>(inverse[0][r]), static_cast<float>(inverse[1][r]),
-                  static_cast<float>(inverse[2][r])};
-    };
-    placements[k] = {
-        .row0 = row(0),
-        .root = 0,
-        .row1 = row(1),
-        .base = place.base_id,
-        .row2 = row(2),
-        .widening = meshes[place.mesh].nodes.front().widening,
-        .origin = {static_cast<float>(origin.x), static_cast<float>(origin.y), static_cast<float>(origin.z)},
-        .unused = 0};
+    placements[k] = bvh_placement(place, meshes[place.mesh].nodes.front().widening);
   });
   Bvh bvh = tree_over(items, positions, triangles, ids);
   std::vector<std::uint32_t> roots;

@@ -7,7 +7,7 @@
 namespace vantage::vulkan {
 namespace {
 
-class ComputeBvh final : public Traversal {
+class ComputeBvh final : public Traversal, public RayWalk {
  public:
   ComputeBvh(Device& device, Commands& commands, const TraversalScene& scene) {
     const Bvh bvh = build_placed_bvh(scene.positions, scene.triangles, scene.ids, scene.placed);
@@ -28,6 +28,7 @@ class ComputeBvh final : public Traversal {
     binding.arrays[bvh_placements_array] = placements_.address();
     return binding;
   }
+  Shader own_rays() const override { return shaders::own_rays_compute_bvh; }
   bool is_watertight() const override { return true; }  // lib/triangle_hit.glsl
   // Decides common steps down the tree once for all rays of a tile.
   std::optional<TilePass> tile_pass() const override {
@@ -45,6 +46,9 @@ const VulkanEngine compute_bvh_engine{
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<ComputeBvh>(device, commands, scene);
     },
-    true};
+    true,
+    [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<RayWalk> {
+      return std::make_unique<ComputeBvh>(device, commands, scene);
+    }};
 
 }  // namespace vantage::vulkan

@@ -2,10 +2,15 @@
 #include "trace/vulkan/ray_query/acceleration_structure.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
+#include "core/parallel.hpp"
+#include "shared/bvh_types.h"
 #include "shared/ray_query_types.h"
 #include "trace/vulkan/check.hpp"
+#include "trace/vulkan/compute_bvh/bvh.hpp"
 #include "trace/vulkan/ray_query/median_sort.hpp"
 
 namespace vantage::vulkan {
@@ -20,6 +25,42 @@ VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR stru
   VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
                                                    nullptr, structure};
   return device.vk().vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
+}
+
+// A ray of a caller's own in this frame is off by less than a thirtieth of this share of the largest coordinate, and so
+// is what a driver makes of it. Twice `doubt` covers the way into a shared mesh's frame.
+constexpr double kWidening = 0x1p-17;
+
+double largest_of(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest_of(const Box& box) { return box.empty() ? 0 : std::max(largest_of(box.min), largest_of(box.max)); }
+
+// Of the boxes of each shared mesh, for all of its places.
+std::vector<double> widenings_of(const TraversalScene& scene) {
+  std::vector<double> widenings;
+  for (const auto& mesh : scene.placed.meshes) {
+    double largest = 0;
+    for (const Triangle& triangle : mesh)
+      for (const std::uint32_t v : triangle) largest = std::max(largest, largest_of(widen(scene.positions[v])));
+    widenings.push_back(kWidening * largest);
+  }
+  const double size = largest_of(scene.bounds);
+  std::vector<double> doubts(widenings.size());
+  for (const MeshPlacement& place : scene.placed.placements) {
+    const glm::dvec3 at = place.origin();
+    doubts[place.mesh] = std::max(doubts[place.mesh], 2 * double{bvh_placement(place, 0).doubt} *
+                                                          std::max(size, largest_of(Vec3{at.x, at.y, at.z})));
+  }
+  std::ranges::transform(widenings, doubts, widenings.begin(), std::plus());
+  return widenings;
+}
+
+VkAabbPositionsKHR box_around(const TraversalScene& scene, const Triangle& triangle, double widening) {
+  Box box;
+  for (const std::uint32_t v : triangle) box.extend(widen(scene.positions[v]));
+  // Rounded to float, which the widening covers.
+  const Vec3 by{widening, widening, widening};
+  const Float3 low = narrow(box.min - by), high = narrow(box.max + by);
+  return {low.x, low.y, low.z, high.x, high.y, high.z};
 }
 
 }  // namespace
@@ -78,26 +119,42 @@ UniqueAccelerationStructure AccelerationStructure::run(Build build, VkDeviceSize
 }
 
 void AccelerationStructure::build_parts(const TraversalScene& scene, std::span<const Triangle> triangles,
-                                        std::span<Part> parts) {
-  const Buffer vertices =
-      make_device_buffer<Float3>(device_, commands_, scene.positions, "vertices of the build", build_input);
-  const Buffer indices =
-      make_device_buffer<Triangle>(device_, commands_, triangles, "indices of the build", build_input);
+                                        std::span<Part> parts, Over over) {
+  Buffer vertices, indices, boxes;
+  if (over == Over::triangles) {
+    vertices = make_device_buffer<Float3>(device_, commands_, scene.positions, "vertices of the build", build_input);
+    indices = make_device_buffer<Triangle>(device_, commands_, triangles, "indices of the build", build_input);
+  } else {
+    std::vector<VkAabbPositionsKHR> around(triangles.size());
+    for (const Part& part : parts)
+      parallel::for_all(part.first, part.first + part.count,
+                        [&](std::uint32_t k) { around[k] = box_around(scene, triangles[k], part.widening); });
+    boxes = make_device_buffer<VkAabbPositionsKHR>(device_, commands_, around, "boxes of the build", build_input);
+  }
   std::vector<Build> builds;
   VkDeviceSize still = 0;
   for (const Part& part : parts) {
     VkAccelerationStructureGeometryKHR geometry{};
     geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
     geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
-    auto& t = geometry.geometry.triangles;
-    t.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
-    t.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
-    t.vertexData.deviceAddress = vertices.address();
-    t.vertexStride = sizeof(Float3);
-    t.maxVertex = static_cast<std::uint32_t>(scene.positions.size() - 1);
-    t.indexType = VK_INDEX_TYPE_UINT32;
-    t.indexData.deviceAddress = indices.address() + part.first * sizeof(Triangle);
+    if (over == Over::triangles) {
+      geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+      auto& t = geometry.geometry.triangles;
+      t.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
+      t.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
+      t.vertexData.deviceAddress = vertices.address();
+      t.vertexStride = sizeof(Float3);
+      t.maxVertex = static_cast<std::uint32_t>(scene.positions.size() - 1);
+      t.indexType = VK_INDEX_TYPE_UINT32;
+      t.indexData.deviceAddress = indices.address() + part.first * sizeof(Triangle);
+    } else {
+      geometry.geometryType = VK_GEOMETRY_TYPE_AABBS_KHR;
+      geometry.flags |= VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR;  // triangles are counted
+      auto& b = geometry.geometry.aabbs;
+      b.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_AABBS_DATA_KHR;
+      b.data.deviceAddress = boxes.address() + part.first * sizeof(VkAabbPositionsKHR);
+      b.stride = sizeof(VkAabbPositionsKHR);
+    }
     builds.push_back(build_of(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, part.count));
     still += builds.back().bytes;
   }
@@ -109,7 +166,7 @@ void AccelerationStructure::build_parts(const TraversalScene& scene, std::span<c
   }
 }
 
-AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene)
+AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene, Over over)
     : device_(device), commands_(commands) {
   // Triangles in the structure's order: those that are stored where they stand, then mesh after mesh, whose ids count
   // from 0.
@@ -117,7 +174,7 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
   std::vector<std::uint32_t> ids;
   std::vector<Part> parts;
   std::vector<std::size_t> first_part;  // of the triangles that stand, of each mesh, and an end
-  const auto add = [&](std::span<const Triangle> triangles, const auto& id_of) {
+  const auto add = [&](std::span<const Triangle> triangles, double widening, const auto& id_of) {
     first_part.push_back(parts.size());
     const std::size_t begin = sorted.size();
     std::vector<std::uint32_t> order;
@@ -133,17 +190,29 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
     }
     for (std::size_t first = begin; first < sorted.size(); first += blas_triangles)
       parts.push_back({static_cast<std::uint32_t>(first),
-                       static_cast<std::uint32_t>(std::min<std::size_t>(blas_triangles, sorted.size() - first))});
+                       static_cast<std::uint32_t>(std::min<std::size_t>(blas_triangles, sorted.size() - first)),
+                       widening});
   };
-  add(scene.triangles, [&](std::uint32_t k) { return scene.ids[k]; });
-  for (const auto& mesh : scene.placed.meshes) add(mesh, [](std::uint32_t k) { return k; });
+  const std::vector<double> widenings =
+      over == Over::boxes ? widenings_of(scene) : std::vector<double>(scene.placed.meshes.size());
+  add(scene.triangles, kWidening * largest_of(scene.bounds), [&](std::uint32_t k) { return scene.ids[k]; });
+  for (std::size_t m = 0; m < widenings.size(); ++m)
+    add(scene.placed.meshes[m], widenings[m], [](std::uint32_t k) { return k; });
   first_part.push_back(parts.size());
-  ids_ = make_device_buffer<std::uint32_t>(device, commands, ids, "primitive ids");
-  build_parts(scene, sorted, parts);
+  if (over == Over::triangles) {
+    primitives_ = make_device_buffer<std::uint32_t>(device, commands, ids, "primitive ids");
+  } else {
+    std::vector<BvhTriangle> corners(sorted.size());
+    parallel::for_all(std::size_t{0}, corners.size(),
+                      [&](std::size_t k) { corners[k] = bvh_triangle(scene.positions, sorted[k], ids[k]); });
+    primitives_ = make_device_buffer<BvhTriangle>(device, commands, corners, "triangles of boxes");
+  }
+  build_parts(scene, sorted, parts, over);
 
   std::vector<VkAccelerationStructureInstanceKHR> instances;
   std::vector<QueryInstance> records;
-  const auto place = [&](std::size_t mesh, const VkTransformMatrixKHR& matrix, std::uint32_t base) {
+  std::vector<BvhPlacement> placements;  // over boxes
+  const auto place = [&](std::size_t mesh, const VkTransformMatrixKHR& matrix, BvhPlacement placement) {
     for (std::size_t k = first_part[mesh]; k < first_part[mesh + 1]; ++k) {
       VkAccelerationStructureInstanceKHR instance{};
       instance.transform = matrix;
@@ -152,17 +221,21 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
       instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
       instance.accelerationStructureReference = parts[k].address;
       instances.push_back(instance);
-      records.push_back({parts[k].first, base});
+      records.push_back({parts[k].first, placement.base});
+      placement.root = parts[k].first;
+      placements.push_back(placement);
     }
   };
-  place(0, {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0);
+  place(0, {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, {});
   for (const MeshPlacement& placement : scene.placed.placements) {
     const auto& m = placement.columns;
     place(placement.mesh + 1, {{{m[0], m[3], m[6], m[9]}, {m[1], m[4], m[7], m[10]}, {m[2], m[5], m[8], m[11]}}},
-          placement.base_id);
+          bvh_placement(placement, 0));
   }
   if (!scene.placed.placements.empty())
-    instances_ = make_device_buffer<QueryInstance>(device, commands, records, "instances of shared meshes");
+    instances_ = over == Over::triangles
+                     ? make_device_buffer<QueryInstance>(device, commands, records, "instances of shared meshes")
+                     : make_device_buffer<BvhPlacement>(device, commands, placements, "placements of boxes");
   const Buffer instance_buffer =
       make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", build_input);
   VkAccelerationStructureGeometryKHR geometry{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver's acceleration structure over a scene: bottom levels of the triangles that are stored where they stand and
-// of meshes that nodes share, and a top level that places them.
+// The driver's acceleration structure over a scene's triangles, or over boxes around them: bottom levels of those that
+// are stored where they stand and of meshes that nodes share, and a top level that places them.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,28 @@ namespace vantage::vulkan {
 
 class AccelerationStructure {
  public:
+  enum class Over {
+    triangles,
+    boxes,  // of triangles, as wide as rays of a caller's own are off (trace/ray_query/find.glsl)
+  };
   // On software devices, `scene.sort` sorts triangles so that such drivers build good trees.
-  AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene);
+  AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene, Over over = Over::triangles);
 
   VkAccelerationStructureKHR handle() const { return top_.get(); }
-  VkDeviceAddress primitive_ids() const { return ids_.address(); }
-  VkDeviceAddress instances() const { return instances_.address(); }  // 0 if no meshes are shared
+  // In the structure's order: ids of triangles, or, over boxes, BvhTriangle.
+  VkDeviceAddress primitives() const { return primitives_.address(); }
+  // QueryInstance, or, over boxes, BvhPlacement, whose root is the first triangle, and whose doubt is 0 for triangles
+  // that are stored where they stand. 0 if no meshes are shared.
+  VkDeviceAddress instances() const { return instances_.address(); }
 
  private:
   // Triangles of the build that have a structure of their own.
   struct Part {
     std::uint32_t first, count;
+    double widening;  // of boxes, in their own frame
     VkDeviceAddress address = 0;
   };
-  void build_parts(const TraversalScene& scene, std::span<const Triangle> triangles, std::span<Part> parts);
+  void build_parts(const TraversalScene& scene, std::span<const Triangle> triangles, std::span<Part> parts, Over over);
   struct Build {
     VkAccelerationStructureBuildGeometryInfoKHR info;
     VkAccelerationStructureGeometryKHR geometry;
@@ -46,7 +54,7 @@ class AccelerationStructure {
   VkDeviceSize used_ = 0;        // of the last one
   std::vector<UniqueAccelerationStructure> bottom_;
   UniqueAccelerationStructure top_;
-  Buffer ids_, instances_;
+  Buffer primitives_, instances_;
 };
 
 }  // namespace vantage::vulkan

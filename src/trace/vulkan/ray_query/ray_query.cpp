@@ -18,7 +18,25 @@ class RayQuery final : public Traversal {
   }
   Binding binding() const override {
     Binding binding;
-    binding.arrays[primitive_ids_array] = structure_.primitive_ids();
+    binding.arrays[primitive_ids_array] = structure_.primitives();
+    binding.arrays[query_instances_array] = structure_.instances();
+    binding.structure = structure_.handle();
+    return binding;
+  }
+
+ private:
+  AccelerationStructure structure_;
+};
+
+class BoxQuery final : public RayWalk {
+ public:
+  BoxQuery(Device& device, Commands& commands, const TraversalScene& scene)
+      : structure_(device, commands, scene, AccelerationStructure::Over::boxes) {}
+
+  Shader own_rays() const override { return shaders::own_rays_ray_query; }
+  TraversalBinding binding() const override {
+    TraversalBinding binding;
+    binding.arrays[primitive_ids_array] = structure_.primitives();
     binding.arrays[query_instances_array] = structure_.instances();
     binding.structure = structure_.handle();
     return binding;
@@ -35,6 +53,9 @@ const VulkanEngine ray_query_engine{
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<RayQuery>(device, commands, scene);
     },
-    true};
+    true,
+    [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<RayWalk> {
+      return std::make_unique<BoxQuery>(device, commands, scene);
+    }};
 
 }  // namespace vantage::vulkan
