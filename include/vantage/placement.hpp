@@ -96,6 +96,7 @@ enum class ClosedKind {
   attic,   ///< Under a slope of the roof, with no way up.
   top,     ///< The top of something that stands on the floor.
   hollow,  ///< Inside something without an opening.
+  low,     ///< Floor on which a person stoops all over; `ClosedPart::height_m` is the least headroom.
 };
 std::string to_string(ClosedKind);  ///< The name of the enumerator.
 
@@ -109,9 +110,11 @@ struct ClosedPart {
   double height_m = 0;  ///< Least headroom (`headroom`) or highest step (`climb`, `step`) on the way there.
   /// Names of the closed leaves and panes on the way to it.
   std::vector<std::string> doors = {};
-  /// True if the surveyor has to decide whether it belongs to the survey: a room or ground, as opposed to an attic, or
-  /// most of all floor.
-  bool to_decide() const { return kind == ClosedKind::room || kind == ClosedKind::ground || share >= 0.5; }
+  /// True if the surveyor has to decide whether it belongs to the survey: a room, ground or a low floor, as opposed to
+  /// an attic, or most of all floor.
+  bool to_decide() const {
+    return kind == ClosedKind::room || kind == ClosedKind::ground || kind == ClosedKind::low || share >= 0.5;
+  }
 };
 
 /// The search area: maps (u, v) to the ground through a quadtree (section 4.2). Immutable; copies share storage; safe

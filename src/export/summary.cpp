@@ -501,6 +501,7 @@ std::string barred(const ClosedPart& part) {
                             : part.doors.size() == 1 ? std::string("a closed door")
                                                      : number(part.doors.size()) + " closed doors";
   const std::string metres = fixed(part.height_m, 2) + " m";
+  if (part.kind == ClosedKind::low) return "with a headroom of " + metres;
   const std::string too = doors.empty() ? "" : " and " + doors;
   switch (part.bar) {
     case Bar::door: return "behind " + (doors.empty() ? std::string("a closed door") : doors);
@@ -512,8 +513,13 @@ std::string barred(const ClosedPart& part) {
   return "that nothing leads to";
 }
 
-// The setting that plans a closed part, too.
+// The settings that plan a closed part, too.
 std::string planned_with(const ClosedPart& part, const std::string& entries) {
+  if (part.kind == ClosedKind::low) {
+    constexpr double kCap_m = 0.1;  // of the scanner above its centre, and a little
+    const std::string headroom = fixed(std::floor(part.height_m / 0.05 - 1e-6) * 0.05, 2);
+    return "passage 0.6," + headroom + ", headroom " + headroom + " and height " + fixed(part.height_m - 2 * kCap_m, 1);
+  }
   if (part.bar != Bar::door || part.doors.empty()) {
     const Vec3& p = part.place;
     return entries + "enter " + fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2);

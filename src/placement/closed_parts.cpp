@@ -459,6 +459,7 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
   std::vector<std::uint32_t> told;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i);
+  closed = low_floors(tree);
   if (told.empty()) return closed;
   const Ways& ways = ways_from_reached();
   const double reached = reached_area();
@@ -471,6 +472,68 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
   }
   std::ranges::stable_sort(closed, std::ranges::greater{}, &ClosedPart::area_m2);
   return closed;
+}
+
+std::vector<GroundField::ClosedPart> GroundField::low_floors(const MeshTree& tree) {
+  const double enough = std::min(kEnteredShare * reached_area(), kEnteredRooms * room());
+  const auto stoops = [&](std::uint32_t s) { return !has_room(s) && !(taken_[s] & (kLow | kLeaf)); };
+  std::size_t below = 0;
+  for (std::uint32_t s = 0; s < z_.size(); ++s) below += stoops(s) && (taken_[s] & kOverhead);
+  if (static_cast<double>(below) * cell_ * cell_ < enough) return {};
+  const Ways& ways = ways_from_reached();
+  // Between two beams there may be room for a head.
+  const auto is_low = [&](std::uint32_t s) {
+    if (ways.effort[s] != stoop) return false;
+    return stoops(s) || (has_room(s) && parts_[part_[s]].area(cell_) < room());
+  };
+  constexpr double kMostOpen = 0.35;  // of its border: the rim of a room or of open ground, under a slope or a tree
+  constexpr std::size_t kMeasured = 400;
+  const auto far = static_cast<std::int64_t>(std::ceil(2.5 * radius_ / cell_));
+  std::vector<ClosedPart> floors;
+  std::vector<std::uint8_t> seen(z_.size(), 0);
+  std::vector<std::uint32_t> floor;
+  for (std::uint32_t seed = 0; seed < z_.size(); ++seed) {
+    if (seen[seed] || !is_low(seed)) continue;
+    floor.assign(1, seed), seen[seed] = 1;
+    std::size_t border = 0, open = 0;
+    bool wide = false;
+    for (std::size_t k = 0; k < floor.size(); ++k) {
+      const std::uint32_t s = floor[k];
+      for_neighbours(s, [&](std::uint32_t n) {
+        if (!is_low(n)) return void(open += has_room(n));
+        if (seen[n]) return;
+        seen[n] = 1;
+        floor.push_back(n);
+      });
+      const auto sides = [&](std::int64_t columns) {
+        int found = 0;
+        for_columns_beside(column_[s], columns, [&](std::uint32_t other) {
+          for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n)
+            if (is_low(n) && std::abs(double{z_[n]} - z_[s]) <= climb_) return void(++found);
+        });
+        return found;
+      };
+      const bool amid = sides(1) == 4;
+      border += !amid;
+      wide = wide || (amid && sides(far) == 4);
+    }
+    const double area = static_cast<double>(floor.size()) * cell_ * cell_;
+    if (!wide || area < enough || static_cast<double>(open) > kMostOpen * 3 * static_cast<double>(border)) continue;
+    glm::dvec3 mean(0);
+    for (const std::uint32_t s : floor)
+      mean += glm::dvec3(middle(column_[s]), z_[s]) / static_cast<double>(floor.size());
+    const auto place = [&](std::uint32_t s) { return glm::dvec3(middle(column_[s]), z_[s]); };
+    const std::uint32_t at =
+        *std::ranges::min_element(floor, {}, [&](std::uint32_t s) { return dot(place(s) - mean, place(s) - mean); });
+    ClosedPart told{
+        .area_m2 = area, .middle = place(at), .kind = ClosedKind::low, .bar = Bar::headroom, .height_m = height_};
+    const double skin = 0.25 * climb_;
+    for (std::size_t k = 0; k < floor.size(); k += floor.size() / kMeasured + 1)
+      if (const auto over = tree.first(place(floor[k]) + glm::dvec3{0, 0, skin}, {0, 0, 1}))
+        told.height_m = std::min(told.height_m, over->distance + skin);
+    floors.push_back(std::move(told));
+  }
+  return floors;
 }
 
 std::vector<GroundField::Patch> GroundField::thin_floors() const {

@@ -178,6 +178,8 @@ class GroundField {
   // True if one sees what is reached, or out of the model, from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
   bool may_be_told(std::uint32_t part) const;
+  // Floors on which one gets by stooping, and stoops all over; large ones.
+  std::vector<ClosedPart> low_floors(const MeshTree& tree);
   bool has_room(std::uint32_t sample) const;
   void tell_apart();
   // The lowest step between samples of two parts that lie as far apart as a gap in the floor is wide which a person

@@ -59,6 +59,7 @@ std::string to_string(ClosedKind kind) {
     case ClosedKind::attic: return "attic";
     case ClosedKind::top: return "top";
     case ClosedKind::hollow: return "hollow";
+    case ClosedKind::low: return "low";
   }
   return "unknown";
 }

@@ -216,6 +216,27 @@ TEST(ClosedParts, NobodyStandsInASlab) {
   EXPECT_FALSE(holds(area, 4, 4, 0));
 }
 
+TEST(ClosedParts, AFloorOnWhichOneStoopsAllOverIsToldAndTheRimOfARoomIsNot) {
+  const auto house = [](double ceiling) {
+    Builder b;
+    b.floor(-10, -10, 20, 20, 0).box({0, 0, ceiling}, {8, 8, ceiling + 0.2});
+    b.box({0, 0, 0}, {0.2, 8, ceiling}).box({7.8, 0, 0}, {8, 8, ceiling}).box({0, 7.8, 0}, {8, 8, ceiling});
+    return b.box({0, 0, 0}, {3, 0.2, ceiling}).box({4, 0, 0}, {8, 0.2, ceiling}).scene();
+  };
+  const SearchArea low = SearchArea::build(house(1.7));
+  ASSERT_EQ(low.not_entered().size(), 1U);
+  const ClosedPart& part = low.not_entered()[0];
+  EXPECT_EQ(part.kind, ClosedKind::low);
+  EXPECT_TRUE(part.to_decide());
+  EXPECT_NEAR(part.height_m, 1.7, 0.02);
+  EXPECT_NEAR(part.area_m2, 7.0 * 7.0, 4);
+  EXPECT_TRUE(SearchArea::build(house(1.4)).not_entered().empty());
+  EXPECT_TRUE(holds(SearchArea::build(house(2.2)), 4, 4, 0));
+  Builder canopy;
+  canopy.floor(-10, -10, 20, 20, 0).box({0, 0, 1.7}, {8, 8, 1.9});
+  EXPECT_TRUE(SearchArea::build(canopy.scene()).not_entered().empty());
+}
+
 TEST(ClosedParts, ALadderIsAWay) {
   const SearchArea up = SearchArea::build(storeys(true).scene());
   EXPECT_TRUE(holds(up, 2, 5, 3.2));
