@@ -48,10 +48,10 @@ struct RayHits {
 /// like any other. Search areas are never hit.
 ///
 /// A graphics card answers in float, with bounds of all its errors, and the processor decides what these leave open:
-/// rays that pass within some ten millionths of the scene's size and of the distance of an edge, that begin or end as
-/// near to a surface, or that meet two surfaces as near to each other. Distances, positions and normals are the
-/// processor's. On hundreds of thousands of rays a call or fewer, or rays that mostly begin on surfaces, the processor
-/// alone is as fast.
+/// rays that pass an edge within some millionths of the scene's size and of the distance, that begin or end as near to
+/// a surface, or that meet two surfaces as near to each other. Distances, positions and normals are the processor's.
+/// Rays that are near each other in the scene should be so in the arrays. If most rays begin on surfaces, `from_m` has
+/// to take them off, or else the processor has to answer them all.
 ///
 /// Shares ownership of the scene. Immutable; copies share storage; safe to use from any thread. Calls on one tracer's
 /// graphics card take turns.
