@@ -527,10 +527,13 @@ std::vector<GroundField::ClosedPart> GroundField::low_floors(const MeshTree& tre
         *std::ranges::min_element(floor, {}, [&](std::uint32_t s) { return dot(place(s) - mean, place(s) - mean); });
     ClosedPart told{
         .area_m2 = area, .middle = place(at), .kind = ClosedKind::low, .bar = Bar::headroom, .height_m = height_};
-    const double skin = 0.25 * climb_;
+    std::vector<double> headrooms{height_};
     for (std::size_t k = 0; k < floor.size(); k += floor.size() / kMeasured + 1)
-      if (const auto over = tree.first(place(floor[k]) + glm::dvec3{0, 0, skin}, {0, 0, 1}))
-        told.height_m = std::min(told.height_m, over->distance + skin);
+      if (const auto over = tree.first(place(floor[k]) + glm::dvec3{0, 0, climb_}, {0, 0, 1}))
+        headrooms.push_back(over->distance + climb_);
+    const auto tenth = headrooms.begin() + static_cast<std::ptrdiff_t>(headrooms.size() / 10);  // stairs apart
+    std::ranges::nth_element(headrooms, tenth);
+    told.height_m = std::min(height_, *tenth);
     floors.push_back(std::move(told));
   }
   return floors;

@@ -432,7 +432,7 @@ void GroundField::find_room(const SceneData& scene) {
     const std::uint32_t below = s - 1;
     const float thick = z_[s] - z_[below];
     if (column_[below] == column_[s] && thick >= lies && thick <= static_cast<float>(climb_) &&
-        (taken_[s] & kOverhead) && !(taken_[s] & kThin))
+        (taken_[s] & (kBeside | kOverhead)) && !(taken_[s] & kThin))
       taken_[below] |= kOverhead | kLow;
   }
 }
@@ -639,7 +639,8 @@ glm::dvec3 GroundField::middle_of(std::uint32_t part) const {
   mean /= static_cast<double>(parts_[part].samples);
   std::uint32_t best = parts_[part].first;
   for (const std::uint32_t s : members(part))
-    if (squared(middle(column_[s]) - mean) < squared(middle(column_[best]) - mean)) best = s;
+    if (!is_layer(s) && (is_layer(best) || squared(middle(column_[s]) - mean) < squared(middle(column_[best]) - mean)))
+      best = s;
   const glm::dvec2 p = middle(column_[best]);
   return {p.x, p.y, z_[best]};
 }
