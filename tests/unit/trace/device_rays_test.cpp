@@ -43,7 +43,7 @@ std::vector<EngineInfo> devices() {
 DeviceChoice choice_of(const EngineInfo& info) { return {info.engine, info.device_index}; }
 
 template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+bool equal_to_the_bit(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
@@ -51,13 +51,13 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 std::size_t expect_same(const RayTracer& processor, const RayTracer& device, const Rays& rays,
                         const RayOptions& options) {
   const RayHits expected = processor.nearest(rays, options), hits = device.nearest(rays, options);
-  EXPECT_TRUE(same_bits(hits.primitive, expected.primitive));
-  EXPECT_TRUE(same_bits(hits.range_m, expected.range_m));
-  EXPECT_TRUE(same_bits(hits.position, expected.position));
-  EXPECT_TRUE(same_bits(hits.normal, expected.normal));
-  EXPECT_TRUE(same_bits(hits.reflectivity, expected.reflectivity));
-  EXPECT_TRUE(same_bits(hits.diffuse, expected.diffuse));
-  EXPECT_TRUE(same_bits(hits.mesh, expected.mesh));
+  EXPECT_TRUE(equal_to_the_bit(hits.primitive, expected.primitive));
+  EXPECT_TRUE(equal_to_the_bit(hits.range_m, expected.range_m));
+  EXPECT_TRUE(equal_to_the_bit(hits.position, expected.position));
+  EXPECT_TRUE(equal_to_the_bit(hits.normal, expected.normal));
+  EXPECT_TRUE(equal_to_the_bit(hits.reflectivity, expected.reflectivity));
+  EXPECT_TRUE(equal_to_the_bit(hits.diffuse, expected.diffuse));
+  EXPECT_TRUE(equal_to_the_bit(hits.mesh, expected.mesh));
   for (std::size_t k = 0, told = 0; k < hits.size() && told < 3; ++k)
     if (hits.primitive[k] != expected.primitive[k]) {
       ++told;
