@@ -89,12 +89,15 @@ void add_rays(py::module_& m) {
       m, "RayTracer",
       "Traces rays of any origins and directions in a scene, in double precision: on the processor, or on a graphics "
       "card by the\nengine 'compute_bvh' or 'ray_query' ('auto': on the best one, if there is any). Every engine gives "
-      "the same answers, to the\nbit. A graphics card leaves to the processor what float arithmetic cannot decide: rays "
+      "the same answers, to the\nbit. A graphics card leaves to the processor what float arithmetic cannot decide: "
+      "rays "
       "that pass an edge or end at a surface.\nAny number of rays a call; other Python threads run meanwhile.\n\n"
       "origins, directions: arrays of (n, 3), or one row for all rays; survey frame, metres; directions of any finite "
-      "length\nabove 0. ranges_m: farthest hit that counts, a number or (n,); None: any. from_m: only hits further than "
+      "length\nabove 0. ranges_m: farthest hit that counts, a number or (n,); None: any. from_m: only hits further "
+      "than "
       "this count.\nglass: it stops rays, which otherwise pass it as those of a scan do. progress as in `Simulator`; "
-      "arrays are empty if it\nstopped the call, and on a graphics card it must not call the same tracer.\nRaises Error: "
+      "arrays are empty if it\nstopped the call, and on a graphics card it must not call the same tracer.\nRaises "
+      "Error: "
       "invalid_argument, with the row, for values that are not finite or out of reach; no_suitable_device, "
       "out_of_memory,\ndevice_failure.");
   tracer
