@@ -12,7 +12,6 @@
 #include "core/parallel.hpp"
 #include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
-#include "scene/winding.hpp"
 
 namespace vantage {
 namespace {
@@ -51,7 +50,7 @@ bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
 
 }  // namespace
 
-Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out) {
+Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out, bool either_way) {
   // Broken vertices count for nothing. But in a site in millimetres, all may lie as far out as broken ones.
   constexpr double kFarthest = 1e12;
   const auto within = [&](const Triangle& t, double limit) {
@@ -201,15 +200,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
   find_levels(true);
   inside_out_ = faces_outwards(crossings, tall);
   constexpr double kFewLevels = 0.3;
-  Winding winding;
-  constexpr std::size_t kLookedAt = 500;  // meshes
-  for (std::size_t m = 0; m < raw.ranges.size(); m += raw.ranges.size() / kLookedAt + 1)
-    winding += winding_of(raw.ranges[m].triangle_count, [&](std::uint32_t k) {
-      const Triangle& t = raw.triangles[raw.ranges[m].first_triangle + k];
-      return std::array{raw.positions[t[0]], raw.positions[t[1]], raw.positions[t[2]]};
-    });
-  if (inside_out_ || winding.either_way() ||
-      static_cast<double>(levels_.size()) < kFewLevels * static_cast<double>(outline_))
+  if (inside_out_ || either_way || static_cast<double>(levels_.size()) < kFewLevels * static_cast<double>(outline_))
     find_levels(false);
 }
 

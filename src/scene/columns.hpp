@@ -26,8 +26,9 @@ class Columns {
     float low = 0, high = 0;
   };
 
-  // `raw`: read by glTF's rule. Triangles whose `left_out` is not 0 are not there; it may be empty. Deterministic.
-  Columns(const RawScene& raw, UpAxis up, const std::vector<std::uint8_t>& left_out = {});
+  // `raw`: read by glTF's rule. Triangles whose `left_out` is not 0 are not there; it may be empty. `either_way`: faces
+  // are wound as they came, and all count as floors. Deterministic.
+  Columns(const RawScene& raw, UpAxis up, const std::vector<std::uint8_t>& left_out = {}, bool either_way = false);
 
   bool empty() const { return outline_ == 0; }
   double cell() const { return cell_; }

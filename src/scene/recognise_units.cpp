@@ -16,6 +16,7 @@
 #include "scene/positions.hpp"
 #include "scene/shared_meshes.hpp"
 #include "scene/sound_triangle.hpp"
+#include "scene/winding.hpp"
 
 namespace vantage {
 namespace {
@@ -319,13 +320,28 @@ std::array<double, kFeatures> features_of(const Hypothesis& h) {
                               : -2.0};  // few models have X up
 }
 
+namespace {
+// True if the faces of a model, by some hundreds of its meshes, are wound as they came.
+bool wound_either_way(const RawScene& raw) {
+  constexpr std::size_t kLookedAt = 500;
+  Winding winding;
+  for (std::size_t m = 0; m < raw.ranges.size(); m += raw.ranges.size() / kLookedAt + 1)
+    winding += winding_of(raw.ranges[m].triangle_count, [&](std::uint32_t k) {
+      const Triangle& t = raw.triangles[raw.ranges[m].first_triangle + k];
+      return std::array{raw.positions[t[0]], raw.positions[t[1]], raw.positions[t[2]]};
+    });
+  return winding.either_way();
+}
+}  // namespace
+
 std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optional<Unit>& unit,
                                          const std::optional<UpAxis>& up) {
   std::vector<Hypothesis> all;
   const DrawingGrid grid = drawing_grid(raw);
+  const bool either_way = wound_either_way(raw);
   for (const UpAxis axis : kAxes) {
     if (up.value_or(axis) != axis) continue;
-    const Columns columns(raw, axis, leaves_in_any(raw, unit, axis));
+    const Columns columns(raw, axis, leaves_in_any(raw, unit, axis), either_way);
     if (columns.empty()) return {};
     const std::size_t first = all.size();
     for (const Unit length : kUnits) {

@@ -8,6 +8,14 @@
 namespace vantage::vulkan {
 namespace {
 
+TraversalBinding binding_of(const AccelerationStructure& structure) {
+  TraversalBinding binding;
+  binding.arrays[primitive_ids_array] = structure.primitives();
+  binding.arrays[query_instances_array] = structure.instances();
+  binding.structure = structure.handle();
+  return binding;
+}
+
 class RayQuery final : public Traversal {
  public:
   RayQuery(Device& device, Commands& commands, const TraversalScene& scene) : structure_(device, commands, scene) {}
@@ -16,13 +24,7 @@ class RayQuery final : public Traversal {
     return {shaders::count_ray_query, shaders::scan_ray_query, shaders::sample_probe_ray_query,
             shaders::sample_trace_ray_query};
   }
-  Binding binding() const override {
-    Binding binding;
-    binding.arrays[primitive_ids_array] = structure_.primitives();
-    binding.arrays[query_instances_array] = structure_.instances();
-    binding.structure = structure_.handle();
-    return binding;
-  }
+  TraversalBinding binding() const override { return binding_of(structure_); }
 
  private:
   AccelerationStructure structure_;
@@ -34,13 +36,7 @@ class BoxQuery final : public RayWalk {
       : structure_(device, commands, scene, AccelerationStructure::Over::boxes) {}
 
   Shader own_rays() const override { return shaders::own_rays_ray_query; }
-  TraversalBinding binding() const override {
-    TraversalBinding binding;
-    binding.arrays[primitive_ids_array] = structure_.primitives();
-    binding.arrays[query_instances_array] = structure_.instances();
-    binding.structure = structure_.handle();
-    return binding;
-  }
+  TraversalBinding binding() const override { return binding_of(structure_); }
 
  private:
   AccelerationStructure structure_;
