@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Push { OwnRaysPush push; };
 
 float infinite() { return uintBitsToFloat(0x7F800000u); }
 
-// What the walk has found so far.
+// A walk has found this so far.
 struct Found {
   float near, far;  // interval of the nearest sure hit; nothing beyond its end matters
   float other;      // least distance at which any other triangle may be hit

@@ -107,7 +107,7 @@ struct Evaluation {
   double link_overlap = default_link_overlap;                    ///< Least overlap of a link,
   double link = default_link;                                    ///< or least scan overlap, if that is known.
   std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
-  /// What the stations' scanners state that a calibration leaves, for people: "18″, 1 mm and 10 ppm". Empty: none
+  /// Text on what a calibration leaves, as the stations' scanners state it: "18″, 1 mm and 10 ppm". Empty: none
   /// states it, or the registration error was not asked for.
   std::string calibration = {};
   std::vector<Target> targets = {};  ///< Given and proposed, with the stations that measure each; places of checks.

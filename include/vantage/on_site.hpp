@@ -77,7 +77,7 @@ struct Round {
   double minutes = 0;           ///< Scan, set-up, photos, walking and waiting together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
   std::size_t unlinked = 0;     ///< Stations without a link to the one before; 0 if links were not given.
-  /// Of each instrument that states how long a battery lasts, in the order of scanners.
+  /// One of each instrument that states how long a battery lasts, in the order of scanners.
   std::vector<BatteryUse> batteries = {};
 };
 

@@ -96,7 +96,7 @@ enum class ClosedKind {
   attic,   ///< Under a slope of the roof, with no way up.
   top,     ///< The top of something that stands on the floor.
   hollow,  ///< Inside something without an opening.
-  low,     ///< Floor on which a person stoops all over; `ClosedPart::height_m` is the least headroom.
+  low,     ///< Floor on which a person stoops all over; `ClosedPart::height_m` is its headroom.
 };
 std::string to_string(ClosedKind);  ///< The name of the enumerator.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What float arithmetic is sure of about a ray and a triangle, so that the rest can be decided in double precision. As
+// Float arithmetic tells of a ray and a triangle what it is sure of, so that the rest can be decided in double precision. As
 // in lib/sheared_triangle.glsl, corners are sheared so that the ray is the z axis; here all errors are bounded, from
 // the rounding of the ray to float on, so a device may fuse and divide as it likes. It may not rearrange.
 //
@@ -47,7 +47,7 @@ vec3 sheared(Line line, vec3 corner) {
   return vec3(beside, p.z);
 }
 
-// Where a ray may meet a triangle: within [near, far], if it does at all.
+// A ray may meet a triangle within [near, far], if it does at all.
 struct Crossing {
   bool possible, sure;
   float near, far;

@@ -17,7 +17,7 @@ struct OwnRay {
 VANTAGE_CONST float own_ray_misses = -1.0f;
 VANTAGE_CONST float own_ray_open = -2.0f;  // the device is not to decide it
 
-// What is asked of rays, a specialization constant.
+// The question to rays, a specialization constant.
 VANTAGE_CONST uint own_rays_nearest = 0;       // the triangle; no_primitive: none
 VANTAGE_CONST uint own_rays_blocked = 1;       // 1 or 0
 VANTAGE_CONST uint own_rays_count = 2;         // the number of triangles

@@ -59,7 +59,7 @@ std::string calibration_text(const Scanner& scanner) {
   return text;
 }
 
-// Of all scanners that stations have.
+// The texts of all scanners that stations have.
 std::string calibrations_text(std::span<const PlacedStation> stations, std::span<const Scanner> scanners) {
   std::vector<std::string> told;
   for (const PlacedStation& station : stations) {

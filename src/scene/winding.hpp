@@ -30,8 +30,8 @@ struct Winding {
   bool either_way() const { return edges >= 12 && static_cast<double>(against) > 0.15 * static_cast<double>(edges); }
 };
 
-// Of `count` triangles or the first of them that are finite; `corners(k)` has the positions of triangle k, which are
-// the same to the bit where triangles meet.
+// Returns the winding of the first of `count` triangles, but for those that are not finite. `corners(k)` has the
+// positions of triangle k, which are the same to the bit where triangles meet.
 template <class Corners>
 Winding winding_of(std::uint32_t count, const Corners& corners) {
   constexpr std::uint32_t kLookedAt = 2000;
