@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Float arithmetic tells of a ray and a triangle what it is sure of, so that the rest can be decided in double precision. As
+// Float arithmetic tells what it is sure of about a ray and a triangle; double precision can decide the rest. As
 // in lib/sheared_triangle.glsl, corners are sheared so that the ray is the z axis; here all errors are bounded, from
 // the rounding of the ray to float on, so a device may fuse and divide as it likes. It may not rearrange.
 //
