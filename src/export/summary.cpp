@@ -709,8 +709,11 @@ std::string planned_text(const PlanResult& result) {
   constexpr double kLeastTold_m2 = 0.05;
   const auto [m2, minutes] = *result.further;
   if (m2 < kLeastTold_m2) return text + "; a further one would add nothing";
-  text += "; a further one would add some " + surface_text(m2) + " in " + duration(60 * std::max(minutes, 1.0));
-  if (!result.pays || m2 >= result.pays->least_m2) return text;
+  const bool too_little = result.pays && m2 < result.pays->least_m2;
+  const bool reads_alike = too_little && surface_text(m2) == surface_text(result.pays->least_m2);
+  text += std::string("; a further one would add ") + (reads_alike ? "just under " : "some ") + surface_text(m2) +
+          " in " + duration(60 * std::max(minutes, 1.0));
+  if (!too_little) return text;
   text += ", and has to add " + surface_text(result.pays->least_m2);
   if (result.problem.pays_share > 0 && result.pays->least_m2 > result.problem.pays_m2.value_or(0))
     text += ", " + percent(result.problem.pays_share / static_cast<double>(std::max(few_for_average, placed + kept))) +

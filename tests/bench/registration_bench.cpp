@@ -339,6 +339,7 @@ void run(const Options& o) {
     csv << '\n';
   }
   std::vector<double> true_mm, predicted_mm, ratios;
+  std::array<std::vector<double>, 2> halves;  // true errors by every other trial
   std::array<std::vector<double>, Figures::names.size()> overlaps;
   const OverlapMatrix of_pairs = overlaps_of(scans);
   std::set<std::vector<std::size_t>> taken;
@@ -396,6 +397,11 @@ void run(const Options& o) {
       squares[t] = e * e;
     });
     const double e = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(o.trials));
+    for (std::size_t half = 0; half < 2; ++half) {
+      double sum = 0;
+      for (std::size_t t = half; t < o.trials; t += 2) sum += squares[t];
+      halves[half].push_back(sum);
+    }
     true_mm.push_back(1e3 * e);
     predicted_mm.push_back(1e3 * predicted.value);
     ratios.push_back(e / predicted.value);
@@ -419,6 +425,11 @@ void run(const Options& o) {
               quantile(true_mm, 1), quantile(true_mm, 0.9) / quantile(true_mm, 0.1));
   std::printf("true over predicted: median %.2f, half of them %.2f to %.2f\n", quantile(ratios, 0.5),
               quantile(ratios, 0.25), quantile(ratios, 0.75));
+  // Two halves of the trials rank alike by r, so all of them rank as the expected error does by √(2r / (1 + r))
+  // (Spearman and Brown): no prediction can be expected to do better.
+  const double alike = std::max(spearman(halves[0], halves[1]), 0.0);
+  std::printf("halves of the trials rank by %+.2f; a perfect prediction would rank by %+.2f\n", alike,
+              std::sqrt(2 * alike / (1 + alike)));
   std::printf("Spearman's rank correlation of the true error with\n  %-14s %+.2f\n", "predicted",
               spearman(true_mm, predicted_mm));
   for (std::size_t f = 0; f < overlaps.size(); ++f)

@@ -324,6 +324,9 @@ TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
   EXPECT_TRUE(planned_text(result).ends_with(", and has to add 25 m², 0.6 % of what all of these capture"));
   result.further = {.m2 = 27, .minutes = 3.7};
   EXPECT_TRUE(planned_text(result).ends_with("; a further one would add some 27 m² in 4 min"));
+  result.further = {.m2 = 24.6, .minutes = 3.7};
+  EXPECT_NE(planned_text(result).find("; a further one would add just under 25 m² in 4 min, and has to add 25 m²"),
+            std::string::npos);
   result.further = {.m2 = 0, .minutes = 3.7};
   EXPECT_TRUE(planned_text(result).ends_with("; a further one would add nothing"));
   result.problem.stations_max = 16, result.pays->capture = 0.95;
