@@ -174,16 +174,17 @@ struct CoverSolution {
 CoverSolution evaluate_cover(const CoverProblem& problem, std::vector<std::size_t> chosen);
 
 /// Greedy with lazy evaluation (Minoux: Accelerated Greedy Algorithms for Maximizing Submodular Set Functions, 1978).
-/// Each step takes the allowed candidate with the largest gain, the lower number among equals. It stops at
+/// Each step takes the allowed candidate with the largest gain, the lower number among equals; if the problem has a
+/// `link`, none that leaves the network in more parts than before. It stops at
 /// `problem.most`, at the wanted coverage if that is below 1, or if no candidate adds anything. Without a graph the
 /// result is within 1 − 1/e of the best (Nemhauser, Wolsey, Fisher, 1978). Returns existing candidates, then the chosen
 /// ones in order.
 std::vector<std::size_t> greedy(const CoverProblem& problem);
 
 /// Local search: replaces one chosen candidate by another while coverage grows, with the best replacement of each in
-/// turn. Existing ones stay. Keeps coverage, exclusions and, if the problem has a `link`, connection. Takes another 8
-/// bytes for each entry of the matrix. Deterministic unless stopped. REQUIRES: `chosen` begins with the existing
-/// candidates.
+/// turn. Existing ones stay. Keeps coverage, exclusions and, if the problem has a `link`, the number of parts or less.
+/// Takes another 8 bytes for each entry of the matrix. Deterministic unless stopped. REQUIRES: `chosen` begins with the
+/// existing candidates.
 std::vector<std::size_t> improve_by_swaps(const CoverProblem& problem, std::vector<std::size_t> chosen,
                                           std::stop_token stop = {});
 

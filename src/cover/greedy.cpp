@@ -37,7 +37,8 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
     const KnownGain best = queue.top();
     queue.pop();
     if (best.gain <= 0) break;
-    if (!joinable.may_stand(best.candidate) || links->count_with(components, best.candidate) > 1) {
+    if (!joinable.may_stand(best.candidate) ||
+        links->count_with(components, best.candidate) > std::max<std::size_t>(components.count, 1)) {
       refused.push_back(best);
       continue;
     }

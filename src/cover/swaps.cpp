@@ -19,7 +19,7 @@ class SwapSearch {
         gains_(problem.matrix, columns, chosen_),
         joinable_(problem, chosen_),
         more_(problem.matrix.candidates(), 0) {
-    if (problem.link > 0) links_.emplace(problem, chosen_, problem.link);
+    if (problem.link > 0) parts_ = links_.emplace(problem, chosen_, problem.link).components().count;
   }
 
   // Runs until no candidate can be replaced, or stopped.
@@ -58,7 +58,7 @@ class SwapSearch {
     if (!joinable_.may_stand(k)) return false;
     if (!links_) return true;
     if (!others) others = links_->components_without(leaving_at, links_->trees());
-    return others->count + 1 - links_->joined(*others, k, leaving_at) == 1;
+    return others->count + 1 - links_->joined(*others, k, leaving_at) <= std::max<std::size_t>(parts_, 1);
   }
 
   const CoverProblem& problem_;
@@ -66,6 +66,7 @@ class SwapSearch {
   CoverGains gains_;
   Joinable joinable_;
   std::optional<NetworkLinks> links_;  // none where the network need not be connected
+  std::size_t parts_ = 1;              // that the network was in; swaps leave it in no more
   std::vector<CoverUnits> more_;       // by candidate: its further gain without the leaving one
 };
 

@@ -324,6 +324,30 @@ double GroundField::open_ground_area(const MeshTree& tree) const {
   return area;
 }
 
+bool GroundField::is_open_deck(const MeshTree& tree, std::uint32_t part) const {
+  constexpr double kMostOpen = 0.5;
+  const std::vector<Rim> rims = rims_of(part);
+  const double beyond = 3.3 * radius_;
+  std::atomic<std::size_t> open = 0;
+  parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
+    const Rim& rim = rims[k];
+    const glm::dvec2 p = middle(column_[rim.sample]);
+    const glm::dvec3 at{p.x, p.y, z_[rim.sample]};
+    for (const double above : {0.25, 0.4, 0.5, 0.57, 0.8}) {
+      const glm::dvec3 from = at + glm::dvec3{0, 0, above * height_};
+      if (tree.between(from, from + rim.out * beyond)) return;
+    }
+    const auto column = column_at(at.x + rim.out.x * beyond, at.y + rim.out.y * beyond);
+    if (!column) return;
+    for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
+      if (has_room(n) && part_[n] != part && z_[n] < at.z - height_) {
+        ++open;
+        return;
+      }
+  });
+  return static_cast<double>(open.load()) > kMostOpen * static_cast<double>(rims.size());
+}
+
 bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   constexpr std::size_t kMost = 400;
   const std::span<const std::uint32_t> samples = members(part);
@@ -341,6 +365,26 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
     }
     return far;
   };
+  std::map<std::uint32_t, bool> grounds;  // by part: whether it may be ground, or water
+  const auto is_ground = [&](std::uint32_t number) {
+    const auto [at, is_new] = grounds.try_emplace(number, false);
+    const Part& p = parts_[number];
+    if (is_new) at->second = 2 * p.in_the_sky > p.samples && p.area(cell_) >= 10 * room() && !is_top(tree, number);
+    return at->second;
+  };
+  // An end of the model beneath ground, or beneath water, is no opening.
+  const auto leaves_beneath_ground = [&](const glm::dvec3& from, const glm::dvec3& way) {
+    std::uint32_t last = column_[samples.front()];
+    for (double at = 0; const auto column = column_at(from.x + way.x * at, from.y + way.y * at); at += cell_)
+      if (first_[*column] < first_[*column + 1]) last = *column;
+    bool beneath = false;
+    for (std::uint32_t n = first_[last]; n < first_[last + 1]; ++n) {
+      if (!has_room(n)) continue;
+      if (z_[n] < from.z && access_[part_[n]] == Access::reached) return false;
+      beneath = beneath || (z_[n] > from.z && is_ground(part_[n]));
+    }
+    return beneath;
+  };
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / kMost);
   const double far = cell_ * (columns_ + rows_), along = 4 * cell_;
   for (std::size_t k = 0; k < samples.size(); k += stride) {
@@ -348,7 +392,7 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
     for (int d = 0; d < kDirections; ++d) {
       const glm::dvec3 from{p.x, p.y, z_[samples[k]] + 0.8 * height_}, way = direction(d);
       const double seen = sight(from, way);
-      if (seen > far) return true;
+      if (seen > far && !leaves_beneath_ground(from, way)) return true;
       for (double at = along; at < seen; at += along) {
         const glm::dvec3 q = from + way * at;
         const auto column = column_at(q.x, q.y);
@@ -409,12 +453,12 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
     return closed;
   }
   if (by_step || effort == climb) {
-    // People climb onto goods, too: only a wide part is a floor.
-    if (!is_wide(number)) closed.kind = ClosedKind::top;
+    // People climb onto goods and machines, too: only a wide part is a floor, and a high one has a rail.
+    if (!is_wide(number) || (is_top(tree, number) && !is_gallery(tree, number))) closed.kind = ClosedKind::top;
     if (by_step && is_attic(number)) closed.kind = ClosedKind::attic;
   }
   if (effort != kEfforts) return closed;
-  if (access_[number] == Access::unreachable && !above) {
+  if ((access_[number] == Access::unreachable && !above) || is_top(tree, number) || is_open_deck(tree, number)) {
     closed.kind = ClosedKind::top;
     return closed;
   }
@@ -428,11 +472,17 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
 
 void GroundField::enter_closed(const MeshTree& tree) {
   const double enough = std::min(kEnteredShare * reached_area(), kEnteredRooms * room());
+  while (enter_next_closed(tree, enough)) {
+  }
+  std::ranges::stable_sort(entered_, std::ranges::greater{}, &ClosedPart::area_m2);
+}
+
+bool GroundField::enter_next_closed(const MeshTree& tree, double enough) {
   std::vector<std::uint32_t> told;
   double all = 0;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
     if (may_be_told(i)) told.push_back(i), all += parts_[i].area(cell_);
-  if (all < enough) return;
+  if (all < enough) return false;
   const Ways& ways = ways_from_reached();
   const std::vector<std::uint32_t> first = first_closed(ways);
   std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, ClosedPart>>> together;  // by the first on the way
@@ -441,17 +491,19 @@ void GroundField::enter_closed(const MeshTree& tree) {
     if (part.kind == ClosedKind::room || part.kind == ClosedKind::ground)
       together[first[i]].emplace_back(i, std::move(part));
   }
+  bool any = false;
   for (auto& [number, parts] : together) {
     double area = 0;
     for (const auto& [i, part] : parts) area += part.area_m2;
     if (area < enough) continue;
+    any = true;
     for (auto& [i, part] : parts) {
       access_[i] = Access::reached;
       entered_.push_back(std::move(part));
     }
   }
-  if (!entered_.empty()) ways_.reset();
-  std::ranges::stable_sort(entered_, std::ranges::greater{}, &ClosedPart::area_m2);
+  if (any) ways_.reset();
+  return any;
 }
 
 std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tree) {

@@ -204,6 +204,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
   std::ranges::transform(scene.meshes, water.begin(), [](const MeshInfo& mesh) { return names_water(mesh.name); });
   struct Found {
     std::vector<std::uint64_t> wide, thin, covered;  // covered: by narrow triangles at the middle
+    std::vector<std::uint64_t> water;
   };
   tbb::enumerable_thread_specific<Found> collected;
   const auto look = [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -236,7 +237,9 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
           const glm::dvec2 p = middle(column);
           const auto z = static_cast<float>(t[0].z - (n.x * (p.x - t[0].x) + n.y * (p.y - t[0].y)) / n.z);
           raise_to(top_[column], z);
-          if (walkable) (narrow ? own.covered : own.wide).push_back(std::uint64_t{column} << 32 | ordered(z));
+          const std::uint64_t key = std::uint64_t{column} << 32 | ordered(z);
+          if (walkable) (narrow ? own.covered : own.wide).push_back(key);
+          if (water[scene.mesh_of(i)]) own.water.push_back(key);
         }
       });
     }
@@ -300,6 +303,19 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
     taken_.insert(taken_.end(), taken.begin(), taken.end());
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
+  // Nor on its bed. A tunnel below is deeper.
+  std::vector<std::uint8_t> wet(count, 0);
+  for (const Found& some : collected)
+    for (const std::uint64_t key : some.water) {
+      const auto column = static_cast<std::uint32_t>(key >> 32);
+      const float z = from_ordered(static_cast<std::uint32_t>(key));
+      if (top_[column] > z + apart) continue;
+      wet[column] = 1;
+      std::uint32_t bed = first_[column];
+      while (bed < first_[column + 1] && z_[bed] <= z) ++bed;
+      if (bed > first_[column] && z_[bed - 1] < z - climb_) taken_[bed - 1] |= kOverhead | kLow;
+    }
+  wet_columns_ = static_cast<std::size_t>(std::ranges::count(wet, 1));
 }
 
 void GroundField::find_room(const SceneData& scene) {
@@ -697,7 +713,8 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
 }
 
 double GroundField::outline() const {
-  return static_cast<double>(std::ranges::count_if(top_, [](float z) { return std::isfinite(z); })) * cell_ * cell_;
+  const auto held = std::ranges::count_if(top_, [](float z) { return std::isfinite(z); });
+  return static_cast<double>(static_cast<std::size_t>(held) - wet_columns_) * cell_ * cell_;
 }
 
 // Marks unreached parts as sealed if they are behind walls: under a cover, and not one step above or below a reached
@@ -824,6 +841,50 @@ std::optional<std::uint32_t> GroundField::nearest(std::uint32_t column, double z
     if (distance <= tolerance) tolerance = distance, best = s;
   }
   return best;
+}
+
+bool GroundField::is_ridge(const MeshTree& tree, const glm::dvec3& place) const {
+  const double least = 0.5 / 0.3 * radius_, beyond = std::max(cell_, 0.15 * least);
+  // How far the ground goes on, and whether it then ends in the air.
+  struct Side {
+    double width;
+    bool in_the_air;
+  };
+  const auto side = [&](const glm::dvec3& from, const glm::dvec2& way) -> Side {
+    double z = from.z;
+    for (double width = 0;; width += cell_) {
+      const glm::dvec2 q = glm::dvec2(from.x, from.y) + way * (width + cell_);
+      const auto column = column_at(q.x, q.y);
+      const auto sample = column ? nearest(*column, z, climb_) : std::nullopt;
+      if (!sample) {
+        const glm::dvec2 end = glm::dvec2(from.x, from.y) + way * (width + beyond);
+        return {width, !tree.between({end.x, end.y, z + climb_}, {end.x, end.y, z - climb_})};
+      }
+      if (width >= least) return {width, false};
+      z = z_[*sample];
+    }
+  };
+  constexpr double kHalf = 0.70710678118654752;
+  constexpr std::array<glm::dvec2, 4> kWays{glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(kHalf, kHalf),
+                                            glm::dvec2(kHalf, -kHalf)};
+  const auto is_narrow = [&](const glm::dvec3& from) {
+    return std::ranges::any_of(kWays, [&](const glm::dvec2& way) {
+      const Side one = side(from, way);
+      if (!one.in_the_air) return false;
+      const Side other = side(from, -way);
+      return other.in_the_air && one.width + cell_ + other.width < least;
+    });
+  };
+  if (!is_narrow(place)) return false;
+  // A corner of wide ground is narrow, too, and so is what is beside it.
+  return std::ranges::none_of(kWays, [&](const glm::dvec2& way) {
+    return std::ranges::any_of(std::array{1.0, -1.0}, [&](double sign) {
+      const glm::dvec2 q = glm::dvec2(place.x, place.y) + way * (sign * 0.7 * least);
+      const auto column = column_at(q.x, q.y);
+      const auto sample = column ? nearest(*column, place.z, climb_) : std::nullopt;
+      return sample && !is_narrow({q.x, q.y, z_[*sample]});
+    });
+  });
 }
 
 Access GroundField::at(const glm::dvec3& place) const {

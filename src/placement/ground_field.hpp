@@ -64,6 +64,9 @@ class GroundField {
   // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was
   // called.
   Access at(const glm::dvec3& place) const;
+  // True if the ground at this place ends in the air on both sides within half a metre (of a passage of 0.6 m), as the
+  // top of a wall or a beam does: one may cross it, and no tripod stands there.
+  bool is_ridge(const MeshTree& tree, const glm::dvec3& place) const;
   // Entrances of the reached parts, the largest first; empty if nothing is reached.
   const std::vector<glm::dvec3>& entries() const { return entries_; }
   // A part that something bars the way to.
@@ -90,7 +93,7 @@ class GroundField {
     glm::dvec2 high;
   };
   std::vector<Patch> thin_floors() const;
-  // Area of the columns that hold anything.
+  // Area of the columns that hold anything but water on top.
   double outline() const;
   // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
   double ground_area(double highest_z) const;
@@ -156,6 +159,9 @@ class GroundField {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs(const MeshTree& tree) const;
   std::vector<std::uint32_t> narrow_ones(std::vector<std::uint8_t>& marked) const;
   ClosedPart closed_part(const MeshTree& tree, const Ways& ways, std::uint32_t part) const;
+  // Enters what enter_closed() does, as it is seen from what is reached now; false if nothing is left. What lies beyond
+  // an entered part may be easier to get to from there.
+  bool enter_next_closed(const MeshTree& tree, double enough);
   // The closed part through which the way to each closed part leads first.
   std::vector<std::uint32_t> first_closed(const Ways& ways) const;
   std::vector<std::uint32_t> easiest_samples(const Ways& ways) const;
@@ -175,6 +181,8 @@ class GroundField {
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
   // True if one looks down on what is reached over a rail, and nobody falls off.
   bool is_gallery(const MeshTree& tree, std::uint32_t part) const;
+  // True for a floor that ends in the air high above another, as a wing does: nobody walks on it.
+  bool is_open_deck(const MeshTree& tree, std::uint32_t part) const;
   // True if one sees what is reached, or out of the model, from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
   bool may_be_told(std::uint32_t part) const;
@@ -219,6 +227,7 @@ class GroundField {
   glm::dvec2 corner_{};
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> top_;             // per column: the highest surface at its middle
+  std::size_t wet_columns_ = 0;        // with water on top
   std::vector<std::uint32_t> first_;   // per column: its start in the samples, which ascend in z
   std::vector<std::uint32_t> column_;  // per sample
   std::vector<float> z_;               // per sample

@@ -195,6 +195,7 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
     if (access != Access::reached && !(any_access && room)) return kind_of(reason_of(access));
     if (limits.any() && !limits.allow_near(to_vec3(p) + scene.origin, spacing)) return kind_of(LeftOutReason::limits);
     if (tree.covered(p, from, to)) return kind_of(LeftOutReason::headroom);
+    if (field.is_ridge(tree, p)) return kind_of(LeftOutReason::narrow);
     // No way leads into a solid, whatever side its faces show: where one gets to on foot there is none.
     if (access != Access::reached && tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2}))
       return kind_of(LeftOutReason::sealed);

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/seconds_since.hpp"
-#include "cover/network.hpp"
 #include "evaluate/storey_ties.hpp"
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
@@ -375,7 +374,7 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
   return points;
 }
 
-// Finds what a further station would add to the answer, linked to it, where links can connect the answer.
+// Finds what a further station would add to the answer, linked to it.
 std::optional<FurtherStation> further_station(const PlanResult& result, const FewestChoice& choice,
                                               PlanContext& context, const Simulator& simulator) {
   const bool chosen = choice.table.stations().size() > choice.asked.existing;
@@ -383,10 +382,8 @@ std::optional<FurtherStation> further_station(const PlanResult& result, const Fe
   const std::vector<PlacedStation>& stations = result.front[answer(result)].stations;
   const CoverProblem asked = cover_problem(choice);
   const CoverageMatrix even = with_even_weights(asked.matrix);
-  CoverProblem problem{.matrix = even};
+  CoverProblem problem{.matrix = even, .graph = asked.graph, .link = asked.link};
   for (const PlacedStation& station : stations) problem.existing.push_back(choice.table.nearest(station));
-  if (components_of(asked, problem.existing, asked.link).count <= 1)
-    problem.graph = asked.graph, problem.link = asked.link;
   const std::span placed = std::span(stations).subspan(choice.asked.existing);
   const double element_m2 = surveyed_area_m2(simulator.scene()) / static_cast<double>(asked.matrix.elements());
   const FurtherStations more = further_stations(problem, placed.size(), element_m2);

@@ -133,7 +133,7 @@ bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double as
 }
 
 bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std::stop_token& stop) {
-  if (!choice.to_visit || choice.asked.minutes || out_of_reach(choice)) return false;
+  if (!choice.to_visit || choice.asked.minutes) return false;
   CoverProblem problem = cover_problem(choice);
   problem.coverage = 1;  // as much as there is
   const CoverageMatrix even = with_even_weights(problem.matrix);
@@ -147,8 +147,10 @@ bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std:
     std::vector<std::size_t> network = choice.network.chosen;
     network.push_back(more.candidates.front());
     if (!columns) columns.emplace(problem.matrix);
-    choice.network =
+    CoverSolution larger =
         evaluate_cover(cover_problem(choice), improve_by_swaps(problem, *columns, std::move(network), stop));
+    if (larger.violation > choice.network.violation) break;
+    choice.network = std::move(larger);
     choice.one_fewer.reset();
     any = true;
   }

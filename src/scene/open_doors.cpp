@@ -320,6 +320,15 @@ Around around(const Reading& model, std::span<const std::uint32_t> others, const
   const Sight left = sight(panel.middle - aside), right = sight(panel.middle + aside), above = sight(panel.middle + up);
   return {wall(left) && wall(right), wall(above), any(left) && any(right) && any(above)};
 }
+// True if side walls run past a panel on both sides, as those of a passage do past a shutter.
+bool in_a_passage(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
+  const double half = panel.width / 2, off = panel.thickness / 2 + 0.25;
+  const auto ends = [&](double distance) { return distance >= half - kAside && distance <= half + kAside; };
+  return std::ranges::all_of(std::array{-off, off}, [&](double at) {
+    const Sight seen = look(model, others, panel.middle + panel.through * at, panel.along, half + kAside);
+    return ends(seen.before) && ends(seen.behind);
+  });
+}
 bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
   const Around found = around(model, others, panel);
   return found.wall_beside && found.wall_above;
@@ -371,7 +380,8 @@ std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, cons
     for (const Leaf& leaf : door)
       whole.triangles.insert(whole.triangles.end(), leaf.triangles.begin(), leaf.triangles.end());
     std::ranges::sort(whole.triangles);
-    const Around found = around(model, index.beside(whole, all.width / 2 + kFree + kAside), all);
+    const auto beside = index.beside(whole, all.width / 2 + kFree + kAside);
+    const Around found = around(model, beside, all);
     const bool named = std::ranges::all_of(door, &Leaf::named);
     const bool leaf_named =
         std::ranges::all_of(door, [&](const Leaf& leaf) { return names_a_leaf(model.raw.meshes[leaf.mesh].name); });
@@ -381,7 +391,7 @@ std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, cons
     const bool several = door.size() > 1;
     const bool of_leaves = several && door.size() <= kMostLeavesOfOne && all.width <= kWidestGate &&
                            std::ranges::all_of(door, [](const Leaf& leaf) { return leaf.width <= kWidestLeaf; });
-    if ((named && found.wall_beside) || (several && leaf_named && found.frame) ||
+    if ((named && (found.wall_beside || in_a_passage(model, beside, all))) || (several && leaf_named && found.frame) ||
         (of_leaves && found.wall_beside && found.wall_above))
       gates.insert(gates.end(), door.begin(), door.end());
   }

@@ -399,6 +399,13 @@ bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
 
 bool has_ways(const Hypothesis& h) { return h.doors >= 1 || h.flights >= 1; }
 
+// Among rooms of a person's height with doors, the same drawing read larger has rooms that nobody builds.
+bool is_for_giants(const Hypothesis& best, const Hypothesis& other) {
+  constexpr double kLowestRoom_m = 2, kHighestRoom_m = 6, kNoRoom_m = 20;
+  return other.up == best.up && best.doors >= 1 && best.headroom_m >= kLowestRoom_m &&
+         best.headroom_m <= kHighestRoom_m && other.headroom_m > kNoRoom_m;
+}
+
 // A tower that lies on its side has floors, too, and few models have X up: without a door or a stair along it, X gives
 // way to another axis that has one, and is never taken unasked.
 bool is_doubtful(const Hypothesis& h, const std::optional<UpAxis>& up) {
@@ -429,6 +436,7 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
     // They are in metres nearly everywhere: only doors and stairs tell otherwise.
     if (national && other.unit != best.unit && (has_ways(best) || !has_ways(other))) return false;
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
+    if (is_for_giants(best, other)) return false;
     // A rule that a file may break says less than doors and stairs that only the other reading has.
     const bool by_rule = rule && keeps_rule && (has_ways(best) || !has_ways(other));
     return best.score - other.score < (by_rule ? kRuleLead : kLead) ||

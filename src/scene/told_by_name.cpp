@@ -43,9 +43,11 @@ bool names_a_door(const std::string& name) {
     return false;
   return words.has({"door", "tür",   "TÜR",  "tuer", "puerta", "deur", "drzwi", "dveř", "dvere",   "двер",      "Двер",
                     "ДВЕР", "πόρτα", "θύρα", "门",   "門",     "ドア", "扉",    "문",   "rolltor", "schiebetor"}) ||
-         words.has_whole({"porte",  "portes",   "porta", "porte-fenêtre", "ovi",    "dør",     "dörr",  "kapı",
-                          "ajtó",   "ușă",      "врата", "gate",          "gates",  "tor",     "tore",  "portail",
-                          "portón", "cancello", "poort", "brama",         "ворота", "shutter", "roller"});
+         words.has_whole({"porte",      "portes",  "porta",    "porte-fenêtre", "ovi",      "dør",      "dörr",
+                          "kapı",       "ajtó",    "ușă",      "врата",         "gate",     "gates",    "tor",
+                          "tore",       "portail", "portón",   "cancello",      "poort",    "brama",    "ворота",
+                          "shutter",    "roller",  "persiana", "saracinesca",   "serranda", "rolladen", "rollladen",
+                          "rollgitter", "rolluik", "roleta"});
 }
 
 bool names_a_leaf(const std::string& name) {

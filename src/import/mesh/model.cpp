@@ -17,10 +17,8 @@ using nlohmann::json;
 
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Zero while no coordinate is larger than `kNear` times the mesh, so that local models keep their coordinates; else the
-// middle of the mesh, rounded.
-glm::dvec3 origin_of(const Mesh& mesh) {
-  constexpr double kNear = 64;
+// Zero while no coordinate is larger than `near` times the mesh; else the middle of the mesh, rounded.
+glm::dvec3 origin_of(const Mesh& mesh, double near) {
   glm::dvec3 low(INFINITY), high(-INFINITY);
   for (const Part& part : mesh.parts)
     for (const std::uint32_t v : part.indices)
@@ -29,9 +27,23 @@ glm::dvec3 origin_of(const Mesh& mesh) {
   const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   const glm::dvec3 middle = 0.5 * (low + high);
   const double farthest = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
-  if (!(farthest > kNear * extent) || !(extent > 0)) return glm::dvec3(0);
+  if (!(farthest > near * extent) || !(extent > 0)) return glm::dvec3(0);
   const double step = std::pow(10, std::ceil(std::log10(extent)));
   return {step * std::round(middle.x / step), step * std::round(middle.y / step), step * std::round(middle.z / step)};
+}
+
+// Models about their own origin keep their coordinates, but for meshes far from it. Others, on a site's grid or a
+// national one, lie as far from 0 as they are wide, and float32 would round them all.
+double near_of(const Model& model) {
+  constexpr double kLocal = 64, kElsewhere = 1, kFar = 1.5;
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const Mesh& mesh : model.meshes)
+    for (const Part& part : mesh.parts)
+      for (const std::uint32_t v : part.indices)
+        if (const glm::dvec3& p = part.positions[v]; finite(p)) low = glm::min(low, p), high = glm::max(high, p);
+  if (!finite(low) || !finite(high)) return kLocal;
+  const glm::dvec3 size = high - low, far = glm::max(glm::abs(low), glm::abs(high));
+  return std::max({far.x, far.y, far.z}) > kFar * std::max({size.x, size.y, size.z}) ? kElsewhere : kLocal;
 }
 
 // Corners as they are stored, each once.
@@ -95,7 +107,10 @@ class Vertices {
 class Writer {
  public:
   explicit Writer(const Model& model)
-      : model_(model), mesh_indices_(model.meshes.size(), -1), origins_(model.meshes.size(), glm::dvec3(0)) {}
+      : model_(model),
+        near_(near_of(model)),
+        mesh_indices_(model.meshes.size(), -1),
+        origins_(model.meshes.size(), glm::dvec3(0)) {}
 
   std::string run() {
     for (std::size_t m = 0; m < model_.meshes.size(); ++m) add_mesh(m);
@@ -146,7 +161,7 @@ class Writer {
 
   void add_mesh(std::size_t index) {
     const Mesh& mesh = model_.meshes[index];
-    if (!model_.rounded) origins_[index] = origin_of(mesh);
+    if (!model_.rounded) origins_[index] = origin_of(mesh, near_);
     json out{{"primitives", json::array()}};
     for (const Part& part : mesh.parts)
       if (json primitive = primitive_of(part, origins_[index]); !primitive.is_null())
@@ -242,6 +257,7 @@ class Writer {
   }
 
   const Model& model_;
+  double near_;
   Buffer buffer_;
   std::vector<int> mesh_indices_;  // in glTF; -1: no triangles
   std::vector<glm::dvec3> origins_;

@@ -329,5 +329,72 @@ TEST(ClosedParts, AGratingIsAFloor) {
   EXPECT_GT(found, 1100);  // of 1230
 }
 
+// A stair leads onto the tops of walls without a ceiling: a way of a kind, and no place for a tripod.
+TEST(ClosedParts, TheTopOfAWallIsNoPlaceForATripod) {
+  for (const double width : {0.3, 0.8}) {
+    Builder b;
+    b.floor(-5, -5, 15, 15, 0);
+    b.box({0, 0, 0}, {10, width, 2}).box({0, 0, 0}, {width, 10, 2});
+    for (int k = 0; k < 10; ++k) b.box({2 + 0.3 * k, width, 0}, {5, width + 1, 0.2 * (k + 1)});  // from the west
+    const SearchArea area = SearchArea::build(b.scene());
+    EXPECT_TRUE(holds(area, 12, 12, 0));
+    EXPECT_EQ(holds(area, 8, width / 2, 2), width > 0.5) << width;
+    EXPECT_EQ(holds(area, width / 2, 8, 2), width > 0.5) << width;
+    EXPECT_TRUE(holds(area, 4.85, width + 0.85, 2)) << "a corner of the landing";
+  }
+}
+
+TEST(ClosedParts, AWingOverTheFloorIsNoFloor) {
+  Builder b;
+  b.floor(-10, -30, 40, -0.2, 0).floor(0, 0, 30, 30, 0).box({-0.2, -0.2, 9}, {30.2, 30.2, 9.2});
+  b.box({-0.2, 0, 0}, {0, 30, 9}).box({30, 0, 0}, {30.2, 30, 9}).box({0, 30, 0}, {30, 30.2, 9});
+  b.box({0, -0.2, 0}, {12, 0, 9}).box({18, -0.2, 0}, {30, 0, 9});  // the gate is open
+  b.box({3, 12, 3.8}, {27, 15, 4.0});
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_TRUE(holds(area, 15, 5, 0));
+  EXPECT_FALSE(holds(area, 15, 13.5, 4));
+}
+
+// Between a tunnel's roof and the street above it there is earth, which no model has.
+TEST(ClosedParts, TheEarthAroundATunnelIsNoRoom) {
+  Builder b;
+  b.floor(-20, -12, 0, 12, 0);  // before the portal
+  b.box({0, -4, -0.5}, {40, 4, 0}).box({0, -4, 0}, {40, -3.6, 4}).box({0, 3.6, 0}, {40, 4, 4});
+  b.box({0, -4, 4}, {40, 4, 4.4}).box({2, -12, 8}, {40, 12, 8.4});
+  const SearchArea area = SearchArea::build(b.scene());
+  EXPECT_TRUE(holds(area, 20, 0, 0));
+  EXPECT_FALSE(holds(area, 20, 0, 4.4));
+}
+
+TEST(ClosedParts, NobodyStandsOnTheBedOfALake) {
+  for (const bool filled : {true, false}) {
+    Named site;
+    Builder valley;
+    valley.floor(-20, 0, 20, 6, 10);                                  // the crest of a dam
+    valley.quad({-20, 0, 10}, {-20, 0, 0}, {20, 0, 0}, {20, 0, 10});  // its face
+    valley.floor(-20, -30, 20, 0, 0).box({-21, -30, -1}, {-20, 6, 14}).box({20, -30, -1}, {21, 6, 14});
+    site.add("Terreno", valley);
+    if (filled) site.add("Acqua_invaso", Builder().floor(-20, -30, 20, 0, 8));
+    const SearchArea area = SearchArea::build(site.scene());
+    if (filled) EXPECT_TRUE(holds(area, 0, 3, 10));
+    EXPECT_EQ(holds(area, 0, -15, 0), !filled);
+    EXPECT_FALSE(holds(area, 0, -15, 8)) << filled;
+  }
+}
+
+// A terrace over a floor; its ladder begins on a platform that one has to step onto.
+TEST(ClosedParts, WhatAnEnteredPartLeadsToIsEnteredToo) {
+  for (const bool ladder : {true, false}) {
+    Builder b;
+    b.floor(-40, 0, 22, 20, 0).box({22, 0, 0}, {30, 20, 0.9}).floor(30, 0, 50, 20, 0).box({30, 0, 3.8}, {50, 20, 4});
+    b.box({30, 0, 0}, {30.2, 20, 3.8}).box({49.8, 0, 0}, {50, 20, 3.8});
+    b.box({30, 0, 0}, {50, 0.2, 3.8}).box({30, 19.8, 0}, {50, 20, 3.8});
+    for (int k = 1; k <= 11 && ladder; ++k) b.box({29.9, 9.75, 0.87 + 0.27 * k}, {29.94, 10.25, 0.9 + 0.27 * k});
+    const SearchArea area = SearchArea::build(b.scene());
+    EXPECT_TRUE(holds(area, 26, 10, 0.9)) << ladder;
+    EXPECT_EQ(holds(area, 40, 10, 4), ladder);
+  }
+}
+
 }  // namespace
 }  // namespace vantage

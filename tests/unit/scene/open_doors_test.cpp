@@ -223,6 +223,21 @@ TEST(OpenDoors, AGateIsAsWideAsItsWallLeavesRoom) {
   EXPECT_EQ(gate("Motor 1", 0.5), Names{});
 }
 
+TEST(OpenDoors, AShutterClosesAPassage) {
+  const auto passage = [](const std::string& name, double width) {
+    Joinery site;
+    site.raw = {};
+    site.mesh("walls")
+        .box({-10, -0.3, 0}, {10, 0, 2.8})
+        .box({-10, 4, 0}, {10, 4.3, 2.8})
+        .box({-10, 0, -0.2}, {10, 4, 0});
+    return site.mesh(name).box({1, 0, 0}, {1.04, width, 2.8}).open();
+  };
+  EXPECT_EQ(passage("Persiana_enrollable", 4), Names{"Persiana_enrollable"});
+  EXPECT_EQ(passage("Persiana_enrollable", 3), Names{}) << "it stands in the passage";
+  EXPECT_EQ(passage("panel", 4), Names{});
+}
+
 // Panes between posts, two leaves that slide before them, and what drives them above: only the leaves open.
 TEST(OpenDoors, LeavesOfGlassSlideBetweenPanes) {
   const auto front = [](const char* left, const char* right) {
