@@ -61,6 +61,17 @@ TEST(Greedy, TakesLaterWhatIsNotLinkedYet) {
   EXPECT_EQ(chosen.back() - chosen.front(), 5u);
 }
 
+TEST(Greedy, GrowsEachOfTwoPartsThatNothingLinks) {
+  const CoverageMatrix matrix = random_matrix(20, 100, 6, 0.1);
+  StationGraph chains(20);
+  for (std::size_t k = 0; k + 1 < 20; ++k)
+    if (k != 9 && k != 18) chains.set_overlap(k, k + 1, 0.5F);  // 0 to 9, 10 to 18, and 19 alone
+  Chosen chosen = greedy({.matrix = matrix, .graph = &chains, .existing = {5, 14}, .most = 20, .link = 0.5});
+  std::ranges::sort(chosen);
+  EXPECT_LT(chosen.back(), 19u);
+  EXPECT_GT(chosen.size(), 12u);
+}
+
 TEST(Greedy, TakesNoTwoThatExcludeEachOther) {
   const CoverageMatrix matrix = random_matrix(20, 100, 7, 0.2);
   StationGraph graph(20);

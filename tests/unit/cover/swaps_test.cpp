@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 
 #include "unit/cover/random_matrix.hpp"
@@ -47,6 +48,27 @@ TEST(Swaps, BreakNoConnectionAndNoExclusion) {
     EXPECT_TRUE(test::connected_by_definition(graph, chosen, 1));
     for (const std::size_t k : chosen) EXPECT_FALSE(graph.excluded(0, k));
     EXPECT_GE(coverage_by_definition(matrix, chosen), coverage_by_definition(matrix, start));
+    changed += chosen != start;
+  }
+  EXPECT_GT(changed, 5u);
+}
+
+TEST(Swaps, ImproveANetworkInTwoPartsWithoutAThird) {
+  std::size_t changed = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const CoverageMatrix matrix = random_matrix(24, 120, seed, 0.12, 3);
+    const StationGraph random = test::random_links(24, seed + 50, 0.4);
+    StationGraph graph(24);
+    for (const std::size_t first : {0u, 12u})
+      for (std::size_t a = first; a < first + 12; ++a)
+        for (std::size_t b = a + 1; b < first + 12; ++b)
+          if (random.linked(a, b, 1) || b == a + 1) graph.set_overlap(a, b, 1);
+    const Chosen start{0, 1, 12, 13, 14};
+    const Chosen chosen = improve_by_swaps({.matrix = matrix, .graph = &graph, .link = 1}, start);
+    std::array<Chosen, 2> parts;
+    for (const std::size_t k : chosen) parts[k / 12].push_back(k);
+    for (const Chosen& part : parts) EXPECT_TRUE(part.empty() || test::connected_by_definition(graph, part, 1));
     changed += chosen != start;
   }
   EXPECT_GT(changed, 5u);

@@ -301,6 +301,17 @@ TEST_F(MeshImportTest, TextsAtNationalCoordinatesAreReadInDouble) {
   }
 }
 
+// A site's grid puts a model some times its size away from 0.
+TEST_F(MeshImportTest, TextsOnASitesGridAreReadInDouble) {
+  std::string obj;
+  const double x[] = {1000.123456, 1028.654321, 1028.654321}, y[] = {2000.123456, 2000.123456, 2018.654321};
+  for (int k = 0; k < 3; ++k) obj += "v " + std::to_string(x[k]) + " " + std::to_string(y[k]) + " 412.5\n";
+  const Scene scene = Scene::load(write("grid.obj", obj + "f 1 2 3\n"), with_axes(Unit::metre, UpAxis::z));
+  EXPECT_NEAR(scene.bounds().min.x, x[0], 2e-6);
+  EXPECT_NEAR(scene.bounds().max.y, y[2], 2e-6);
+  for (const std::string& note : scene.notes()) EXPECT_EQ(note.find("float"), note.npos) << note;
+}
+
 // Half a metre is lost where no digit is missing in the file.
 TEST_F(MeshImportTest, FloatsAtNationalCoordinatesAreTold) {
   const auto bytes = [](auto value) { return std::string(reinterpret_cast<const char*>(&value), sizeof value); };

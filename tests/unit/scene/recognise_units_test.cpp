@@ -103,6 +103,23 @@ TEST(RecogniseUnits, AsksWhereNothingTells) {
   EXPECT_TRUE(recognise(tube.written(Unit::millimetre, UpAxis::z), {}, UpAxis::z).question.empty());
 }
 
+// Between benches the size of what a person walks along, most of a greenhouse is reached only by a giant.
+TEST(RecogniseUnits, NobodyBuildsRoomsForGiants) {
+  House house;
+  house.points.clear(), house.triangles.clear();
+  house.box({-6, -6, -0.2}, {32, 36, 0});
+  for (const double y : {0.0, 29.8}) house.box({0, y, 0}, {12, y + 0.2, 4}), house.box({13, y, 0}, {26, y + 0.2, 4});
+  for (const double y : {0.0, 29.8}) house.box({12, y, 2.1}, {13, y + 0.2, 4});
+  house.box({0, 0, 0}, {0.2, 30, 4}), house.box({25.8, 0, 0}, {26, 30, 4}), house.box({0, 0, 4}, {26, 30, 4.2});
+  for (const double x : {1.2, 3.4, 5.6, 7.8, 10.0, 14.6, 16.8, 19.0, 21.2, 23.4})
+    house.box({x, 1.2, 0.75}, {x + 1.25, 28.8, 0.8}), house.box({x + 0.1, 1.3, 0}, {x + 0.15, 28.7, 0.75});
+  for (const Unit unit : kUnits) {
+    const Recognised found = recognise(house.written(unit, UpAxis::z), {}, UpAxis::z);
+    EXPECT_EQ(found.question, "") << to_string(unit);
+    EXPECT_EQ(found.unit, unit);
+  }
+}
+
 TEST(RecogniseUnits, NationalCoordinatesTellTheAxisAndAreInMetres) {
   const auto pit = [](const Vec3& at) {
     House site;
