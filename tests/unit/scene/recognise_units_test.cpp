@@ -103,7 +103,7 @@ TEST(RecogniseUnits, AsksWhereNothingTells) {
   EXPECT_TRUE(recognise(tube.written(Unit::millimetre, UpAxis::z), {}, UpAxis::z).question.empty());
 }
 
-// Between benches the size of what a person walks along, most of a greenhouse is reached only by a giant.
+// A giant steps over the benches of a greenhouse, and finds doors on its beams.
 TEST(RecogniseUnits, NobodyBuildsRoomsForGiants) {
   House house;
   house.points.clear(), house.triangles.clear();
@@ -113,6 +113,8 @@ TEST(RecogniseUnits, NobodyBuildsRoomsForGiants) {
   house.box({0, 0, 0}, {0.2, 30, 4}), house.box({25.8, 0, 0}, {26, 30, 4}), house.box({0, 0, 4}, {26, 30, 4.2});
   for (const double x : {1.2, 3.4, 5.6, 7.8, 10.0, 14.6, 16.8, 19.0, 21.2, 23.4})
     house.box({x, 1.2, 0.75}, {x + 1.25, 28.8, 0.8}), house.box({x + 0.1, 1.3, 0}, {x + 0.15, 28.7, 0.75});
+  for (double y = 3; y < 29; y += 4) house.box({0.2, y, 3.6}, {25.8, y + 0.16, 3.7});  // its beams, and doors on them
+  for (double x = 2; x < 25; x += 3) house.box({x, 0.2, 3.92}, {x + 0.05, 29.8, 4});
   for (const Unit unit : kUnits) {
     const Recognised found = recognise(house.written(unit, UpAxis::z), {}, UpAxis::z);
     EXPECT_EQ(found.question, "") << to_string(unit);
