@@ -495,6 +495,8 @@ std::string quoted_pattern(std::string name) {
   return "'" + name + "'";
 }
 
+constexpr double kLowestRung_m = 0.1;
+
 // "behind a closed door", "behind 2 closed doors, a headroom of 1.62 m under them", …
 std::string barred(const ClosedPart& part) {
   const std::string doors = part.doors.empty()       ? std::string()
@@ -506,7 +508,9 @@ std::string barred(const ClosedPart& part) {
   switch (part.bar) {
     case Bar::door: return "behind " + (doors.empty() ? std::string("a closed door") : doors);
     case Bar::headroom: return "behind a headroom of " + metres + too + ", where a person stoops";
-    case Bar::climb: return "up or down a ladder, or a stair as steep as one, with steps of up to " + metres + too;
+    case Bar::climb:
+      return "up or down a ladder, or a stair as steep as one" +
+             (part.height_m >= kLowestRung_m ? ", with steps of up to " + metres : std::string()) + too;
     case Bar::step: return (part.height_m > 0 ? "beyond a step of " + metres : "beyond a gap in the floor") + too;
     case Bar::no_way: break;
   }

@@ -166,6 +166,32 @@ bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
                   names_a_leaf(scene.meshes[mesh].name));
 }
 
+// Meshes of water, by their name or their material's, and those with an open surface: level and wide, as no pipe is.
+enum class Water : std::uint8_t { none, some, open };
+std::vector<Water> waters_of(const SceneData& scene) {
+  constexpr double kLevel = 0.996, kMostly = 0.9, kLeast_m2 = 10, kNarrowest_m = 1;  // within 5°
+  std::vector<Water> waters(scene.meshes.size(), Water::none);
+  for (std::size_t m = 0; m < waters.size(); ++m) {
+    const MeshRange& range = scene.ranges[m];
+    if (!names_water(scene.meshes[m].name) && !scene.materials[range.material].water) continue;
+    waters[m] = Water::some;
+    double up = 0, level = 0;
+    Box box;
+    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i) {
+      const Corners t = corners_of(scene, i);
+      const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
+      if (!(n.z > 0)) continue;
+      up += n.z / 2;
+      if (n.z < kLevel * length(n)) continue;
+      level += n.z / 2;
+      for (const glm::dvec3& corner : t) box.extend(to_vec3(corner));
+    }
+    const double longest = std::max(box.size().x, box.size().y);
+    if (level >= std::max(kLeast_m2, kMostly * up) && level >= kNarrowest_m * longest) waters[m] = Water::open;
+  }
+  return waters;
+}
+
 }  // namespace
 
 GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::span<const std::uint32_t> turned,
@@ -200,8 +226,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
   top_.assign(count, -std::numeric_limits<float>::infinity());
   const double least_up = std::cos(slope_);
   // Nobody stands on water.
-  std::vector<std::uint8_t> water(scene.meshes.size());
-  std::ranges::transform(scene.meshes, water.begin(), [](const MeshInfo& mesh) { return names_water(mesh.name); });
+  const std::vector<Water> water = waters_of(scene);
   struct Found {
     std::vector<std::uint64_t> wide, thin, covered;  // covered: by narrow triangles at the middle
     std::vector<std::uint64_t> water;
@@ -214,7 +239,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       if (n.z == 0) continue;
       const double up = n.z < 0 && std::ranges::binary_search(turned, i) ? -n.z : n.z;
-      const bool walkable = !plane && up >= least_up * length(n) && !water[scene.mesh_of(i)];
+      const bool walkable = !plane && up >= least_up * length(n) && water[scene.mesh_of(i)] == Water::none;
       // Bars of a grating lie between the middles of columns: they carry where they pass a column, at its height there.
       const bool narrow = walkable && up < cell_ * longest_edge(t);
       if (narrow) {
@@ -239,7 +264,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
           raise_to(top_[column], z);
           const std::uint64_t key = std::uint64_t{column} << 32 | ordered(z);
           if (walkable) (narrow ? own.covered : own.wide).push_back(key);
-          if (water[scene.mesh_of(i)]) own.water.push_back(key);
+          if (water[scene.mesh_of(i)] == Water::open) own.water.push_back(key);
         }
       });
     }

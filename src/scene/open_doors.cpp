@@ -442,7 +442,8 @@ std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t
     if (!index) index.emplace(model);
     const auto others = index->beside(*gate, gate->width / 2 + gate->thickness / 2 + kFree + kAside);
     if (!gate->panel) gate->panel = panel_among(model, others, *gate);
-    if (gate->panel && leads_through(model, others, *gate)) of_several.push_back(std::move(*gate));
+    // A line passes between the bars of a grille.
+    if ((gate->panel || gate->named) && leads_through(model, others, *gate)) of_several.push_back(std::move(*gate));
   };
   const auto is_door = [&](Leaf& leaf) {
     ++looked;

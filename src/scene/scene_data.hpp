@@ -37,6 +37,7 @@ struct Material {
   std::array<float, 4> base_colour{1, 1, 1, 1};  // linear
   std::int32_t image = -1;                       // index into SceneData::images; sRGB encoded
   bool repeat_u = true, repeat_v = true;
+  bool water = false;  // by its name
 };
 
 // A mesh is a run of triangles; the MeshInfo of the same index has its name and role.

@@ -2,9 +2,13 @@
 #include "scene/told_by_name.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <initializer_list>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/text.hpp"
 
@@ -13,16 +17,28 @@ namespace {
 
 class Words {
  public:
-  explicit Words(const std::string& name) : low_(lower_case(name)) {}
+  explicit Words(const std::string& name) : name_(name), low_(lower_case(name)) {}
 
   bool has(std::initializer_list<std::string_view> words) const {
     return std::ranges::any_of(words, [&](std::string_view word) { return low_.find(word) != std::string::npos; });
   }
-  // Between what are no letters.
-  bool has_whole(std::initializer_list<std::string_view> words) const {
+  // In lower case.
+  std::vector<std::string> all() const {
+    std::vector<std::string> words;
+    bool goes_on = false;
+    for (std::size_t at = 0; at < low_.size(); ++at) {
+      if (letter(at) && (!goes_on || begins(at))) words.emplace_back();
+      goes_on = letter(at);
+      if (goes_on) words.back() += low_[at];
+    }
+    return words;
+  }
+  // Between what are no letters, or a word of its own by its capital, as in CellGate.
+  bool has_whole(std::initializer_list<std::string_view> words) const { return has_whole(std::span(words)); }
+  bool has_whole(std::span<const std::string_view> words) const {
     return std::ranges::any_of(words, [&](std::string_view word) {
       for (std::size_t at = low_.find(word); at != std::string::npos; at = low_.find(word, at + 1))
-        if ((at == 0 || !letter(at - 1)) && !letter(at + word.size())) return true;
+        if ((!letter(at - 1) || begins(at)) && (!letter(at + word.size()) || begins(at + word.size()))) return true;
       return false;
     });
   }
@@ -31,8 +47,58 @@ class Words {
   bool letter(std::size_t at) const {
     return at < low_.size() && (std::isalpha(static_cast<unsigned char>(low_[at])) || (low_[at] & 0x80));
   }
+  // A capital after a small letter.
+  bool begins(std::size_t at) const {
+    return at > 0 && at < name_.size() && std::isupper(static_cast<unsigned char>(name_[at])) &&
+           std::islower(static_cast<unsigned char>(name_[at - 1]));
+  }
+  const std::string& name_;
   std::string low_;
 };
+
+constexpr auto kWater = std::to_array<std::string_view>({"water",
+                                                         "watersurface",
+                                                         "waterlevel",
+                                                         "river",
+                                                         "lake",
+                                                         "pond",
+                                                         "wasser",
+                                                         "wasserspiegel",
+                                                         "wasserfläche",
+                                                         "wasserflaeche",
+                                                         "wasseroberfläche",
+                                                         "wasseroberflaeche",
+                                                         "gewässer",
+                                                         "fluss",
+                                                         "teich",
+                                                         "wateroppervlak",
+                                                         "vatten",
+                                                         "vattenyta",
+                                                         "vand",
+                                                         "vandspejl",
+                                                         "vann",
+                                                         "vesi",
+                                                         "eau",
+                                                         "rivière",
+                                                         "étang",
+                                                         "agua",
+                                                         "água",
+                                                         "río",
+                                                         "lago",
+                                                         "acqua",
+                                                         "fiume",
+                                                         "woda",
+                                                         "rzeka",
+                                                         "jezioro",
+                                                         "voda",
+                                                         "hladina",
+                                                         "вода",
+                                                         "река",
+                                                         "озеро",
+                                                         "水",
+                                                         "水面"});
+constexpr auto kBesideWater = std::to_array<std::string_view>(
+    {"m", "mat", "material", "mtl", "site", "surface", "plane", "pool", "clear", "deep", "blue"});
 
 }  // namespace
 
@@ -56,35 +122,17 @@ bool names_a_leaf(const std::string& name) {
                                 "vantail", "battant", "anta", "hoja", "skrzydło", "створка"});
 }
 
-bool names_water(const std::string& name) {
-  return Words(name).has_whole({"water",
-                                "watersurface",
-                                "waterlevel",
-                                "wasser",
-                                "wasserspiegel",
-                                "wasserfläche",
-                                "wasserflaeche",
-                                "wasseroberfläche",
-                                "gewässer",
-                                "river",
-                                "fluss",
-                                "lake",
-                                "pond",
-                                "teich",
-                                "rivière",
-                                "eau",
-                                "agua",
-                                "água",
-                                "río",
-                                "acqua",
-                                "fiume",
-                                "woda",
-                                "rzeka",
-                                "voda",
-                                "вода",
-                                "река",
-                                "水",
-                                "水面"});
+bool names_water(const std::string& name) { return Words(name).has_whole(kWater); }
+
+// Rocks, tiles and paints are called after rivers and lakes.
+bool is_water(const std::string& material) {
+  bool any = false;
+  for (const std::string& word : Words(material).all()) {
+    const bool water = std::ranges::find(kWater, word) != std::end(kWater);
+    any = any || water;
+    if (!water && std::ranges::find(kBesideWater, word) == std::end(kBesideWater)) return false;
+  }
+  return any;
 }
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meaning of the names of meshes, in a dozen languages.
+// The meaning of the names of meshes and materials, in a dozen languages.
 #pragma once
 
 #include <string>
@@ -11,5 +11,7 @@ bool names_a_door(const std::string& name);
 // True for that, and for the name of a leaf, which may be a plant's, too.
 bool names_a_leaf(const std::string& name);
 bool names_water(const std::string& name);
+// True for the name of a material that says nothing else.
+bool is_water(const std::string& material);
 
 }  // namespace vantage

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "image/decode.hpp"
+#include "scene/told_by_name.hpp"
 
 namespace vantage::gltf {
 namespace {
@@ -54,6 +55,8 @@ const MaterialInfo& MaterialTable::get(int index) {
       throw file_.malformed("a primitive refers to material " + std::to_string(index) + "; there are " +
                             std::to_string(count));
     info.marks = read_marks(file_, "materials", index, "material " + std::to_string(index));
+    const auto* const name = file_.find("materials", index, {"name"}).get_ptr<const std::string*>();
+    material.water = name && is_water(*name);
     const json& pbr = file_.find("materials", index, {"pbrMetallicRoughness"});
     // Polished metal. Without a factor a material is rough; with a texture it is so here and there.
     constexpr double kMetallic = 0.9, kSmooth = 0.05;

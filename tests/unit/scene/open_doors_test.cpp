@@ -11,6 +11,7 @@
 
 #include "scene/positions.hpp"
 #include "scene/shared_meshes.hpp"
+#include "scene/told_by_name.hpp"
 #include "support/box.hpp"
 
 namespace vantage {
@@ -221,6 +222,28 @@ TEST(OpenDoors, AGateIsAsWideAsItsWallLeavesRoom) {
   EXPECT_EQ(gate("factory gate", 0.5), Names{"factory gate"});
   EXPECT_EQ(gate("part 2", 0.5), Names{}) << "may be a panel of the wall";
   EXPECT_EQ(gate("Motor 1", 0.5), Names{});
+  EXPECT_EQ(gate("FactoryGate_1", 0.5), Names{"FactoryGate_1"});
+  EXPECT_EQ(gate("Aggregate_1", 0.5), Names{});
+}
+
+TEST(OpenDoors, AGrilleIsAGateByItsName) {
+  const auto grille = [](const std::string& name) {
+    Joinery site = with_gateway(0.5);
+    site.mesh(name);
+    for (double x = 4.02; x < 6.19; x += 0.12) site.box({x, 0.24, 0.01}, {x + 0.02, 0.26, 2.68});
+    return site.box({4.01, 0.23, 0.05}, {6.19, 0.27, 0.1}).box({4.01, 0.23, 2.6}, {6.19, 0.27, 2.65}).open();
+  };
+  EXPECT_EQ(grille("WingGate_B"), Names{"WingGate_B"});
+  EXPECT_EQ(grille("rack"), Names{});
+}
+
+TEST(ToldByName, WaterIsWaterAndNoPaint) {
+  for (const char* name : {"Water", "M_Water_01", "Site - Water", "Wasser", "WaterSurface", "MAT_acqua"})
+    EXPECT_TRUE(is_water(name)) << name;
+  for (const char* name : {"River Rock", "Lake blue paint", "Waterproof board", "pond liner", "", "Water pipe"})
+    EXPECT_FALSE(is_water(name)) << name;
+  EXPECT_TRUE(names_water("Wateroppervlak"));
+  EXPECT_FALSE(names_water("Watercolour"));
 }
 
 TEST(OpenDoors, AShutterClosesAPassage) {
