@@ -374,14 +374,19 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   };
   // An end of the model beneath ground, or beneath water, is no opening.
   const auto leaves_beneath_ground = [&](const glm::dvec3& from, const glm::dvec3& way) {
-    std::uint32_t last = column_[samples.front()];
+    double end = 0;  // of what is drawn
     for (double at = 0; const auto column = column_at(from.x + way.x * at, from.y + way.y * at); at += cell_)
-      if (first_[*column] < first_[*column + 1]) last = *column;
+      if (first_[*column] < first_[*column + 1]) end = at;
     bool beneath = false;
-    for (std::uint32_t n = first_[last]; n < first_[last + 1]; ++n) {
-      if (!has_room(n)) continue;
-      if (z_[n] < from.z && access_[part_[n]] == Access::reached) return false;
-      beneath = beneath || (z_[n] > from.z && is_ground(part_[n]));
+    for (double at = std::max(0.0, end - 3.3 * radius_); at <= end; at += cell_) {  // a metre; water is drawn with gaps
+      const auto column = column_at(from.x + way.x * at, from.y + way.y * at);
+      if (!column) break;
+      beneath = beneath || (wet_[*column] && from.z < top_[*column]);
+      for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n) {
+        if (!has_room(n)) continue;
+        if (z_[n] < from.z && access_[part_[n]] == Access::reached) return false;
+        beneath = beneath || (z_[n] > from.z && is_ground(part_[n]));
+      }
     }
     return beneath;
   };

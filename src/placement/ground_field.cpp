@@ -329,18 +329,17 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
   // Nor on its bed. A tunnel below is deeper.
-  std::vector<std::uint8_t> wet(count, 0);
+  wet_.assign(count, 0);
   for (const Found& some : collected)
     for (const std::uint64_t key : some.water) {
       const auto column = static_cast<std::uint32_t>(key >> 32);
       const float z = from_ordered(static_cast<std::uint32_t>(key));
       if (top_[column] > z + apart) continue;
-      wet[column] = 1;
+      wet_[column] = 1;
       std::uint32_t bed = first_[column];
       while (bed < first_[column + 1] && z_[bed] <= z) ++bed;
       if (bed > first_[column] && z_[bed - 1] < z - climb_) taken_[bed - 1] |= kOverhead | kLow;
     }
-  wet_columns_ = static_cast<std::size_t>(std::ranges::count(wet, 1));
 }
 
 void GroundField::find_room(const SceneData& scene) {
@@ -739,7 +738,7 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
 
 double GroundField::outline() const {
   const auto held = std::ranges::count_if(top_, [](float z) { return std::isfinite(z); });
-  return static_cast<double>(static_cast<std::size_t>(held) - wet_columns_) * cell_ * cell_;
+  return static_cast<double>(held - std::ranges::count(wet_, 1)) * cell_ * cell_;
 }
 
 // Marks unreached parts as sealed if they are behind walls: under a cover, and not one step above or below a reached

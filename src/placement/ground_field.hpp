@@ -227,7 +227,7 @@ class GroundField {
   glm::dvec2 corner_{};
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> top_;             // per column: the highest surface at its middle
-  std::size_t wet_columns_ = 0;        // with water on top
+  std::vector<std::uint8_t> wet_;      // per column: whether water is on top
   std::vector<std::uint32_t> first_;   // per column: its start in the samples, which ascend in z
   std::vector<std::uint32_t> column_;  // per sample
   std::vector<float> z_;               // per sample

@@ -382,6 +382,18 @@ TEST(ClosedParts, NobodyStandsOnTheBedOfALake) {
   }
 }
 
+// Under the hull of a ship no water is drawn; the bed there is none of the model's rooms.
+TEST(ClosedParts, NobodyStandsUnderAKeel) {
+  Builder quay, water;
+  quay.floor(-30, 0, 30, 20, 0).floor(-30, -40, 30, 0, -7).quad({-30, 0, -7}, {30, 0, -7}, {30, 0, 0}, {-30, 0, 0});
+  water.floor(-30, -40, 30, -18, -2).floor(-30, -8, 30, 0, -2).floor(-30, -18, -18, -8, -2).floor(18, -18, 30, -8, -2);
+  const SearchArea area = SearchArea::build(
+      Named().add("kade", quay).add("Water", water).add("schip", Builder().box({-18, -18, -5}, {18, -8, 1})).scene());
+  EXPECT_TRUE(holds(area, 0, 10, 0));
+  EXPECT_FALSE(holds(area, 0, -12, -7)) << "under the hull";
+  EXPECT_FALSE(holds(area, 0, -30, -7));
+}
+
 TEST(ClosedParts, APipeOfWaterIsNoLake) {
   Builder pipe;
   for (int k = 0; k < 8; ++k) {  // upper half of a pipe along x
