@@ -175,19 +175,19 @@ std::vector<Water> waters_of(const SceneData& scene) {
     const MeshRange& range = scene.ranges[m];
     if (!names_water(scene.meshes[m].name) && !scene.materials[range.material].water) continue;
     waters[m] = Water::some;
-    double up = 0, level = 0;
+    double all = 0, level = 0;
     Box box;
     for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i) {
       const Corners t = corners_of(scene, i);
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
-      if (!(n.z > 0)) continue;
-      up += n.z / 2;
-      if (n.z < kLevel * length(n)) continue;
-      level += n.z / 2;
+      const double plan = std::abs(n.z) / 2;  // a sheet may show either side
+      all += plan;
+      if (2 * plan < kLevel * length(n)) continue;
+      level += plan;
       for (const glm::dvec3& corner : t) box.extend(to_vec3(corner));
     }
     const double longest = std::max(box.size().x, box.size().y);
-    if (level >= std::max(kLeast_m2, kMostly * up) && level >= kNarrowest_m * longest) waters[m] = Water::open;
+    if (level >= std::max(kLeast_m2, kMostly * all) && level >= kNarrowest_m * longest) waters[m] = Water::open;
   }
   return waters;
 }
