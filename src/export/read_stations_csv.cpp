@@ -220,6 +220,7 @@ class Table {
       case Column::scanner: return "the scanner: leave one of them out";
       case Column::step: return "the step: leave one of them out";
       case Column::sigma: return "the standard deviation: leave one of them out";
+      case Column::proposed: return "whether a target is proposed: leave one of them out";
     }
     return "";
   }
