@@ -276,7 +276,7 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
     const Rim& rim = rims[k];
     const glm::dvec2 p = middle(column_[rim.sample]);
     // Beyond a parapet, or beside the bare edge; under eaves.
-    const double beyond = rim.bare ? 2 * cell_ : 3.3 * radius_, under = 3 * radius_;
+    const double beyond = rim.bare ? 2 * cell_ : beyond_rim(), under = 3 * radius_;
     const auto met = [&](double above, double from, double to) {
       const glm::dvec3 at{p.x, p.y, z_[rim.sample] + above * height_};
       return tree.between(at + rim.out * from, at + rim.out * to);
@@ -286,28 +286,38 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
   return !rims.empty() && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(rims.size());
 }
 
+// Of a person's height: rails from the knee to the hip, and the head.
+constexpr std::array kRailHeights{0.25, 0.4, 0.5, 0.57};
+constexpr std::array kHeadHeight{0.8};
+
+bool GroundField::stands_beyond(const MeshTree& tree, const Rim& rim, std::span<const double> heights) const {
+  const glm::dvec2 p = middle(column_[rim.sample]);
+  return std::ranges::any_of(heights, [&](double share) {
+    const glm::dvec3 from{p.x, p.y, z_[rim.sample] + share * height_};
+    return tree.between(from, from + rim.out * beyond_rim());
+  });
+}
+
+std::optional<std::uint32_t> GroundField::column_beyond(const Rim& rim) const {
+  const glm::dvec2 p = middle(column_[rim.sample]);
+  return column_at(p.x + rim.out.x * beyond_rim(), p.y + rim.out.y * beyond_rim());
+}
+
 bool GroundField::is_gallery(const MeshTree& tree, std::uint32_t part) const {
   constexpr double kLeastGuarded = 0.8, kLeastOver = 0.02;
   if (!is_wide(part)) return false;
   const std::vector<Rim> rims = rims_of(part);
   std::atomic<std::size_t> guarded = 0, over = 0;
-  const double beyond = 3.3 * radius_;
   parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
     const Rim& rim = rims[k];
-    const glm::dvec2 p = middle(column_[rim.sample]);
-    const glm::dvec3 at{p.x, p.y, z_[rim.sample]};
-    const auto met = [&](double above) {
-      const glm::dvec3 from = at + glm::dvec3{0, 0, above * height_};
-      return tree.between(from, from + rim.out * beyond);
-    };
-    if (std::ranges::none_of(std::array{0.25, 0.4, 0.5, 0.57}, met)) return;
+    if (!stands_beyond(tree, rim, kRailHeights)) return;
     ++guarded;
-    if (met(0.8)) return;
-    const auto column = column_at(at.x + rim.out.x * beyond, at.y + rim.out.y * beyond);
+    if (stands_beyond(tree, rim, kHeadHeight)) return;
+    const auto column = column_beyond(rim);
     if (!column) return;
     std::uint32_t below = nowhere;  // what lies highest below
     for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
-      if (z_[n] < at.z && (below == nowhere || z_[n] > z_[below])) below = n;
+      if (z_[n] < z_[rim.sample] && (below == nowhere || z_[n] > z_[below])) below = n;
     if (below != nowhere && has_room(below) && access_[part_[below]] == Access::reached) ++over;
   });
   const auto all = static_cast<double>(rims.size());
@@ -315,32 +325,29 @@ bool GroundField::is_gallery(const MeshTree& tree, std::uint32_t part) const {
          static_cast<double>(over.load()) > kLeastOver * all;
 }
 
+bool GroundField::is_open_ground(const MeshTree& tree, std::uint32_t number) const {
+  const Part& part = parts_[number];
+  return part.area(cell_) >= 10 * room() && part.under_the_sky() && !is_top(tree, number);
+}
+
 double GroundField::open_ground_area(const MeshTree& tree) const {
   double area = 0;
   for (std::uint32_t i = 0; i < parts_.size(); ++i)
-    if (parts_[i].area(cell_) >= 10 * room() && 2 * parts_[i].in_the_sky > parts_[i].samples && !is_roof(parts_[i]) &&
-        !is_top(tree, i))
-      area += parts_[i].area(cell_);
+    if (!is_roof(parts_[i]) && is_open_ground(tree, i)) area += parts_[i].area(cell_);
   return area;
 }
 
 bool GroundField::is_open_deck(const MeshTree& tree, std::uint32_t part) const {
   constexpr double kMostOpen = 0.5;
   const std::vector<Rim> rims = rims_of(part);
-  const double beyond = 3.3 * radius_;
   std::atomic<std::size_t> open = 0;
   parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
     const Rim& rim = rims[k];
-    const glm::dvec2 p = middle(column_[rim.sample]);
-    const glm::dvec3 at{p.x, p.y, z_[rim.sample]};
-    for (const double above : {0.25, 0.4, 0.5, 0.57, 0.8}) {
-      const glm::dvec3 from = at + glm::dvec3{0, 0, above * height_};
-      if (tree.between(from, from + rim.out * beyond)) return;
-    }
-    const auto column = column_at(at.x + rim.out.x * beyond, at.y + rim.out.y * beyond);
+    if (stands_beyond(tree, rim, kRailHeights) || stands_beyond(tree, rim, kHeadHeight)) return;
+    const auto column = column_beyond(rim);
     if (!column) return;
     for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
-      if (has_room(n) && part_[n] != part && z_[n] < at.z - height_) {
+      if (has_room(n) && part_[n] != part && z_[n] < z_[rim.sample] - height_) {
         ++open;
         return;
       }
@@ -368,8 +375,7 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   std::map<std::uint32_t, bool> grounds;  // by part: whether it may be ground, or water
   const auto is_ground = [&](std::uint32_t number) {
     const auto [at, is_new] = grounds.try_emplace(number, false);
-    const Part& p = parts_[number];
-    if (is_new) at->second = 2 * p.in_the_sky > p.samples && p.area(cell_) >= 10 * room() && !is_top(tree, number);
+    if (is_new) at->second = is_open_ground(tree, number);
     return at->second;
   };
   // An end of the model beneath ground, or beneath water, is no opening.
@@ -416,7 +422,7 @@ bool GroundField::may_be_told(std::uint32_t part) const {
   const Part& p = parts_[part];
   const double area = p.area(cell_), hall = 10 * room();
   if (access_[part] == Access::reached) return false;
-  if (2 * p.in_the_sky > p.samples) return area >= kEnteredRooms * room();
+  if (p.under_the_sky()) return area >= kEnteredRooms * room();
   return area >= (access_[part] == Access::sealed ? 3 * room() : hall);
 }
 
@@ -427,7 +433,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
   for (const std::uint32_t s : members(number))
     if (at == nowhere || ways.effort[s] < ways.effort[at]) at = s;
   const std::uint8_t effort = ways.effort[at];
-  const bool sky = 2 * part.in_the_sky > part.samples, above = 2 * part.above_others > part.samples;
+  const bool sky = part.under_the_sky(), above = 2 * part.above_others > part.samples;
   if (effort == through_door) closed.bar = Bar::door;
   if (effort == stoop) closed.bar = Bar::headroom, closed.height_m = height_;
   if (effort == climb) closed.bar = Bar::climb;
@@ -522,7 +528,7 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
   const double reached = reached_area();
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);
-    const bool sky = 2 * parts_[i].in_the_sky > parts_[i].samples;
+    const bool sky = parts_[i].under_the_sky();
     // Terrain drawn as a block ends like the top of something: what is larger than all that is reached is told.
     const bool block = !is_roof(parts_[i]) && part.area_m2 > reached;
     if (!sky || part.kind != ClosedKind::top || block) closed.push_back(std::move(part));

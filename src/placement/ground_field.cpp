@@ -603,7 +603,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
     if (part.area(cell_) < room()) continue;
-    const bool sky = 2 * part.in_the_sky > part.samples;
+    const bool sky = part.under_the_sky();
     const Candidate candidate{i, part.area(cell_), part.mean_z, sky};
     if (is_roof(part))
       roofs.push_back(candidate);

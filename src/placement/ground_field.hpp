@@ -116,6 +116,7 @@ class GroundField {
     double mean_z = 0;
     bool at_door = false;
     double area(double cell) const { return static_cast<double>(samples) * cell * cell; }
+    bool under_the_sky() const { return 2 * in_the_sky > samples; }
   };
   static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
   // Facts about a sample, as bits.
@@ -165,9 +166,7 @@ class GroundField {
   // The closed part through which the way to each closed part leads first.
   std::vector<std::uint32_t> first_closed(const Ways& ways) const;
   std::vector<std::uint32_t> easiest_samples(const Ways& ways) const;
-  bool is_roof(const Part& part) const {
-    return 2 * part.in_the_sky > part.samples && 2 * part.above_others > part.samples;
-  }
+  bool is_roof(const Part& part) const { return part.under_the_sky() && 2 * part.above_others > part.samples; }
   bool is_attic(std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
   struct Rim {
@@ -179,6 +178,13 @@ class GroundField {
   std::vector<Rim> rims_of(std::uint32_t part) const;
   // True for the top of something: steep faces lead down under most of its edge.
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
+  // True for a large part under the sky that is no top.
+  bool is_open_ground(const MeshTree& tree, std::uint32_t part) const;
+  // How far beyond a rim a rail or a wall is looked for: a metre.
+  double beyond_rim() const { return 3.3 * radius_; }
+  // True if something stands beyond a rim at these shares of a person's height.
+  bool stands_beyond(const MeshTree& tree, const Rim& rim, std::span<const double> heights) const;
+  std::optional<std::uint32_t> column_beyond(const Rim& rim) const;
   // True if one looks down on what is reached over a rail, and nobody falls off.
   bool is_gallery(const MeshTree& tree, std::uint32_t part) const;
   // True for a floor that ends in the air high above another, as a wing does: nobody walks on it.

@@ -17,15 +17,26 @@ using nlohmann::json;
 
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
+// Around the corners that are finite; empty without one.
+struct Bounds {
+  glm::dvec3 low = glm::dvec3(INFINITY), high = glm::dvec3(-INFINITY);
+
+  void extend(const Mesh& mesh) {
+    for (const Part& part : mesh.parts)
+      for (const std::uint32_t v : part.indices)
+        if (const glm::dvec3& p = part.positions[v]; finite(p)) low = glm::min(low, p), high = glm::max(high, p);
+  }
+  bool empty() const { return !finite(low) || !finite(high); }
+  double extent() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
+};
+
 // Zero while no coordinate is larger than `near` times the mesh; else the middle of the mesh, rounded.
 glm::dvec3 origin_of(const Mesh& mesh, double near) {
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Part& part : mesh.parts)
-    for (const std::uint32_t v : part.indices)
-      if (const glm::dvec3& p = part.positions[v]; finite(p)) low = glm::min(low, p), high = glm::max(high, p);
-  if (!finite(low) || !finite(high)) return glm::dvec3(0);
-  const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-  const glm::dvec3 middle = 0.5 * (low + high);
+  Bounds bounds;
+  bounds.extend(mesh);
+  if (bounds.empty()) return glm::dvec3(0);
+  const double extent = bounds.extent();
+  const glm::dvec3 middle = 0.5 * (bounds.low + bounds.high);
   const double farthest = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
   if (!(farthest > near * extent) || !(extent > 0)) return glm::dvec3(0);
   const double step = std::pow(10, std::ceil(std::log10(extent)));
@@ -36,14 +47,12 @@ glm::dvec3 origin_of(const Mesh& mesh, double near) {
 // national one, lie as far from 0 as they are wide, and float32 would round them all.
 double near_of(const Model& model) {
   constexpr double kLocal = 64, kElsewhere = 1, kFar = 1.5;
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Mesh& mesh : model.meshes)
-    for (const Part& part : mesh.parts)
-      for (const std::uint32_t v : part.indices)
-        if (const glm::dvec3& p = part.positions[v]; finite(p)) low = glm::min(low, p), high = glm::max(high, p);
-  if (!finite(low) || !finite(high)) return kLocal;
-  const glm::dvec3 size = high - low, far = glm::max(glm::abs(low), glm::abs(high));
-  return std::max({far.x, far.y, far.z}) > kFar * std::max({size.x, size.y, size.z}) ? kElsewhere : kLocal;
+  if (model.rounded) return kLocal;  // no origin is chosen
+  Bounds bounds;
+  for (const Mesh& mesh : model.meshes) bounds.extend(mesh);
+  if (bounds.empty()) return kLocal;
+  const glm::dvec3 far = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+  return std::max({far.x, far.y, far.z}) > kFar * bounds.extent() ? kElsewhere : kLocal;
 }
 
 // Corners as they are stored, each once.
