@@ -134,7 +134,8 @@ Options<Scanner> scanner_options() {
           "Error of each tilt of a scan by the compensator, one standard deviation; 0: not stated.")
       .add("detection_range_m", &Scanner::detection_range_m,
            "Longest distance from which a surface of detection_reflectivity is detected; 0: every echo is.")
-      .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.");
+      .add("detection_reflectivity", &Scanner::detection_reflectivity, "Above 0 to 1.")
+      .add("dropout", &Scanner::dropout, "Share of the rays whose echo is lost at random, 0 to below 1.");
 }
 
 Options<InstrumentErrors> instrument_options() {

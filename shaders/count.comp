@@ -47,7 +47,8 @@ void main() {
       const vec3 point = point_of(hit, look, push.origin, direction, ray_number(row, column), push.place);
       const uint voxel_index = index_of(point);
       if (voxel_index != no_voxel_index)
-        misses = misses_of(hit, look, direction, pass_glass(push.origin, direction, hit.t).share);
+        misses = misses_of(hit, look, direction, pass_glass(push.origin, direction, hit.t).share,
+                           ray_number(row, column), push.place);
       if (voxel_index != no_voxel_index && misses == 0u) {
         counted = true;
         atomicAdd(push.counts.at[voxel_index], 1u);

@@ -31,7 +31,10 @@ void main() {
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
     if (with_look || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
-    if (!on_pane) misses = misses_of(hit, look, direction, passed.share);
+    if (!on_pane)
+      misses = misses_of(hit, look, direction, passed.share, ray_number(row, column), push.place);
+    else if (with_limits && is_lost(ray_number(row, column), push.place))
+      misses = misses_echo;
     if ((misses & misses_echo) != 0u) {
       is_point = false;
       look = unseen;

@@ -66,6 +66,9 @@ struct Scanner {
   /// incidence. 0: it detects every echo within range.
   double detection_range_m = 0;
   double detection_reflectivity = 0.9;  ///< In (0, 1].
+  /// Share of the rays whose echo is lost at random, from 0 to below 1: by rain, dust, or a receiver that misses
+  /// pulses. Which ones depends on the seed, the station and the ray alone.
+  double dropout = 0;
   /// Errors that a calibration leaves and all scans of the instrument share, one standard deviation each: of the
   /// vertical index, the collimation and the trunnion axis; of the offset of ranges, and of their scale. They are part
   /// of the registration error; simulated scans have those that are drawn for them (`ScanOptions::instrument`). 0: not
@@ -131,8 +134,9 @@ InstrumentErrors draw_instrument_errors(const Scanner& scanner, std::uint64_t se
 NoiseTable rtc360_noise();
 
 /// Returns the range noise named "off", that of a preset, or that of a CSV file: a header `reflectivity,<distance in
-/// metres>,…`, then a line of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file,
-/// invalid_argument.
+/// metres>,…`, then a line of standard deviations in metres for each reflectivity. A header `incidence_deg@<R>,…` has a
+/// line for each angle of incidence on a surface of reflectivity R, which counts as one of R cos α seen squarely.
+/// Throws Error: io, malformed_file, invalid_argument.
 NoiseTable load_noise(const std::string& name);
 
 /// Directions of rays and their times, as `Scanner::set_directions()` takes them.

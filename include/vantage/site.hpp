@@ -42,6 +42,7 @@ struct SiteOptions {
   std::optional<std::array<double, 2>> beam = {};     ///< Divergence of the beam in mrad, exit diameter in mm.
   /// `Scanner::detection_range_m` and `detection_reflectivity`; {0, 1}: every echo is detected.
   std::optional<std::array<double, 2>> detection = {};
+  std::optional<double> dropout = {};  ///< As in `Scanner`.
   /// A calibration's: `Scanner::angle_accuracy` in arc seconds, `range_accuracy_m` in mm, `range_accuracy_ppm`.
   std::optional<std::array<double, 3>> calibration = {};
   std::optional<double> points_per_second = {};  ///< As in `Scanner`.

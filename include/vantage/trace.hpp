@@ -99,7 +99,7 @@ struct DroppedPoints {
   std::uint64_t incidence = 0;  ///< Incidence too oblique.
   std::uint64_t footprint = 0;  ///< Beam footprint too wide.
   std::uint64_t noise = 0;      ///< Range too noisy.
-  std::uint64_t echo = 0;       ///< Echo too weak to be detected.
+  std::uint64_t echo = 0;       ///< Echo too weak to be detected, or lost at random.
   friend bool operator==(const DroppedPoints&, const DroppedPoints&) = default;
   /// Sums of both, member by member.
   friend DroppedPoints operator+(const DroppedPoints& a, const DroppedPoints& b) {

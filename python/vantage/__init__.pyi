@@ -225,6 +225,7 @@ class Scanner:
         tilt_accuracy_arcsec: float = 0.0,
         detection_range_m: float = 0.0,
         detection_reflectivity: float = 0.9,
+        dropout: float = 0.0,
     ) -> None: ...
     @staticmethod
     def load(name: str, more: Path = "") -> Scanner: ...
@@ -253,6 +254,7 @@ class Scanner:
     tilt_accuracy_arcsec: float
     detection_range_m: float
     detection_reflectivity: float
+    dropout: float
     @property
     def rows(self) -> int: ...
     @property
@@ -955,6 +957,7 @@ class Site:
         beam: Setting = None,
         calibration: Setting = None,
         detection: Setting = None,
+        dropout: Setting = None,
         rate: Setting = None,
         battery: Setting = None,
         user_size: Setting = None,
@@ -1013,6 +1016,7 @@ class Site:
         beam: Setting = None,
         calibration: Setting = None,
         detection: Setting = None,
+        dropout: Setting = None,
         rate: Setting = None,
         battery: Setting = None,
         user_size: Setting = None,

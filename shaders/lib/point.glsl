@@ -34,11 +34,12 @@ vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uin
   return point_on_ray(origin, direction, range_of(hit, look, ray, place));
 }
 
-// Limits missed by a hit, one bit each; its point counts if there are none and the mesh is surveyed. `look` is read if
-// there are limits. `passed`: share of the echo's strength that passes glass.
-uint misses_of(Hit hit, Look look, vec3 direction, float passed) {
-  return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t, passed)
-                     : 0u;
+// Limits missed by a ray's hit, one bit each; its point counts if there are none and the mesh is surveyed. `look` is
+// read if there are limits. `passed`: share of the echo's strength that passes glass.
+uint misses_of(Hit hit, Look look, vec3 direction, float passed, uint64_t ray, uint place) {
+  if (!with_limits) return 0u;
+  return limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t, passed) |
+         (is_lost(ray, place) ? misses_echo : 0u);
 }
 
 #endif

@@ -23,7 +23,8 @@ bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 directi
   const vec3 point = point_of(hit, look, station.origin, direction, uint64_t(ray), station.place);
   uvec3 cell;
   if (!cell_of(point, cell) || cell != uvec3(voxel.x, voxel.y, voxel.z)) return false;
-  return misses_of(hit, look, direction, pass_glass(station.origin, direction, hit.t).share) == 0u;
+  return misses_of(hit, look, direction, pass_glass(station.origin, direction, hit.t).share, uint64_t(ray),
+                   station.place) == 0u;
 }
 
 // Returns the voxel's number of points after that, or a few more.

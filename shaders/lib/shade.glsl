@@ -84,11 +84,14 @@ float sigma_at(float t, float reflectivity) {
   return sigma_in(parameters.sigma, parameters.noise_min_range, parameters.noise_inverse_span, t, reflectivity);
 }
 
+uint random_bits(uint64_t ray, uint place, uint stream) {
+  return philox4x32(uvec2(parameters.seed_low, parameters.seed_high),
+                    uvec4(uint(ray), uint(ray >> 32), place, stream)).x;
+}
+
 // Range with noise. Depends only on seed, station, ray and hit.
 float noisy_range(float t, float reflectivity, uint64_t ray, uint place) {
-  const uint u = philox4x32(uvec2(parameters.seed_low, parameters.seed_high),
-                            uvec4(uint(ray), uint(ray >> 32), place, noise_stream)).x;
-  precise float displacement = sigma_at(t, reflectivity) * normal_from_bits(u);
+  precise float displacement = sigma_at(t, reflectivity) * normal_from_bits(random_bits(ray, place, noise_stream));
   precise float moved = t + displacement;
   return max(moved, 0.0);  // no scanner measures less
 }

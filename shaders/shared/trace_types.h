@@ -124,6 +124,7 @@ struct TraceParameters {
   uint has_normals;
   float exit_diameter;  // of the beam, in metres
   float divergence;     // full angle, in radians
+  uint lost_below;      // limit of dropout_stream (noise_types.h)
 };
 
 // Sums per station, 64 bits each: all points; points that count; and, if points have limits, those in a surveyed voxel

@@ -22,7 +22,7 @@ std::string dropped_text(const NetworkCounts& counts) {
   const auto all = static_cast<double>(counted + dropped.points);
   const auto percent = [&](std::uint64_t n) { return all > 0 ? 100 * static_cast<double>(n) / all : 0.0; };
   return fmt::format(
-      "dropped  {:.1f} % of the points: incidence {:.1f} %, footprint {:.1f} %, noise {:.1f} %, weak echo {:.1f} %",
+      "dropped  {:.1f} % of the points: incidence {:.1f} %, footprint {:.1f} %, noise {:.1f} %, no echo {:.1f} %",
       percent(dropped.points), percent(dropped.incidence), percent(dropped.footprint), percent(dropped.noise),
       percent(dropped.echo));
 }

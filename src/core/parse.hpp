@@ -23,6 +23,7 @@ inline constexpr Interval any_number{};
 inline constexpr Interval positive{.low = 0, .low_included = false};
 inline constexpr Interval not_negative{.low = 0};
 inline constexpr Interval any_share{.low = 0, .high = 1};
+inline constexpr Interval share_below_1{.low = 0, .high = 1, .high_included = false};
 // Lengths, steps and rates that must not be 0, in any of their units. Smaller and larger ones overflow what is computed
 // of them.
 inline constexpr Interval measurable{.low = 1e-6, .high = 1e9};

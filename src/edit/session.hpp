@@ -62,8 +62,8 @@ class EditSession {
 
   // The constant part: `site_json`, and the ground where stations may stand.
   nlohmann::ordered_json site() const;
-  // version, network (as in a report), ids, locked, colours, hidden (cells of which no position captures anything;
-  // null: not known), busy{what, done}, undo, redo, exact, message.
+  // version, network (as in a report), ids, locked, coverage and only (colours of cells), hidden (cells of which no
+  // position captures anything; null: not known), busy{what, done}, undo, redo, exact, message.
   nlohmann::ordered_json state() const;
   std::uint64_t version() const { return version_; }
 

@@ -68,7 +68,7 @@ Target best_place(const std::vector<VoxelPatch>& patches, const Evaluation& eval
         places.push_back(std::move(place));
   std::ranges::stable_sort(places, {}, &SteepPlace::rank);
   std::tuple<double, double> least;
-  Target best{.proposed = true, .stations = {}, .check = true};
+  Target best{.centre = {}, .proposed = true, .stations = {}, .check = true};
   for (const SteepPlace& place : places) {
     if (!best.stations.empty() && place.rank() >= least) break;
     const VoxelPatch& patch = patches[place.patch];

@@ -100,7 +100,7 @@ void add(Hash& hash, const TraceScanner& scanner) {
   for (const LimitModel::Limits& limit : limits.meshes)
     hash.add(limit.least_cosine_square), hash.add(limit.largest_footprint_square), hash.add(limit.largest_sigma),
         hash.add(limit.largest_reach_square);
-  hash.add(limits.exit_diameter), hash.add(limits.divergence);
+  hash.add(limits.exit_diameter), hash.add(limits.divergence), hash.add(limits.lost_below), hash.add(limits.seed);
   if (limits.noise) add(hash, *limits.noise);
 }
 

@@ -30,6 +30,8 @@ float reach_square(const Scanner& scanner, double reflectivity) {
 
 }  // namespace
 
+bool loses_echoes(const Scanner& scanner) { return scanner.detection_range_m > 0 || scanner.dropout > 0; }
+
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config) {
   if (config.max_incidence) return config.max_incidence;
   if (first_with(scene, &MeshInfo::detail_m) || first_with(scene, &MeshInfo::accuracy_m)) return default_max_incidence;
@@ -40,7 +42,7 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
                             bool always) {
   LimitModel model;
   std::optional<Angle> incidence = incidence_limit(scene, config);
-  if (!incidence && (always || scanner.detection_range_m > 0)) incidence = Angle::degrees(90);
+  if (!incidence && (always || loses_echoes(scanner))) incidence = Angle::degrees(90);
   if (!incidence) return model;
   const double degrees = incidence->in_degrees();
   if (!(degrees > 0 && degrees <= 90 + 1e-9))
@@ -62,6 +64,8 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
   const float least = degrees < 90 - 1e-9 ? static_cast<float>(cosine * cosine) : 0.0f;
   model.exit_diameter = static_cast<float>(scanner.exit_diameter_m);
   model.divergence = static_cast<float>(scanner.beam_divergence.in_radians());
+  model.lost_below = static_cast<std::uint32_t>(scanner.dropout * 0x1p32);
+  model.seed = config.seed;
   model.glass = scanner.detection_range_m > 0 && scene.has_glass();
   for (const MeshInfo& mesh : scene.meshes) {
     // A mirror has no echo of its own to be too weak.

@@ -11,6 +11,9 @@
 
 namespace vantage {
 
+// Whether a ray within range may have no echo.
+bool loses_echoes(const Scanner& scanner);
+
 // Largest angle between ray and normal at which a point counts; empty if points have no limits.
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config);
 

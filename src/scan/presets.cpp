@@ -258,7 +258,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
              "range_accuracy_mm",
              "range_accuracy_ppm",
              "tilt_accuracy_arcsec",
-             "battery"});
+             "battery",
+             "dropout"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -321,6 +322,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
         (chosen.has("detection_range_m") ? chosen.member("detection_range_m") : detection.member("range_m")).number();
     scanner.detection_reflectivity = detection.member("reflectivity").number();
   }
+  if (node.has("dropout")) scanner.dropout = node.member("dropout").figure();
   try {
     scanner.check();
   } catch (const Error& e) {

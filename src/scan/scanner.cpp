@@ -251,6 +251,7 @@ void Scanner::check() const {
     refuse("detection_range_m", detection_range_m, "from 0 to 1e6");
   if (!(detection_reflectivity > 0 && detection_reflectivity <= 1))
     refuse("detection_reflectivity", detection_reflectivity, "above 0 and at most 1");
+  if (!(dropout >= 0 && dropout < 1)) refuse("dropout", dropout, "from 0 to below 1");
   const double arcsec = angle_accuracy.in_degrees() * 3600;
   if (!(arcsec >= 0 && arcsec <= 3600)) refuse("angle_accuracy in arc seconds", arcsec, "from 0 to 3600");
   if (!(range_accuracy_m >= 0 && range_accuracy_m <= 1)) refuse("range_accuracy_m", range_accuracy_m, "from 0 to 1");

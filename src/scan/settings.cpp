@@ -46,6 +46,7 @@ Settings settings(const Scanner& scanner) {
   if (scanner.detection_range_m > 0)
     list.add("detection_range_m", scanner.detection_range_m, {"detection"})
         .add("detection_reflectivity", scanner.detection_reflectivity, {"detection"});
+  if (scanner.dropout > 0) list.add("dropout", scanner.dropout, {"dropout"});
   return list.take();
 }
 

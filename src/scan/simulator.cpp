@@ -266,8 +266,7 @@ struct Simulator::Impl {
     return wide * wide;
   }
   std::vector<TraceScanner> trace_scanners(const SceneData& data) const {
-    const bool some_echo_is_lost =
-        std::ranges::any_of(scanners, [](const Scanner& scanner) { return scanner.detection_range_m > 0; });
+    const bool some_echo_is_lost = std::ranges::any_of(scanners, loses_echoes);
     std::vector<TraceScanner> all;
     for (const Scanner& scanner : scanners) all.push_back(trace_scanner(data, scanner, some_echo_is_lost));
     return all;

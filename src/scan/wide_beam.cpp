@@ -233,13 +233,14 @@ std::span<const WideBeam::Return> WideBeam::Follower::returns_of(std::uint64_t r
                             ? scanner_.detection_range_m * scanner_.detection_range_m / scanner_.detection_reflectivity
                             : 0;
   found_.clear(), strengths_.clear();
+  const bool all_lost = judge_.lost(ray, station_.place);
   double strongest_lost = 0;
   std::pair<std::size_t, std::size_t> lost;
   for (std::size_t begin = 0, end = 0; begin < echoes_.size() && found_.size() < kMostReturns; begin = end) {
     double strength = 0;
     for (; end < echoes_.size() && (end == begin || echoes_[end].t - echoes_[end - 1].t <= options_.pulse_m / 2); ++end)
       strength += echoes_[end].strength;
-    if (bright == 0 || strength * bright >= 1) {
+    if (!all_lost && (bright == 0 || strength * bright >= 1)) {
       strengths_.push_back(strength);
       found_.push_back(merged(ray, begin, end, strength));
     } else if (strength > strongest_lost) {

@@ -79,6 +79,7 @@ Scanner site_scanner(const SiteOptions& options, double scale) {
     scanner.detection_range_m = (*options.detection)[0];
     scanner.detection_reflectivity = (*options.detection)[1];
   }
+  take(scanner.dropout, options.dropout);
   if (options.battery) scanner.battery_min = (*options.battery)[0], scanner.battery_scans = (*options.battery)[1];
   if (options.calibration) {
     scanner.angle_accuracy = Angle::degrees((*options.calibration)[0] / 3600);

@@ -210,6 +210,11 @@ void add_scanner(Rows& rows) {
       })
       .by_scene()
       .by_preset()
+      .number("dropout", "P", "Share of the rays, 0 to below 1, whose echo is lost at random; that of the preset, or 0",
+              &SiteOptions::dropout, share_below_1)
+      .advanced()
+      .by_scene()
+      .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
               &SiteOptions::points_per_second, measurable)
       .advanced()

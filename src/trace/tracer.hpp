@@ -83,7 +83,10 @@ struct LimitModel {
   float exit_diameter = 0;                       // of the beam, metres
   float divergence = 0;                          // full angle, radians
   std::shared_ptr<const NoiseModel> noise = {};  // table for σ, whether noise is applied or not; set if σ is limited
-  bool glass = false;  // glass weakens echoes, and returns the beam near its normal; only if the scene has some
+  // The echo of a ray is lost if its random bits are below this (shared/noise_types.h); 0: none is.
+  std::uint32_t lost_below = 0;
+  std::uint64_t seed = 0;  // that of the scanner's noise
+  bool glass = false;      // glass weakens echoes, and returns the beam near its normal; only if the scene has some
   bool enabled() const { return !meshes.empty(); }
 };
 

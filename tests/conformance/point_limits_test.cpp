@@ -169,6 +169,7 @@ TEST_P(PointLimitsConformance, LimitsThatAllMeetChangeNothing) {
   const TestSite& site = sites()[2];
   LimitModel loose = *site.limits;
   for (LimitModel::Limits& limits : loose.meshes) limits = {};
+  loose.lost_below = 0;
   for (const bool noisy : {false, true}) {
     TraceScene scene = site.trace_scene(noisy);
     scene.scanners[0].limits = std::make_shared<const LimitModel>(loose);

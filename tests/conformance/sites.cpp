@@ -170,11 +170,12 @@ LimitModel some_limits(SceneData scene, Scanner scanner) {
   scanner.exit_diameter_m = 0.006;
   scanner.detection_range_m = 6;
   scanner.detection_reflectivity = 0.5;
+  scanner.dropout = 0.07;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     scene.meshes[m].detail_m = m % 2 == 0 ? 0.0083 : 0.0099;
     scene.meshes[m].accuracy_m = m % 3 == 0 ? 0.0004 : 0;
   }
-  return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50)});
+  return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50), .seed = 4711});
 }
 
 TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m,

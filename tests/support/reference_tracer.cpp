@@ -90,18 +90,20 @@ class RayTest {
     hit.t = hit.range = best.t;
     shade(best, d, hit);
     if (scanner_.noise && scanner_.noise->enabled()) {
-      const std::uint32_t bits = philox4x32(
-          scanner_.noise->seed,
-          {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, noise_stream})[0];
+      const std::uint32_t bits = random_bits(scanner_.noise->seed, ray, noise_stream);
       hit.range += normal_from_bits(bits, normal_table()) * model_sigma(*scanner_.noise, hit.t, hit.reflectivity);
       hit.range = std::max(hit.range, 0.0);
     }
     hit.point = origin_ + d * hit.range;
-    place(hit);
+    place(hit, ray);
     return hit;
   }
 
  private:
+  std::uint32_t random_bits(std::uint64_t seed, std::uint64_t ray, std::uint32_t stream) const {
+    return philox4x32(
+        seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, stream})[0];
+  }
   std::array<Vec3, 3> corners(std::uint32_t triangle) const {
     const auto p = s_.scene->corners(triangle);
     return {widen(p[0]), widen(p[1]), widen(p[2])};
@@ -121,7 +123,7 @@ class RayTest {
     hit.reflectivity = std::clamp(-dot(n, d) * s_.scene->meshes[s_.scene->mesh_of(hit.triangle)].diffuse, 0.0, 1.0);
   }
 
-  void place(ReferenceHit& hit) const {
+  void place(ReferenceHit& hit, std::uint64_t ray) const {
     if (s_.scene->meshes[s_.scene->mesh_of(hit.triangle)].role != Role::surveyed) return;
     const VoxelGrid& grid = *s_.grid;
     const std::array<double, 3> p{hit.point.x, hit.point.y, hit.point.z};
@@ -135,7 +137,7 @@ class RayTest {
     }
     if (inside) hit.voxel = grid.find(morton_encode(cell[0], cell[1], cell[2]));
     if (hit.voxel == no_voxel || !scanner_.limits || !scanner_.limits->enabled()) return;
-    hold_to_limits(hit);
+    hold_to_limits(hit, ray);
     if (hit.dropped.points > 0) hit.voxel = no_voxel;
   }
 
@@ -171,7 +173,7 @@ class RayTest {
   }
 
   // Uses angle, length and standard deviation themselves.
-  void hold_to_limits(ReferenceHit& hit) const {
+  void hold_to_limits(ReferenceHit& hit, std::uint64_t ray) const {
     const LimitModel& model = *scanner_.limits;
     const LimitModel::Limits& limits = model.meshes[s_.scene->mesh_of(hit.triangle)];
     const double cosine = -dot(hit.normal, direction_of(hit)), incidence = std::acos(std::min(cosine, 1.0));
@@ -189,6 +191,8 @@ class RayTest {
     if (limits.largest_reach_square > 0)
       hit.dropped.echo = hold(hit.t, std::sqrt(static_cast<double>(limits.largest_reach_square) * cosine *
                                                (model.glass ? passed(hit) : 1)));
+    if (static_cast<double>(random_bits(model.seed, ray, dropout_stream)) < static_cast<double>(model.lost_below))
+      hit.dropped.echo = 1;
     hit.dropped.points =
         hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise + hit.dropped.echo > 0 ? 1 : 0;
   }

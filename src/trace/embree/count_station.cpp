@@ -20,9 +20,11 @@ namespace vantage {
 namespace {
 
 // Adds the points of `hits`, which are on surveyed meshes and have their ranges.
-[[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin, const Hits& hits,
-                                                const PaneView* panes, VoxelLookup& voxels, PointBuckets::Local& points,
-                                                std::uint32_t shift, StationTotals& totals) {
+[[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const TraceStation& station,
+                                                const Hits& hits, const PaneView* panes, VoxelLookup& voxels,
+                                                PointBuckets::Local& points, std::uint32_t shift,
+                                                StationTotals& totals) {
+  const Float3& origin = station.origin;
   std::array<Passed, RayBundle::capacity> passed;
   const bool behind_glass = station_rays.glass() && station_rays.glass()->follow(origin, hits, panes, passed);
   const bool all_count = !station_rays.limited() || station_rays.all_count(hits);
@@ -34,8 +36,9 @@ namespace {
         voxels.add(point);
         continue;
       }
-      const DroppedPoints dropped = station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k],
-                                                         hits.primitive[k], behind_glass ? passed[k].share : 1);
+      const DroppedPoints dropped =
+          station_rays.dropped(station, hits.ray(k), {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k], hits.primitive[k],
+                               behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
         voxels.add(point);
       } else if (station_rays.grid().index_of(point) != no_voxel) {
@@ -75,7 +78,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     }
   }
   station_rays.find_ranges(station, hits, true);
-  count_points(station_rays, rays.origin, hits, panes, voxels, points, shift, totals);
+  count_points(station_rays, station, hits, panes, voxels, points, shift, totals);
   return totals;
 }
 
@@ -119,7 +122,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     }
   }
   std::fill_n(hits.primitive + hits.size, many, triangle);
-  if (station_rays.noise().enabled())
+  if (station_rays.draws())
     for (std::uint32_t k = 0; k < many; ++k) {
       const std::uint64_t ray = station_rays.ray(row + k, column);
       hits.ray_low[hits.size + k] = static_cast<std::uint32_t>(ray);
@@ -179,7 +182,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
   SettledPoints settled;
   const auto count = [&]() __attribute__((always_inline)) {
     station_rays.find_ranges(station, hits, true);
-    count_points(station_rays, station.origin, hits, panes, voxels, points, shift, totals);
+    count_points(station_rays, station, hits, panes, voxels, points, shift, totals);
     hits.size = 0;
   };
   Facet facet;

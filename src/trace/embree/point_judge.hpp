@@ -8,6 +8,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/philox.hpp"
+#include "shared/noise_types.h"
 #include "trace/embree/range_noise.hpp"
 #include "trace/tracer.hpp"
 
@@ -23,7 +25,8 @@ class PointJudge {
 
   // Whether echoes alone are limited.
   bool judges_echo_alone() const {
-    return enabled() && std::ranges::all_of(model_->meshes, [](const LimitModel::Limits& limits) {
+    return enabled() && model_->lost_below == 0 &&
+           std::ranges::all_of(model_->meshes, [](const LimitModel::Limits& limits) {
              return limits == LimitModel::Limits{.largest_reach_square = limits.largest_reach_square};
            });
   }
@@ -33,6 +36,14 @@ class PointJudge {
   }
   static bool detected(double reach_square, double cosine, float t) {
     return static_cast<double>(t) * static_cast<double>(t) <= reach_square * std::abs(cosine);
+  }
+
+  bool loses_echoes() const { return model_ && model_->lost_below > 0; }
+  // Whether the echo of a ray is lost at random.
+  bool lost(std::uint64_t ray, std::uint32_t place) const {
+    return loses_echoes() &&
+           philox4x32(model_->seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place,
+                                     dropout_stream})[0] < model_->lost_below;
   }
 
   // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either

@@ -41,7 +41,8 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
 
 // The tile's points: hits, or panes that return the beam, without those whose echo is too weak. `counts`: whether a
 // point meets all limits. Overwrites the bundle's hits.
-void find_points(const StationRays& station_rays, const RayTile& tile, RayBundle& rays, Hits& points, bool* counts) {
+void find_points(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
+                 Hits& points, bool* counts) {
   std::array<Passed, RayBundle::capacity> passed;
   bool behind_glass = false;
   if (station_rays.glass()) {
@@ -72,11 +73,13 @@ void find_points(const StationRays& station_rays, const RayTile& tile, RayBundle
   points.size = 0;
   for (std::uint32_t k = 0; k < all; ++k) {
     const std::uint32_t from = points.slot[k];
+    const std::uint64_t ray = points.ray(k);
     DroppedPoints dropped;
-    if (!returned[from]) dropped = station_rays.dropped(rays, from, behind_glass ? passed[from].share : 1);
-    if (dropped.echo > 0) continue;
+    if (!returned[from])
+      dropped = station_rays.dropped(station, ray, rays, from, behind_glass ? passed[from].share : 1);
+    if (dropped.echo > 0 || station_rays.lost(ray, station.place)) continue;
     counts[points.size] = dropped.points == 0;
-    points.add(rays, from, points.ray_low[k] | std::uint64_t{points.ray_high[k]} << 32);
+    points.add(rays, from, ray);
   }
 }
 
@@ -108,11 +111,10 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   clear(tile, station_rays, wanted);
   Hits points;
   bool counts[RayBundle::capacity];
-  find_points(station_rays, tile, rays, points, counts);
+  find_points(station_rays, station, tile, rays, points, counts);
   if (points.size == 0) return;
   std::uint64_t at[RayBundle::capacity];  // in the chunk
-  for (std::uint32_t k = 0; k < points.size; ++k)
-    at[k] = (points.ray_low[k] | std::uint64_t{points.ray_high[k]} << 32) - wanted.first_ray;
+  for (std::uint32_t k = 0; k < points.size; ++k) at[k] = points.ray(k) - wanted.first_ray;
 
   if (outputs & (Tracer::normal | Tracer::reflectivity | Tracer::barycentric))
     shade(station_rays.surface(), station.origin, points, at, wanted);

@@ -129,6 +129,10 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
+  // Whether what becomes of a hit depends on the ray's number.
+  bool draws() const { return noise_.enabled() || judge_.loses_echoes(); }
+  // Whether the echo of a ray is lost at random.
+  bool lost(std::uint64_t ray, std::uint32_t place) const { return judge_.lost(ray, place); }
   // Glass that weakens echoes of this scanner; null if there is none.
   const GlassPanes* glass() const { return glass_; }
   // Whether all hits count if no glass is before them. False where it takes dropped() to know.
@@ -157,12 +161,22 @@ class StationRays {
     const double reach_square = judge_.reach_square(surface().mesh(triangle));
     return reach_square == 0 || t * t * (1 + 0x1p-20) <= reach_square * cosine;
   }
-  // Limits for which a point is dropped; none if it counts. `passed`: share of its echo that passes glass. REQUIRES:
-  // limited(); rays.primitive[slot] is a hit.
-  DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot, double passed) const {
-    return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot], passed);
+  // Limits for which a ray's point is dropped; none if it counts. `passed`: share of its echo that passes glass.
+  // REQUIRES: limited(); rays.primitive[slot] is a hit.
+  DroppedPoints dropped(const TraceStation& station, std::uint64_t ray, const RayBundle& rays, std::uint32_t slot,
+                        double passed) const {
+    return dropped(station, ray, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot],
+                   passed);
   }
-  DroppedPoints dropped(const Float3& origin, const Float3& d, float t, std::uint32_t triangle, double passed) const {
+  DroppedPoints dropped(const TraceStation& station, std::uint64_t ray, const Float3& d, float t,
+                        std::uint32_t triangle, double passed) const {
+    DroppedPoints dropped = missed(station.origin, d, t, triangle, passed);
+    if (lost(ray, station.place)) dropped.echo = dropped.points = 1;
+    return dropped;
+  }
+
+ private:
+  DroppedPoints missed(const Float3& origin, const Float3& d, float t, std::uint32_t triangle, double passed) const {
     if (echo_alone_)
       return judge_.missed(surface().mesh(triangle), dot(planes().normal(triangle), widen(d)), t, 0, passed);
     const Facet facet = surface().facet(triangle);
@@ -170,7 +184,6 @@ class StationRays {
     return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal), passed);
   }
 
- private:
   std::shared_ptr<const EmbreeScene> scene_;
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;

@@ -660,7 +660,9 @@ void SampledVoxelCounter::finish() {
   for (std::uint32_t k = 0; k < hits_.size; ++k) {
     const std::uint32_t slot = hits_.slot[k], i = cast_voxel_[slot];
     if (!lies_in(rays_->grid(), hits_.point(bundle_.origin, k), voxels_.cell(first_ + i))) continue;
-    if (rays_->limited() && rays_->dropped(bundle_, slot, behind_glass ? passed[k].share : 1).points > 0) continue;
+    if (rays_->limited() &&
+        rays_->dropped(*station_, hits_.ray(k), bundle_, slot, behind_glass ? passed[k].share : 1).points > 0)
+      continue;
     if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
     if (!masks_.empty()) masks_[i] |= bit;
   }

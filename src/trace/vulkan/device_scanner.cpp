@@ -76,17 +76,21 @@ void DeviceScanner::write(Commands& commands, const TraceParameters& shared) con
   p.azimuth_step = static_cast<float>(pattern.azimuth_step);
   p.first_zenith = static_cast<float>(pattern.first_zenith);
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
+  if (noise() || limits()) {
+    const std::uint64_t seed = limits() ? scanner_.limits->seed : scanner_.noise->seed;
+    p.seed_low = static_cast<std::uint32_t>(seed);
+    p.seed_high = static_cast<std::uint32_t>(seed >> 32);
+  }
   if (noise()) {
     p.noise_reach = scanner_.noise->reach;
     p.reaches = reaches_.address();
-    p.seed_low = static_cast<std::uint32_t>(scanner_.noise->seed);
-    p.seed_high = static_cast<std::uint32_t>(scanner_.noise->seed >> 32);
   }
   if (limits()) {
     p.limits = limits_.address();
     p.limits_of = limits_of_.address();
     p.exit_diameter = scanner_.limits->exit_diameter;
     p.divergence = scanner_.limits->divergence;
+    p.lost_below = scanner_.limits->lost_below;
   }
   if (!glass()) p.glass_nodes = p.glass_corners = 0;
   if (const NoiseModel* const looked_up = sigma_model()) {

@@ -467,7 +467,7 @@ TEST(EditSession, ShowsTheSameWhereMeshesAreShared) {
     session.change({{"do", "exact"}});
     const State state = finished(session);
     EXPECT_EQ(state["network"]["stations"].size(), 2u);
-    shown.push_back(state["network"].dump() + state["colours"].dump());
+    shown.push_back(state["network"].dump() + state["coverage"].dump() + state["only"].dump());
   }
   EXPECT_EQ(shown[0], shown[1]);
 }

@@ -85,8 +85,9 @@ const std::vector<Change<Scanner>> kScanner{
     {"range_accuracy_m", [](Scanner& s) { s.range_accuracy_m = 0.001; }},
     {"range_accuracy_ppm", [](Scanner& s) { s.range_accuracy_ppm = 10; }},
     {"tilt_accuracy", [](Scanner& s) { s.tilt_accuracy = Angle::degrees(0.05); }, false},  // the registration's decides
-    {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }}};
-static_assert(member_count<Scanner>() == 25);
+    {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }},
+    {"dropout", [](Scanner& s) { s.dropout = 0.1; }}};
+static_assert(member_count<Scanner>() == 26);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{

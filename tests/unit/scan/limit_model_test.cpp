@@ -113,6 +113,44 @@ TEST(LimitModel, AWeakEchoIsNoPoint) {
   }
 }
 
+// Rays are lost by their numbers and the station's place alone: the same ones however they are counted, whatever else
+// is asked of the points, and with or without noise.
+TEST(LimitModel, EchoesAreLostAtRandom) {
+  Scanner scanner = rtc360_scanner();
+  const auto simulator = [&](double dropout, bool noise) {
+    scanner.dropout = dropout;
+    return Simulator(wall(0, 0).scene(), scanner, {.engine = Engine::embree, .user_size_m = 0.5, .noise = noise});
+  };
+  Simulator every = simulator(0, false), some = simulator(0.2, false), noisy = simulator(0.2, true),
+            noisy_every = simulator(0, true);
+  const Station station{Vec3{0, 0, 0}};
+  const auto ranges = [&](Simulator& of) {
+    std::vector<float> all;
+    of.scan(station, {.outputs = scan_range},
+            [&](const ScanChunk& chunk) { all.insert(all.end(), chunk.range_m.begin(), chunk.range_m.end()); });
+    return all;
+  };
+  const std::vector<float> whole = ranges(every), part = ranges(some);
+  std::uint64_t met = 0, left = 0;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    met += std::isfinite(whole[k]);
+    if (!std::isfinite(part[k])) continue;
+    ++left;
+    EXPECT_EQ(part[k], whole[k]);
+  }
+  const auto rays = static_cast<double>(met);
+  EXPECT_NEAR(static_cast<double>(left), 0.8 * rays, 5 * std::sqrt(0.2 * 0.8 * rays));
+
+  // The same station twice: another place has other rays.
+  const NetworkCounts counts = some.evaluate({station, station}, {});
+  EXPECT_EQ(counts.points_on_surveyed[0], left);
+  EXPECT_EQ(counts.dropped[0], (DroppedPoints{met - left, 0, 0, 0, met - left}));
+  EXPECT_NE(counts.points_on_surveyed[1], left);
+  const NetworkCounts moved = noisy.evaluate({station}, {});
+  EXPECT_EQ(moved.points_on_surveyed[0] + moved.dropped[0].points,
+            noisy_every.evaluate({station}, {}).points_on_surveyed[0]);
+}
+
 // The ranges that a maker states for some reflectivity, at normal incidence, are those at which a surface vanishes.
 TEST(LimitModel, StatedRangesAreReproduced) {
   for (const char* key : {"focus-x330", "vz-400i", "x7", "zf5016", "rtc360"}) {

@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <string>
+
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
@@ -142,6 +147,25 @@ TEST(NoiseModel, IsOffWithoutATableOrWithZeros) {
   zeros.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.0}};
   EXPECT_FALSE(make_noise_model(zeros, 1).enabled());
   EXPECT_EQ(model_sigma(make_noise_model(zeros, 1), 10, 0.5), 0.0);
+}
+
+// A surface of 0.5 at 60° is one of 0.25: both tables say the same.
+TEST(LoadNoise, ByAngleIsByTheReflectivityThatIsLeft) {
+  const test::TemporaryFolder folder;
+  const auto load = [&](const std::string& text) {
+    std::ofstream(folder / "noise.csv") << text;
+    return load_noise((folder / "noise.csv").string());
+  };
+  const NoiseTable by_angle = load("incidence_deg@0.5,5,20\n0,0.0004,0.001\n60,0.0006,0.0016\n"),
+                   by_reflectivity = load("reflectivity,5,20\n0.25,0.0006,0.0016\n0.5,0.0004,0.001\n");
+  ASSERT_EQ(by_angle.reflectivities.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(by_angle.reflectivities[k], by_reflectivity.reflectivities[k], 1e-15);
+  EXPECT_EQ(by_angle.sigma_m, by_reflectivity.sigma_m);
+  EXPECT_EQ(by_angle.distances_m, by_reflectivity.distances_m);
+  for (const char* const bad :
+       {"incidence_deg,5\n0,0.001\n", "incidence_deg@0,5\n0,0.001\n", "incidence_deg@0.5,5\n90,0.001\n",
+        "incidence_deg@0.5,5\n-1,0.001\n", "incidence_deg@0.5,5\n60,0.001\n0,0.002\n"})
+    EXPECT_THROW(load(bad), Error) << bad;
 }
 
 }  // namespace

@@ -220,6 +220,7 @@ TEST(Bounds, OfTheProgramHoldForMembersToo) {
         [](SiteOptions& o, double v) {
           o.beam = {v, 5};
         }},
+       {"dropout", [](SiteOptions& o, double v) { o.dropout = v; }},
        {"detection",
         [](SiteOptions& o, double v) {
           o.detection = {100, v};
