@@ -15,7 +15,6 @@ layout(constant_id = 3) const bool with_tiles = false;
 layout(push_constant, scalar) uniform Push { CountPush push; };
 
 void main() {
-  const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
   uint row, column;
   float far = parameters.max_range;
   bool alive = true;
@@ -24,14 +23,15 @@ void main() {
     const uint k = gl_WorkGroupID.z * tile_groups_y + gl_WorkGroupID.y;
     alive = k < push.tile_list.at[0];
     const uint tile = alive ? push.tile_list.at[1u + k] : 0u;
+    const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
     const uint blocks_in_row = tile_side / block_columns;
     row = first_row_of(tile) + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
     column = first_column_of(tile) + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
     far = min(far, push.tile_far.at[tile]);
     starts = Starts(push.starts, k);
   } else {
-    row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
-    column = gl_WorkGroupID.x * block_columns + in_block.x;
+    const uvec2 ray = ray_of_thread(push.first_row);
+    row = ray.x, column = ray.y;
   }
   alive = alive && row < push.first_row + push.row_count && column < parameters.columns;
 

@@ -54,9 +54,10 @@ shared uvec2 founds[group_size];  // one bit per step
 bool ray_at(uint thread, uint k, out uvec2 ray) {
   const Walk walk = walks[thread];
   const uint place = place_in_walk(walk.first + k, walk_length(walk.rays));
+  if (place >= walk.rays) return false;
   const RayWindow window = RayWindow(walk.row0, walk.row0, walk.column0, walk.column1, walk.wrapped0, walk.wrapped0);
   ray = ray_in_window(window, walk.columns, int(place));
-  return place < walk.rays;
+  return ray.x != no_ray;
 }
 
 void main() {

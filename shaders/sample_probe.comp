@@ -30,11 +30,13 @@ void main() {
     const uint rays = rays_of(window);
     open = rays > 0u;
     if (open) {
-      const uvec2 ray = ray_in_window(window, columns, row_count_of(window) / 2 * columns + columns / 2);
-      const vec3 direction = ray_direction(ray.x, ray.y, station.turn);
+      const uvec2 ray =
+          ray_in_window(window, columns, row_count_of(window) / 2 * columns + (listed ? columns - 1 : columns) / 2);
+      const bool is_ray = ray.x != no_ray;
+      const vec3 direction = is_ray ? ray_direction(ray.x, ray.y, station.turn) : vec3(0, 0, 1);
       const vec2 range = passage(cube, direction);
-      open = rays > 1u;
-      traced = may_see(cube, range);
+      open = rays > 1u || !is_ray;
+      traced = is_ray && may_see(cube, range);
       if (traced) {
         probe = number_of(ray);
         const Hit hit = trace_into(cube, range, station.origin, direction);

@@ -12,9 +12,8 @@ layout(local_size_x = group_size) in;  // block_columns × block_rows
 layout(push_constant, scalar) uniform Push { ScanPush push; };
 
 void main() {
-  const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
-  const uint row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
-  const uint column = gl_WorkGroupID.x * block_columns + in_block.x;
+  const uvec2 ray = ray_of_thread(push.first_row);
+  const uint row = ray.x, column = ray.y;
   if (row >= push.first_row + push.row_count || column >= parameters.columns) return;
   const uint k = (row - push.first_row) * parameters.columns + column;
 

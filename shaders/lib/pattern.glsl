@@ -2,13 +2,15 @@
 // Directions of the scan pattern, from tables that the host computed in double.
 #ifndef VANTAGE_LIB_PATTERN
 #define VANTAGE_LIB_PATTERN
+#include "lib/list.glsl"
 #include "lib/parameters.glsl"
 #include "lib/turn.glsl"
 
 // `turn`: the station's; read if it is turned.
 vec3 ray_direction(uint row, uint column, vec3 turn[3]) {
   const float s = parameters.sin_zenith.at[row];
-  precise vec3 d = vec3(s * parameters.cos_azimuth.at[column], s * parameters.sin_azimuth.at[column],
+  const uint azimuth = listed ? row : column;
+  precise vec3 d = vec3(s * parameters.cos_azimuth.at[azimuth], s * parameters.sin_azimuth.at[azimuth],
                         parameters.cos_zenith.at[row]);
   if (turned) d = turn_direction(turn, d);
   return d;
@@ -29,6 +31,14 @@ uvec2 place_in_block(uint i) {
   const uint column = (i & 3u) | ((i >> 3) & 1u) << 2 | ((i >> 5) & 1u) << 3;
   const uint row = ((i >> 2) & 1u) | ((i >> 4) & 1u) << 1 | ((i >> 6) & 1u) << 2;
   return uvec2(column, row);
+}
+
+// Row and column of a thread's ray in a dispatch over rows from `first_row` on; those of a list lie one after the other.
+uvec2 ray_of_thread(uint first_row) {
+  if (listed) return uvec2(first_row + gl_WorkGroupID.y * group_size + gl_LocalInvocationIndex, 0u);
+  const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
+  return uvec2(first_row + gl_WorkGroupID.y * block_rows + in_block.y,
+               gl_WorkGroupID.x * block_columns + in_block.x);
 }
 
 #endif

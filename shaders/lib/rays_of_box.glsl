@@ -3,10 +3,12 @@
 #ifndef VANTAGE_LIB_RAYS_OF_BOX
 #define VANTAGE_LIB_RAYS_OF_BOX
 #include "lib/angles.glsl"
+#include "lib/list.glsl"
 #include "lib/parameters.glsl"
 
 // Rows [row0, row1] and up to two runs of columns; the second holds columns beyond a full turn. Empty runs have end <
-// begin.
+// begin. Of a list: bands, bits of the azimuth from which its rays are near and of the width of those azimuths, and the
+// most rays that one of the bands has there.
 struct RayWindow {
   int row0, row1;
   int column0, column1;
@@ -15,10 +17,21 @@ struct RayWindow {
 
 int row_count_of(RayWindow w) { return max(w.row1 - w.row0 + 1, 0); }
 int first_run_of(RayWindow w) { return max(w.column1 - w.column0 + 1, 0); }
-int column_count_of(RayWindow w) { return first_run_of(w) + max(w.wrapped1 - w.wrapped0 + 1, 0); }
+int column_count_of(RayWindow w) {
+  return listed ? w.wrapped0 : first_run_of(w) + max(w.wrapped1 - w.wrapped0 + 1, 0);
+}
+
+// Place k of a list's window; its row is no_ray if it has none.
+uvec2 listed_ray_in_window(RayWindow w, uint band, uint place) {
+  const BandRays rays = rays_of_band(band, intBitsToFloat(w.column0), intBitsToFloat(w.column1));
+  if (place >= count_of(rays)) return uvec2(no_ray, 0u);
+  const uint run = rays.end - rays.from;
+  return uvec2(parameters.list_rays.at[place < run ? rays.from + place : rays.wrapped + place - run], 0u);
+}
 
 // Ray k of the window, row by row.
 uvec2 ray_in_window(RayWindow w, int columns, int k) {
+  if (listed) return listed_ray_in_window(w, uint(w.row0 + k / columns), uint(k % columns));
   const int column = k % columns, run = first_run_of(w);
   return uvec2(w.row0 + k / columns, column < run ? w.column0 + column : w.wrapped0 + column - run);
 }
@@ -37,6 +50,16 @@ int first_row_above(float zenith) {
   return int(first);
 }
 
+RayWindow window_of_list(float zenith0, float zenith1, float start, float width) {
+  const float first = (zenith0 - parameters.first_zenith) / parameters.zenith_step,
+              last = (zenith1 - parameters.first_zenith) / parameters.zenith_step;
+  RayWindow w = RayWindow(int(max(floor(first), 0.0)), int(min(floor(last), float(parameters.list_bands) - 1.0)),
+                          floatBitsToInt(start), floatBitsToInt(width), 0, 0);
+  for (int band = w.row0; band <= w.row1; ++band)
+    w.wrapped0 = max(w.wrapped0, int(count_of(rays_of_band(uint(band), start, width))));
+  return w;
+}
+
 // All rays from the coordinate origin that may meet the box [low, high], and few others.
 RayWindow rays_of_box(vec3 low, vec3 high) {
   const float rows = float(parameters.rows), columns = float(parameters.columns);
@@ -47,7 +70,8 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
   const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
   const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
   RayWindow w;
-  if (parameters.zenith_step > 0.0) {
+  if (listed) {
+  } else if (parameters.zenith_step > 0.0) {
     const float row_scale = 1.0 / parameters.zenith_step;
     w.row0 = int(max(ceil((zenith0 - parameters.first_zenith) * row_scale), 0.0));
     w.row1 = int(min(floor((zenith1 - parameters.first_zenith) * row_scale), rows - 1.0));
@@ -71,6 +95,7 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
     start -= floor(start / (2.0 * pi)) * 2.0 * pi;
     width = highest - lowest + 2.0 * angle_slack;
   }
+  if (listed) return window_of_list(zenith0, zenith1, start, width);
   const float column_scale = 1.0 / parameters.azimuth_step;
   if (width >= 1.9 * pi) {
     w.column0 = 0;

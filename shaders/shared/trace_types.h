@@ -34,6 +34,7 @@ VANTAGE_CONST uint traversal_arrays = 3;
 VANTAGE_CONST uint turned_constant = 4;  // constant_id of `turned` in lib/turn.glsl
 VANTAGE_CONST uint glass_constant = 5;   // of `with_glass` in lib/glass.glsl
 VANTAGE_CONST uint shared_constant = 6;  // of `with_shared` in lib/scene_triangle.glsl
+VANTAGE_CONST uint listed_constant = 7;  // of `listed` in lib/list.glsl
 
 // Glass (docs/method.md). A pane returns the beam itself at up to 1° from its normal: the square of that cosine. A beam
 // with a smaller share left is lost. Faces nearer together than the sum of two gaps, one a share of the distance, are
@@ -78,6 +79,10 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_zenith;
   VANTAGE_ADDRESS(Floats) sin_azimuth;
   VANTAGE_ADDRESS(Floats) cos_azimuth;
+  // Of a list, whose rows are its rays: DirectionList.
+  VANTAGE_ADDRESS(Uints) list_rays;       // by band of zenith, then by azimuth
+  VANTAGE_ADDRESS(Floats) list_azimuths;  // of these, in a full turn from 0
+  VANTAGE_ADDRESS(Uints) list_offsets;    // of each band in them, and an end
   VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
   uint64_t traversal[traversal_arrays];  // addresses of the inputs of the engine's own trace()
@@ -117,7 +122,7 @@ struct TraceParameters {
   float noise_inverse_span;
   uint seed_low;
   uint seed_high;
-  float zenith_step;  // radians; 0: rows are not all one step apart
+  float zenith_step;  // radians; 0: rows are not all one step apart; of a list: between its bands
   float azimuth_step;
   float first_zenith;
   float first_azimuth;
@@ -125,6 +130,7 @@ struct TraceParameters {
   float exit_diameter;  // of the beam, in metres
   float divergence;     // full angle, in radians
   uint lost_below;      // limit of dropout_stream (noise_types.h)
+  uint list_bands;
 };
 
 // Sums per station, 64 bits each: all points; points that count; and, if points have limits, those in a surveyed voxel

@@ -47,6 +47,14 @@ class DirectionList {
     }
   }
 
+  // For engines that look rays up themselves: rays by band, then by azimuth; their azimuths in a full turn from 0;
+  // where each band begins among them, and an end; the zenith at which the first band begins, and the height of all.
+  std::span<const std::uint32_t> sorted_rays() const { return rays_; }
+  std::span<const double> sorted_azimuths() const { return azimuth_; }
+  std::span<const std::size_t> band_offsets() const { return offset_; }
+  double first_zenith() const { return first_zenith_; }
+  double band_height() const { return band_; }
+
  private:
   static constexpr double kTurn = 2 * std::numbers::pi;
 

@@ -108,9 +108,7 @@ ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_in
 
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
-  const auto is_list = [](const TraceScanner& scanner) { return scanner.pattern->list != nullptr; };
-  const bool lists = engine == Engine::automatic && std::ranges::any_of(scene.scanners, is_list);
-  const DeviceChoice device = lists ? DeviceChoice{Engine::embree, std::nullopt} : resolved(engine, device_index);
+  const DeviceChoice device = resolved(engine, device_index);
   if (device.engine == Engine::embree) return make_once(device, scene);
   return std::make_unique<RebuildingTracer>([=] { return make_once(device, scene); }, std::move(warn));
 }

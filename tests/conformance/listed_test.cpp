@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Engines that take a list of directions meet the demands on grids, and count a grid's directions as the grid.
+// Lists of directions meet the demands on grids, and engines count a grid's directions as the grid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +16,6 @@
 
 namespace vantage::test {
 namespace {
-
-std::vector<EngineUnderTest> listing_engines() {
-  std::vector<EngineUnderTest> engines = engines_under_test();
-  std::erase_if(engines, [](const EngineUnderTest& engine) { return engine.name.find("embree") == std::string::npos; });
-  return engines;
-}
 
 // A rosette of an asymmetric field, some of it twice, and the poles.
 std::shared_ptr<const RayPattern> rosette() {
@@ -163,11 +157,12 @@ TEST_P(ListedConformance, DirectionsOfAGridCountAsTheGrid) {
     EXPECT_EQ(sampled_field(*grid_tracer, of_grid, site.stations, grid_rays).count, expected.count);
     RecordProperty(site.name, std::to_string(rays) + " rays sampled of the list, " + std::to_string(grid_rays) +
                                   " of the grid, of " + std::to_string(exact.rays));
-    EXPECT_LT(rays, exact.rays) << "a voxel needs the rays near it alone";
+    EXPECT_LT(static_cast<double>(rays), 1.05 * static_cast<double>(grid_rays))
+        << "a voxel needs the rays near it alone";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, ListedConformance, testing::ValuesIn(listing_engines()),
+INSTANTIATE_TEST_SUITE_P(Engines, ListedConformance, testing::ValuesIn(engines_under_test()),
                          [](const auto& engine) { return engine.param.name; });
 
 }  // namespace

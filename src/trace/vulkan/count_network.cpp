@@ -16,7 +16,7 @@ constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;
 KernelVariant count_kernel(Kernel kernel, const DeviceScanner& scanner, bool turned,
                            const Tracer::CountOptions& options) {
   if (kernel != Kernel::count) return {kernel, {}, turned};
-  return {kernel, {scanner.noise(), scanner.limits(), options.masks, options.skip}, turned};
+  return {kernel, {scanner.noise(), scanner.limits(), options.masks, options.skip}, turned, scanner.listed()};
 }
 
 }  // namespace
@@ -41,11 +41,11 @@ class VulkanTracer::ExactCount {
       : t_(tracer),
         stations_by_scanner_(tracer.scanners_.size()),
         station_counts_{station_count},
-        options_(options),
+        options_(tracer.skipping_grids(options)),
         voxels_(static_cast<std::uint32_t>(tracer.scene_.grid->size())),
         mask_words_(options.masks ? (station_count > 32 ? 2 : 1) : 0),
         stride_(totals_seen + station_count + station_count * (station_count - 1) / 2),
-        tile_pass_(options.skip ? tracer.traversal_->tile_pass() : std::nullopt),
+        tile_pass_(options_.skip ? tracer.traversal_->tile_pass() : std::nullopt),
         totals_(stride_) {
     for (const TraceStation& station : stations) {
       const RayPattern& pattern = tracer.scanners_[station.scanner].pattern();
@@ -173,7 +173,7 @@ class VulkanTracer::ExactCount {
       r.dispatch_indirect(pipeline, push, t_.tiles_.dispatch, k * dispatch_bytes);
     } else {
       r.dispatch(pipeline, push, groups_of(scanner_->pattern().columns(), block_columns),
-                 groups_of(part.row_count, block_rows));
+                 groups_of(part.row_count, scanner_->rows_of_group()));
     }
   }
 

@@ -19,9 +19,6 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       set_(device, block_, structure) {
   const RayPattern& pattern = *scanner.pattern;
-  if (pattern.list)
-    throw Error(Errc::invalid_argument,
-                "the scanner's directions are a list, which this engine cannot count: use the engine embree");
   if (pattern.rows() > most_groups * block_rows || std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1}
                                                                                                             << 31)
     throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(pattern.rows()) + " x " +
@@ -32,11 +29,20 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   };
   sin_zenith_ = to_device(pattern.sin_zenith, "sin zenith");
   cos_zenith_ = to_device(pattern.cos_zenith, "cos zenith");
-  sin_azimuth_ = to_device(pattern.sin_azimuth, "sin azimuth");
-  cos_azimuth_ = to_device(pattern.cos_azimuth, "cos azimuth");
+  sin_azimuth_ = to_device(pattern.list ? pattern.list->sin_azimuth : pattern.sin_azimuth, "sin azimuth");
+  cos_azimuth_ = to_device(pattern.list ? pattern.list->cos_azimuth : pattern.cos_azimuth, "cos azimuth");
+  if (pattern.list) upload_list(device, commands, *pattern.list);
   if (limits()) upload_limits(device, commands, scene);
   if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
   if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise)->front(), "reaches of noise");
+}
+
+void DeviceScanner::upload_list(Device& device, Commands& commands, const DirectionList& list) {
+  const std::vector<float> azimuths(list.sorted_azimuths().begin(), list.sorted_azimuths().end());
+  const std::vector<std::uint32_t> offsets(list.band_offsets().begin(), list.band_offsets().end());
+  list_rays_ = make_device_buffer<std::uint32_t>(device, commands, list.sorted_rays(), "rays of the list");
+  list_azimuths_ = make_device_buffer<float>(device, commands, azimuths, "azimuths of the list");
+  list_offsets_ = make_device_buffer<std::uint32_t>(device, commands, offsets, "bands of the list");
 }
 
 // Meshes with equal limits share one entry.
@@ -76,6 +82,15 @@ void DeviceScanner::write(Commands& commands, const TraceParameters& shared) con
   p.azimuth_step = static_cast<float>(pattern.azimuth_step);
   p.first_zenith = static_cast<float>(pattern.first_zenith);
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
+  if (const DirectionList* const list = pattern.list.get()) {
+    p.list_rays = list_rays_.address();
+    p.list_azimuths = list_azimuths_.address();
+    p.list_offsets = list_offsets_.address();
+    p.list_bands = static_cast<std::uint32_t>(list->band_offsets().size() - 1);
+    p.zenith_step = static_cast<float>(list->band_height());
+    p.first_zenith = static_cast<float>(list->first_zenith());
+    p.first_azimuth = 0;
+  }
   if (noise() || limits()) {
     const std::uint64_t seed = limits() ? scanner_.limits->seed : scanner_.noise->seed;
     p.seed_low = static_cast<std::uint32_t>(seed);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "shared/trace_types.h"
+#include "trace/direction_list.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/buffer.hpp"
 #include "trace/vulkan/commands.hpp"
@@ -12,7 +13,7 @@ namespace vantage::vulkan {
 
 class DeviceScanner {
  public:
-  // Throws Error invalid_argument if the pattern is a list, or has 2^31 rays or more. `structure`: acceleration
+  // Throws Error invalid_argument if the pattern has 2^31 rays or more. `structure`: acceleration
   // structure for ray queries, or null; it must outlive this.
   DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
                 const TraceScanner& scanner);
@@ -20,6 +21,9 @@ class DeviceScanner {
   const RayPattern& pattern() const { return *scanner_.pattern; }
   bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
+  bool listed() const { return pattern().list != nullptr; }
+  // Rows of a workgroup that scans or counts without tiles.
+  std::uint32_t rows_of_group() const { return listed() ? group_size : block_rows; }
   bool glass() const { return limits() && scanner_.limits->glass; }
   const TraceSet& set() const { return set_; }
 
@@ -31,12 +35,14 @@ class DeviceScanner {
   const NoiseModel* sigma_model() const {
     return noise() ? scanner_.noise.get() : limits() ? scanner_.limits->noise.get() : nullptr;
   }
+  void upload_list(Device& device, Commands& commands, const DirectionList& list);
   void upload_limits(Device& device, Commands& commands, const SceneData& scene);
 
   TraceScanner scanner_;
   Buffer block_;
   TraceSet set_;
-  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, reaches_, limits_, limits_of_;
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, reaches_, limits_, limits_of_, list_rays_,
+      list_azimuths_, list_offsets_;
 };
 
 }  // namespace vantage::vulkan

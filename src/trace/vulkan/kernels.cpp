@@ -47,6 +47,7 @@ ComputePipeline Kernels::compiled(const KernelVariant& variant) const {
   std::vector<ComputePipeline::Constant> values;
   for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, variant.constants[k]});
   values.push_back({turned_constant, variant.turned});  // these have no effect on kernels without them
+  values.push_back({listed_constant, variant.listed});
   values.push_back({glass_constant, glass_});
   values.push_back({shared_constant, shared_});
   return {device_, source.shader, source.push_bytes, values, set_, source.name};

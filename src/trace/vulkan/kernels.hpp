@@ -34,11 +34,12 @@ enum class Kernel {
   registration
 };
 
-// A kernel with its specialization constants, in the order of their constant_id, for upright or for turned stations.
+// A kernel with its specialization constants, in the order of their constant_id, for upright or for turned stations,
+// and for patterns that are grids or lists.
 struct KernelVariant {
   Kernel kernel;
   std::array<bool, 4> constants = {};
-  bool turned = false;
+  bool turned = false, listed = false;
   auto operator<=>(const KernelVariant&) const = default;
 };
 

@@ -292,9 +292,12 @@ class VulkanTracer::SampledCount {
 
   KernelVariant variant(const Run& run, Kernel kernel) const {
     const bool traces = kernel == Kernel::sample_probe || kernel == Kernel::sample_trace;
-    if (!traces) return {kernel, {}, run.turned};
     const DeviceScanner& scanner = *run.scanner;
-    return {kernel, {scanner.noise(), scanner.limits(), job_.masks, t_.traversal_->is_watertight()}, run.turned};
+    if (!traces) return {kernel, {}, run.turned, scanner.listed()};
+    return {kernel,
+            {scanner.noise(), scanner.limits(), job_.masks, t_.traversal_->is_watertight()},
+            run.turned,
+            scanner.listed()};
   }
 
   // Kernels of exact counts follow on a graphics card: whoever counts samples counts the answer by every ray later.
@@ -306,7 +309,8 @@ class VulkanTracer::SampledCount {
         wanted.push_back(variant(run, kernel));
     t_.kernels_.compile(wanted);
     if (t_.info_.software) return;
-    for (const Run& run : batch.runs) t_.kernels_.compile(t_.count_kernels(*run.scanner, run.turned, CountOptions()));
+    for (const Run& run : batch.runs)
+      t_.kernels_.compile(t_.count_kernels(*run.scanner, run.turned, t_.skipping_grids({})));
   }
 
   // Probes, lists and traces one chunk; its control words are number k of the submission.

@@ -44,8 +44,8 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
   want(voxel, chunk.voxel, push.voxel, "scan voxel");
 
   // The arrays begin at first_ray. A part counts its rows from its own start, so its outputs are offset.
-  const BoundPipeline pipeline =
-      kernels_.get(scanner.set(), {Kernel::scan, {scanner.noise(), scanner.limits()}, station.turn.has_value()});
+  const BoundPipeline pipeline = kernels_.get(
+      scanner.set(), {Kernel::scan, {scanner.noise(), scanner.limits()}, station.turn.has_value(), scanner.listed()});
   const std::uint32_t at_once = rows_per_dispatch(scanner.pattern());
   const auto first_row = static_cast<std::uint32_t>(first_ray / columns);
   for (std::uint32_t row = 0; row < rows; row += at_once) {
@@ -62,7 +62,7 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
                                  {&part.voxel, sizeof(std::uint32_t)}})
       if (*address) *address += skip * size;
     commands_.run([&](const Recorder& r) {
-      r.dispatch(pipeline, part, groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
+      r.dispatch(pipeline, part, groups_of(columns, block_columns), groups_of(part.row_count, scanner.rows_of_group()));
     });
   }
   for (const Copy& copy : copies) commands_.download(*copy.from, copy.to, copy.bytes);

@@ -116,6 +116,11 @@ class VulkanTracer final : public Tracer {
         2 * static_cast<int>(std::bit_width(goal_point_weight())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
+  // Directions of a list form no tiles to skip.
+  CountOptions skipping_grids(CountOptions options) const {
+    options.skip = options.skip && std::ranges::none_of(scanners_, &DeviceScanner::listed);
+    return options;
+  }
   std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
     const std::uint64_t rows = rays_per_dispatch() / pattern.columns() / tile_side * tile_side;
     return static_cast<std::uint32_t>(
