@@ -225,6 +225,22 @@ bool GroundField::is_attic(std::uint32_t part) const {
   return static_cast<double>(stooped) * cell_ * cell_ > strip * std::sqrt(parts_[part].area(cell_));
 }
 
+bool GroundField::is_above_ceiling(const MeshTree& tree, std::uint32_t part) const {
+  if (ceilings_.empty()) return false;
+  constexpr std::size_t kMost = 200;
+  const auto all = members(part);
+  const std::size_t stride = std::max<std::size_t>(1, all.size() / kMost);
+  std::size_t looked_at = 0, above = 0;
+  for (std::size_t k = 0; k < all.size(); k += stride, ++looked_at) {
+    const glm::dvec2 p = middle(column_[all[k]]);
+    const auto hit = tree.first({p.x, p.y, z_[all[k]] + 0.25 * climb_}, {0, 0, -1});
+    if (!hit) continue;
+    const auto after = std::ranges::upper_bound(ceilings_, hit->triangle, {}, &MeshRange::first_triangle);
+    above += after != ceilings_.begin() && hit->triangle - after[-1].first_triangle < after[-1].triangle_count;
+  }
+  return 2 * above > looked_at;
+}
+
 // True if a person can turn on it, as on a platform but not on a rack.
 bool GroundField::is_wide(std::uint32_t part) const {
   const auto far = static_cast<std::int64_t>(std::ceil(2.5 * radius_ / cell_));
@@ -476,7 +492,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
   const glm::dvec3 inside = closed.middle + glm::dvec3{0, 0, 0.5 * height_};
   if (tree.inside_solid(inside) || !(has_openings(tree, number) || is_gallery(tree, number)))
     closed.kind = ClosedKind::hollow;
-  else if (is_attic(number))
+  else if (is_attic(number) || is_above_ceiling(tree, number))
     closed.kind = ClosedKind::attic;
   return closed;
 }

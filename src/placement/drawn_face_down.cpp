@@ -19,6 +19,7 @@ constexpr double kMostUp = 0.01;            // share of it that faces up, as a r
 constexpr std::size_t kLookedAt = 200;      // triangles of a sheet
 constexpr std::size_t kLookedAtFirst = 50;  // the largest of a mesh, and as many others
 constexpr double kSkin_m = 0.01;            // rays begin so far off the sheet
+constexpr double kSlab_m = 1;               // nobody is in a gap below a sheet that is lower
 constexpr std::uint32_t kMost = 4'000'000;  // triangles of a mesh that is taken apart
 
 // Area that a triangle shows from above, in m²; negative: it faces down.
@@ -74,27 +75,34 @@ Shape shape_of(const SceneData& scene, const std::vector<std::uint32_t>& part) {
   return shape;
 }
 
-// True if somebody may stand on the back of a triangle that faces down. inside(triangle): whether that triangle,
-// straight below, belongs to the same solid.
-template <class Inside>
-bool carries(const SceneData& scene, const MeshTree& tree, std::uint32_t triangle, double height_m, Inside inside) {
+// True if somebody may stand on the back of a triangle that faces down. `own(triangle)`: whether that triangle,
+// straight below, may belong to the same part; `sheet`: whether that may be an open sheet. What faces up above is drawn
+// the wrong way around, too, where two sheets are a floor between storeys: the lower one is a ceiling that faces up,
+// and from a gap as low as that nobody sees the upper one.
+template <class Own>
+bool carries(const SceneData& scene, const MeshTree& tree, std::uint32_t triangle, double height_m, Own own,
+             bool sheet) {
   const auto t = corners_of(scene, triangle);
   const glm::dvec3 middle = (t[0] + t[1] + t[2]) / 3.0, skin{0, 0, kSkin_m}, up{0, 0, 1};
   const auto above = tree.first(middle + skin, up);
-  if (above && (above->distance < height_m || shown_m2(scene, above->triangle) > 0)) return false;
+  if (above && above->distance < height_m) return false;
   const auto below = tree.first(middle - skin, -up);
-  return above || !below || (below->distance < height_m && inside(below->triangle));
+  if (above && shown_m2(scene, above->triangle) > 0)
+    return sheet && below && below->distance < kSlab_m && shown_m2(scene, below->triangle) > 0;
+  return above || !below || (below->distance < height_m && own(below->triangle));
 }
 
-bool carries(const SceneData& scene, const MeshTree& tree, const std::vector<std::uint32_t>& part, double height_m) {
+bool carries(const SceneData& scene, const MeshTree& tree, const std::vector<std::uint32_t>& part, double height_m,
+             bool sheet) {
   const std::size_t stride = std::max<std::size_t>(1, part.size() / kLookedAt);
   double on = 0, all = 0;
   for (std::size_t k = 0; k < part.size(); k += stride) {
     const double area = -shown_m2(scene, part[k]);
     if (!(area > 0)) continue;
     all += area;
-    if (carries(scene, tree, part[k], height_m,
-                [&](std::uint32_t below) { return std::ranges::binary_search(part, below); }))
+    if (carries(
+            scene, tree, part[k], height_m,
+            [&](std::uint32_t below) { return std::ranges::binary_search(part, below); }, sheet))
       on += area;
   }
   return 2 * on > all;
@@ -116,7 +124,8 @@ bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& ra
   std::ranges::nth_element(down, down.begin() + static_cast<std::ptrdiff_t>(largest - 1));
   for (std::size_t k = 0; k < largest; ++k) some.push_back(down[k].second);
   return std::ranges::any_of(some, [&](std::uint32_t triangle) {
-    return carries(scene, tree, triangle, height_m, [&](std::uint32_t below) { return shown_m2(scene, below) > 0; });
+    return carries(
+        scene, tree, triangle, height_m, [&](std::uint32_t below) { return shown_m2(scene, below) > 0; }, true);
   });
 }
 
@@ -156,7 +165,7 @@ std::vector<std::uint32_t> drawn_face_down(const SceneData& scene, const MeshTre
     for (const std::vector<std::uint32_t>& part : connected_parts(scene, range)) {
       const Shape shape = shape_of(scene, part);
       if (shape.down_m2 < kLeast_m2 || !(shape.is_sheet() || shape.is_inside_out())) continue;
-      if (!carries(scene, tree, part, height_m)) continue;
+      if (!carries(scene, tree, part, height_m, shape.is_sheet())) continue;
       std::ranges::copy_if(part, std::back_inserter(found),
                            [&](std::uint32_t triangle) { return shown_m2(scene, triangle) < 0; });
     }

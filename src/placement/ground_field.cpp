@@ -202,6 +202,8 @@ GroundField::GroundField(const SceneData& scene, const WalkableOptions& options,
       slope_(std::max(options.max_slope.in_radians(), Angle::degrees(walking_slope_degrees).in_radians())),
       opaque_(scene.opaque_count()),
       border_(plane.has_value()) {
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (names_a_ceiling(scene.meshes[m].name)) ceilings_.push_back(scene.ranges[m]);
   lay_grid(scene, plane);
   find_samples(scene, turned, plane);
   find_room(scene);

@@ -168,6 +168,8 @@ class GroundField {
   std::vector<std::uint32_t> easiest_samples(const Ways& ways) const;
   bool is_roof(const Part& part) const { return part.under_the_sky() && 2 * part.above_others > part.samples; }
   bool is_attic(std::uint32_t part) const;
+  // True if most of it is the back of ceilings, by their names.
+  bool is_above_ceiling(const MeshTree& tree, std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
   struct Rim {
     std::uint32_t sample;
@@ -234,6 +236,7 @@ class GroundField {
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> top_;             // per column: the highest surface at its middle
   std::vector<std::uint8_t> wet_;      // per column: whether water is on top
+  std::vector<MeshRange> ceilings_;    // the triangles of meshes that are named as ceilings, ascending
   std::vector<std::uint32_t> first_;   // per column: its start in the samples, which ascend in z
   std::vector<std::uint32_t> column_;  // per sample
   std::vector<float> z_;               // per sample

@@ -109,17 +109,26 @@ bool names_a_door(const std::string& name) {
     return false;
   return words.has({"door", "tür",   "TÜR",  "tuer", "puerta", "deur", "drzwi", "dveř", "dvere",   "двер",      "Двер",
                     "ДВЕР", "πόρτα", "θύρα", "门",   "門",     "ドア", "扉",    "문",   "rolltor", "schiebetor"}) ||
-         words.has_whole({"porte",      "portes",  "porta",    "porte-fenêtre", "ovi",      "dør",      "dörr",
-                          "kapı",       "ajtó",    "ușă",      "врата",         "gate",     "gates",    "tor",
-                          "tore",       "portail", "portón",   "cancello",      "poort",    "brama",    "ворота",
-                          "shutter",    "roller",  "persiana", "saracinesca",   "serranda", "rolladen", "rollladen",
-                          "rollgitter", "rolluik", "roleta"});
+         words.has_whole({"porte",       "portes",   "porta",     "porte-fenêtre", "ovi",        "dør",     "dörr",
+                          "kapı",        "ajtó",     "ușă",       "врата",         "gate",       "gates",   "tor",
+                          "tore",        "portail",  "portillon", "furtka",        "wicket",     "pforte",  "portón",
+                          "cancello",    "poort",    "brama",     "ворота",        "shutter",    "roller",  "persiana",
+                          "saracinesca", "serranda", "rolladen",  "rollladen",     "rollgitter", "rolluik", "roleta"});
 }
 
 bool names_a_leaf(const std::string& name) {
   return names_a_door(name) ||
          Words(name).has_whole({"leaf", "leaves", "sliding", "slider", "turnstile", "flügel", "fluegel", "torflügel",
                                 "vantail", "battant", "anta", "hoja", "skrzydło", "створка"});
+}
+
+bool names_a_ceiling(const std::string& name) {
+  const Words words(name);
+  // In other languages the word for a ceiling is also that for a slab, and only what hangs is named.
+  return words.has({"ceiling", "plafond", "soffitto", "sufit", "unterdecke", "akustikdecke", "rasterdecke",
+                    "deckensegel", "abhangdecke", "abgehängte", "abgehaengte", "falso techo", "falso_techo",
+                    "forro_falso", "loftplade", "undertak", "подвесной потолок", "天井", "天花"}) &&
+         !words.has({"above", "slab"});
 }
 
 bool names_water(const std::string& name) { return Words(name).has_whole(kWater); }

@@ -10,6 +10,8 @@ namespace vantage {
 bool names_a_door(const std::string& name);
 // True for that, and for the name of a leaf, which may be a plant's, too.
 bool names_a_leaf(const std::string& name);
+// True for the name of a ceiling that hangs below a roof or a slab: nobody walks on it.
+bool names_a_ceiling(const std::string& name);
 bool names_water(const std::string& name);
 // True for the name of a material that says nothing else.
 bool is_water(const std::string& material);

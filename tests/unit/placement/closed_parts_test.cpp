@@ -197,6 +197,25 @@ TEST(ClosedParts, AGalleryThatNothingLeadsToIsEnteredAndARoofIndoorsIsNot) {
   EXPECT_FALSE(holds(hall(sail), 9, 8, 4.1));
 }
 
+// A window lights what is below the roof: a floor by any other name is planned, too.
+TEST(ClosedParts, TheVoidAboveACeilingIsNoFloor) {
+  const auto hall = [](const std::string& name) {
+    Builder walls, ceiling;
+    walls.floor(0, 0, 20, 16, 0).box({0, 0, 9}, {20, 16, 9.2}).floor(-10, -20, 30, -0.2, 0);
+    walls.box({-0.2, 0, 0}, {0, 16, 9}).box({0, 16, 0}, {20, 16.2, 9});
+    walls.box({20, 0, 0}, {20.2, 16, 6.8}).box({20, 0, 8}, {20.2, 16, 9});
+    walls.box({0, -0.2, 0}, {9, 0, 9}).box({11, -0.2, 0}, {20, 0, 9}).box({9, -0.2, 2.2}, {11, 0, 9});
+    ceiling.box({0, 0, 5.8}, {20, 16, 6});
+    return SearchArea::build(Named().add("hall", walls).add(name, ceiling).scene());
+  };
+  const SearchArea deck = hall("Deck 2"), ceiling = hall("Plafond_salle");
+  EXPECT_TRUE(holds(deck, 10, 12, 6));
+  EXPECT_FALSE(holds(ceiling, 10, 12, 6));
+  const ClosedPart* const part = part_at(ceiling.not_entered(), 0, 20);
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->kind, ClosedKind::attic);
+}
+
 TEST(ClosedParts, ARoofOverWhereNobodyStandsIsNoGround) {
   Builder b;
   b.floor(-10, -30, 40, 0, 0);

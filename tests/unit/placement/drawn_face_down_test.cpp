@@ -57,6 +57,20 @@ TEST(DrawnFaceDown, CeilingsAreNoneAndFloorsBetweenStoreysAre) {
   EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{2, 3}));
 }
 
+// Floors and ceilings that were drawn as sheets of their own, each either way.
+TEST(DrawnFaceDown, FloorsCloseOverACeilingThatFacesUpAreFloors) {
+  Builder b;
+  b.floor(0, 0, 8, 8, 0).floor(0, 0, 8, 8, 2.6);  // the second is a ceiling
+  face_down(b, 0, 0, 8, 8, 2.8);
+  b.floor(0, 0, 8, 8, 5.4);
+  EXPECT_EQ(found_in(b), (std::vector<std::uint32_t>{4, 5}));
+  Builder high;  // a gap that somebody may look up from
+  high.floor(0, 0, 8, 8, 0).floor(0, 0, 8, 8, 2.6);
+  face_down(high, 0, 0, 8, 8, 3.8);
+  high.floor(0, 0, 8, 8, 6.4);
+  EXPECT_TRUE(found_in(high).empty());
+}
+
 // A box whose faces show inwards.
 Builder& inside_out(Builder& builder, const Vec3& a, const Vec3& b) {
   return builder.box({b.x, a.y, a.z}, {a.x, b.y, b.z});

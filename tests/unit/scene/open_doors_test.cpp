@@ -246,6 +246,13 @@ TEST(ToldByName, WaterIsWaterAndNoPaint) {
   EXPECT_FALSE(names_water("Watercolour"));
 }
 
+TEST(ToldByName, CeilingsThatHangAreNoSlabs) {
+  for (const char* name : {"Suspended Ceiling 600", "Plafond_salle", "Sufit podwieszany", "Akustikdecke"})
+    EXPECT_TRUE(names_a_ceiling(name)) << name;
+  for (const char* name : {"Decke EG", "Ceiling slab", "floor above ceiling", "Dach", ""})
+    EXPECT_FALSE(names_a_ceiling(name)) << name;
+}
+
 TEST(OpenDoors, AShutterClosesAPassage) {
   const auto passage = [](const std::string& name, double width) {
     Joinery site;
