@@ -20,6 +20,15 @@ double extent_of(const Scene& scene) {
   return std::max({size.x, size.y, size.z});
 }
 
+// So many directions of a list that they are a step apart on average, or all if they are no denser.
+std::vector<RayAngles> thinned(const Scanner& scanner, Angle step) {
+  const double part = step.in_radians() / scanner.azimuth_step.in_radians();
+  const auto stride = static_cast<std::size_t>(std::max(part * part, 1.0));
+  std::vector<RayAngles> some;
+  for (std::size_t k = 0; k < scanner.directions.size(); k += stride) some.push_back(scanner.directions[k]);
+  return some;
+}
+
 }  // namespace
 
 Simulator surroundings_of(const Simulator& simulator, bool through_glass) {
@@ -45,8 +54,12 @@ Simulator surroundings_of(const Simulator& simulator, bool through_glass) {
     const auto coarser = [&](Angle own, Angle sweep) {
       return std::max(own, std::min(step, Angle::radians(sweep.in_radians() / fewest_rays)));
     };
-    scanner.azimuth_step = coarser(scanner.azimuth_step, scanner.horizontal_angle);
-    scanner.zenith_step = coarser(scanner.zenith_step, Angle::radians(scanner.vertical_angle.in_radians() / 2));
+    if (!scanner.directions.empty()) {
+      scanner.set_directions(thinned(scanner, coarser(scanner.azimuth_step, scanner.horizontal_angle)));
+      continue;
+    }
+    scanner.set_steps(coarser(scanner.azimuth_step, scanner.horizontal_angle),
+                      coarser(scanner.zenith_step, Angle::radians(scanner.vertical_angle.in_radians() / 2)));
   }
   Simulator surroundings(scene, scanners, config);
   surroundings.stand_for(simulator.scanners());

@@ -19,8 +19,8 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       set_(device, block_, structure) {
   const RayPattern& pattern = *scanner.pattern;
-  if (pattern.rows() > most_groups * block_rows || std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1}
-                                                                                                            << 31)
+  if ((!listed() && pattern.rows() > most_groups * block_rows) ||
+      std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1} << 31)
     throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(pattern.rows()) + " x " +
                                             std::to_string(pattern.columns()) +
                                             " rays; this engine takes fewer than 2^31 a station: use larger steps");

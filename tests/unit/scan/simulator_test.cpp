@@ -684,6 +684,29 @@ TEST(Registration, GoesByTheScansThatSurroundingsStandFor) {
   EXPECT_NEAR(estimate.value, whole_room, 4 * estimate.standard_error);
 }
 
+// Scanners whose pattern is no even grid are thinned out for the surroundings, too: they see nearly as much of them.
+TEST(Surroundings, TakeListsOfDirectionsAndUnevenRows) {
+  Scanner grid = coarse_scanner(0.1), list = grid, rows = grid;
+  std::vector<RayAngles> directions;
+  for (std::uint64_t ray = 0; ray < grid.rays(); ++ray)
+    directions.push_back(grid.angles(ray * 2'654'435'761u % grid.rays()));
+  list.set_directions(directions);
+  std::vector<Angle> zeniths;
+  for (double zenith = 0.1; zenith < 150; zenith += zenith < 90 ? 0.08 : 0.12)
+    zeniths.push_back(Angle::degrees(zenith));
+  rows.set_row_zeniths(zeniths);
+  const Network network{{{0, 0, 0}}};
+  std::vector<double> seen;
+  for (const Scanner& scanner : {grid, list, rows}) {
+    Simulator simulator(panel_in_a_room().scene(), scanner, config(0.1, 0.05));
+    Simulator around = surroundings_of(simulator);
+    seen.push_back(static_cast<double>(around.evaluate(network).seen[0]));
+    EXPECT_LT(around.scanner().rays(), scanner.rays() * 3 / 4);
+  }
+  EXPECT_NEAR(seen[1], seen[0], 0.05 * seen[0]);
+  EXPECT_NEAR(seen[2], seen[0], 0.05 * seen[0]);
+}
+
 TEST(Simulator, TwoCoexistAndCanBeMoved) {
   const Scene scene = wall_and_floor().scene();
   Simulator a(scene, coarse_scanner(2), config()), b(scene, coarse_scanner(3), config());
