@@ -33,7 +33,8 @@ uvec2 place_in_block(uint i) {
   return uvec2(column, row);
 }
 
-// Row and column of a thread's ray in a dispatch over rows from `first_row` on; those of a list lie one after the other.
+// Row and column of a thread's ray in a dispatch over rows from `first_row` on; those of a list lie one after the
+// other.
 uvec2 ray_of_thread(uint first_row) {
   if (listed) return uvec2(first_row + gl_WorkGroupID.y * group_size + gl_LocalInvocationIndex, 0u);
   const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);

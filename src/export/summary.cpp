@@ -567,9 +567,10 @@ void add_closed(std::vector<SummaryLine>& lines, const Scene& scene, const Searc
       rest += part.area_m2, ++more;
   }
   if (more > 0) lines.push_back({"closed", fixed(rest, 1) + " m² of floor in " + number(more) + " more such parts"});
-  for (const auto& [kind, where] : {std::pair{ClosedKind::attic, "under slopes of roofs or on ceilings, with no way up"},
-                                    std::pair{ClosedKind::top, "on top of what stands on the floor"},
-                                    std::pair{ClosedKind::hollow, "inside of what has no opening"}}) {
+  for (const auto& [kind, where] :
+       {std::pair{ClosedKind::attic, "under slopes of roofs or on ceilings, with no way up"},
+        std::pair{ClosedKind::top, "on top of what stands on the floor"},
+        std::pair{ClosedKind::hollow, "inside of what has no opening"}}) {
     double sum = 0, share = 0;
     const ClosedPart* largest = nullptr;
     for (const ClosedPart& part : area.not_entered()) {
