@@ -45,7 +45,8 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
 
 // Azimuth from the middle of the sweep, within half a turn.
 double from_middle(const RayAngles& angles) {
-  return std::remainder(angles.azimuth.in_radians(), 2 * std::numbers::pi);
+  const double azimuth = angles.azimuth.in_radians();
+  return std::abs(azimuth) <= std::numbers::pi ? azimuth : std::remainder(azimuth, 2 * std::numbers::pi);
 }
 
 // Least and largest zenith, and the largest distance of an azimuth from the middle of the sweep, in radians.

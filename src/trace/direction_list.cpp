@@ -3,6 +3,8 @@
 
 #include <numeric>
 
+#include "core/parallel.hpp"
+
 namespace vantage {
 
 DirectionList::DirectionList(std::span<const double> zeniths, std::span<const double> azimuths) {
@@ -18,6 +20,7 @@ DirectionList::DirectionList(std::span<const double> zeniths, std::span<const do
 
   std::vector<std::uint32_t> band(rays);
   std::vector<double> azimuth(rays);
+  sin_azimuth.reserve(rays), cos_azimuth.reserve(rays);
   offset_.assign(static_cast<std::size_t>(many) + 1, 0);
   for (std::size_t k = 0; k < rays; ++k) {
     band[k] = static_cast<std::uint32_t>(std::min(band_at(zeniths[k]), many - 1));
@@ -27,13 +30,15 @@ DirectionList::DirectionList(std::span<const double> zeniths, std::span<const do
     ++offset_[band[k] + 1];
   }
   std::partial_sum(offset_.begin(), offset_.end(), offset_.begin());
-  rays_.resize(rays);
-  std::iota(rays_.begin(), rays_.end(), 0u);
-  std::ranges::sort(rays_, [&](std::uint32_t a, std::uint32_t b) {
-    if (band[a] != band[b]) return band[a] < band[b];
-    return azimuth[a] != azimuth[b] ? azimuth[a] < azimuth[b] : a < b;
+  rays_.resize(rays), azimuth_.resize(rays);
+  std::vector<std::size_t> next(offset_.begin(), offset_.end() - 1);
+  for (std::uint32_t k = 0; k < rays; ++k) rays_[next[band[k]]++] = k;
+  parallel::for_all(std::size_t{0}, bands(), [&](std::size_t own) {
+    const auto begin = static_cast<std::ptrdiff_t>(offset_[own]), end = static_cast<std::ptrdiff_t>(offset_[own + 1]);
+    std::stable_sort(rays_.begin() + begin, rays_.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) { return azimuth[a] < azimuth[b]; });
+    for (auto at = offset_[own]; at < offset_[own + 1]; ++at) azimuth_[at] = azimuth[rays_[at]];
   });
-  for (const std::uint32_t ray : rays_) azimuth_.push_back(azimuth[ray]);
 }
 
 }  // namespace vantage

@@ -267,6 +267,9 @@ TEST(Presets, TellHowLongABatteryLastsIfTheFileStatesIt) {
   mine["battery"]["scans"] = 40;
   EXPECT_EQ(load().battery_min, 90);
   EXPECT_EQ(load().battery_scans, 40);
+  EXPECT_EQ(load().dropout, 0);
+  mine["dropout"] = {{"value", 0.03}, {"source", "assumed"}};
+  EXPECT_EQ(load().dropout, 0.03);
 }
 
 TEST(Presets, BrokenFilesSayWhere) {
