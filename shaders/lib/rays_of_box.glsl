@@ -50,28 +50,10 @@ int first_row_above(float zenith) {
   return int(first);
 }
 
-RayWindow window_of_list(float zenith0, float zenith1, float start, float width) {
-  const float first = (zenith0 - parameters.first_zenith) / parameters.zenith_step,
-              last = (zenith1 - parameters.first_zenith) / parameters.zenith_step;
-  RayWindow w = RayWindow(int(max(floor(first), 0.0)), int(min(floor(last), float(parameters.list_bands) - 1.0)),
-                          floatBitsToInt(start), floatBitsToInt(width), 0, 0);
-  for (int band = w.row0; band <= w.row1; ++band)
-    w.wrapped0 = max(w.wrapped0, int(count_of(rays_of_band(uint(band), start, width))));
-  return w;
-}
-
-// All rays from the coordinate origin that may meet the box [low, high], and few others.
-RayWindow rays_of_box(vec3 low, vec3 high) {
+RayWindow window_of_grid(float zenith0, float zenith1, float start, float width) {
   const float rows = float(parameters.rows), columns = float(parameters.columns);
-  // Zenith: the horizontal distance is least at the point of the box nearest to the axis, largest at a corner.
-  const vec2 nearest = clamp(vec2(0), low.xy, high.xy);
-  const vec2 farthest = max(abs(low.xy), abs(high.xy));
-  const float least = length(nearest), largest = length(farthest);
-  const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
-  const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
   RayWindow w;
-  if (listed) {
-  } else if (parameters.zenith_step > 0.0) {
+  if (parameters.zenith_step > 0.0) {
     const float row_scale = 1.0 / parameters.zenith_step;
     w.row0 = int(max(ceil((zenith0 - parameters.first_zenith) * row_scale), 0.0));
     w.row1 = int(min(floor((zenith1 - parameters.first_zenith) * row_scale), rows - 1.0));
@@ -79,23 +61,6 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
     w.row0 = first_row_above(zenith0);
     w.row1 = first_row_above(zenith1) - 1;
   }
-
-  float start = 0.0, width = 2.0 * pi;
-  if (least > 0.0) {
-    // Corners relative to the direction of the nearest point, from which they all lie within a right angle.
-    const vec2 axis = nearest;
-    float lowest = pi, highest = -pi;
-    for (int k = 0; k < 4; ++k) {
-      const vec2 corner = vec2((k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y);
-      const float a = angle_of(axis.x * corner.y - axis.y * corner.x, dot(axis, corner));
-      lowest = min(lowest, a);
-      highest = max(highest, a);
-    }
-    start = angle_of(axis.y, axis.x) + lowest - angle_slack - parameters.first_azimuth;
-    start -= floor(start / (2.0 * pi)) * 2.0 * pi;
-    width = highest - lowest + 2.0 * angle_slack;
-  }
-  if (listed) return window_of_list(zenith0, zenith1, start, width);
   const float column_scale = 1.0 / parameters.azimuth_step;
   if (width >= 1.9 * pi) {
     w.column0 = 0;
@@ -109,6 +74,44 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
   w.wrapped0 = int(max(ceil((start - 2.0 * pi) * column_scale), 0.0));
   w.wrapped1 = int(min(floor((start + width - 2.0 * pi) * column_scale), columns - 1.0));
   return w;
+}
+
+RayWindow window_of_list(float zenith0, float zenith1, float start, float width) {
+  const float first = (zenith0 - parameters.first_zenith) / parameters.zenith_step,
+              last = (zenith1 - parameters.first_zenith) / parameters.zenith_step;
+  RayWindow w = RayWindow(int(max(floor(first), 0.0)), int(min(floor(last), float(parameters.list_bands) - 1.0)),
+                          floatBitsToInt(start), floatBitsToInt(width), 0, 0);
+  for (int band = w.row0; band <= w.row1; ++band)
+    w.wrapped0 = max(w.wrapped0, int(count_of(rays_of_band(uint(band), start, width))));
+  return w;
+}
+
+// All rays from the coordinate origin that may meet the box [low, high], and few others.
+RayWindow rays_of_box(vec3 low, vec3 high) {
+  // Zenith: the horizontal distance is least at the point of the box nearest to the axis, largest at a corner.
+  const vec2 nearest = clamp(vec2(0), low.xy, high.xy);
+  const vec2 farthest = max(abs(low.xy), abs(high.xy));
+  const float least = length(nearest), largest = length(farthest);
+  const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
+  const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
+
+  float start = 0.0, width = 2.0 * pi;
+  // A ray along the axis has any azimuth.
+  if (least > angle_slack * max(abs(low.z), abs(high.z))) {
+    // Corners relative to the direction of the nearest point, from which they all lie within a right angle.
+    const vec2 axis = nearest;
+    float lowest = pi, highest = -pi;
+    for (int k = 0; k < 4; ++k) {
+      const vec2 corner = vec2((k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y);
+      const float a = angle_of(axis.x * corner.y - axis.y * corner.x, dot(axis, corner));
+      lowest = min(lowest, a);
+      highest = max(highest, a);
+    }
+    start = angle_of(axis.y, axis.x) + lowest - angle_slack - parameters.first_azimuth;
+    start -= floor(start / (2.0 * pi)) * 2.0 * pi;
+    width = highest - lowest + 2.0 * angle_slack;
+  }
+  return listed ? window_of_list(zenith0, zenith1, start, width) : window_of_grid(zenith0, zenith1, start, width);
 }
 
 #endif

@@ -41,4 +41,10 @@ DirectionList::DirectionList(std::span<const double> zeniths, std::span<const do
   });
 }
 
+std::size_t DirectionList::longest_band() const {
+  std::size_t longest = 0;
+  for (std::size_t band = 0; band < bands(); ++band) longest = std::max(longest, offset_[band + 1] - offset_[band]);
+  return longest;
+}
+
 }  // namespace vantage

@@ -52,6 +52,7 @@ class DirectionList {
   std::span<const std::uint32_t> sorted_rays() const { return rays_; }
   std::span<const double> sorted_azimuths() const { return azimuth_; }
   std::span<const std::size_t> band_offsets() const { return offset_; }
+  std::size_t longest_band() const;
   double first_zenith() const { return first_zenith_; }
   double band_height() const { return band_; }
 

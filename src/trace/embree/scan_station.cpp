@@ -75,9 +75,11 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
     const std::uint32_t from = points.slot[k];
     const std::uint64_t ray = points.ray(k);
     DroppedPoints dropped;
-    if (!returned[from])
+    if (returned[from])
+      dropped.echo = station_rays.lost(ray, station.place) ? 1 : 0;
+    else
       dropped = station_rays.dropped(station, ray, rays, from, behind_glass ? passed[from].share : 1);
-    if (dropped.echo > 0 || station_rays.lost(ray, station.place)) continue;
+    if (dropped.echo > 0) continue;
     counts[points.size] = dropped.points == 0;
     points.add(rays, from, ray);
   }

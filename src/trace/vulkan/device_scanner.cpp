@@ -19,11 +19,14 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       set_(device, block_, structure) {
   const RayPattern& pattern = *scanner.pattern;
-  if ((!listed() && pattern.rows() > most_groups * block_rows) ||
-      std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1} << 31)
-    throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(pattern.rows()) + " x " +
-                                            std::to_string(pattern.columns()) +
-                                            " rays; this engine takes fewer than 2^31 a station: use larger steps");
+  if ((!listed() && pattern.rows() > most_groups * block_rows) || longest_walk() >= std::uint64_t{1} << 31)
+    throw Error(
+        Errc::invalid_argument,
+        listed()
+            ? "most of the scanner's directions have one zenith, and others are spread over its field: this engine "
+              "takes no such list; use the engine embree"
+            : "the scan pattern has " + std::to_string(pattern.rows()) + " x " + std::to_string(pattern.columns()) +
+                  " rays; this engine takes fewer than 2^31 a station: use larger steps");
   const auto to_device = [&](std::span<const float> values, const char* name) {
     return make_device_buffer<float>(device, commands, values, name);
   };
@@ -35,6 +38,12 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   if (limits()) upload_limits(device, commands, scene);
   if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
   if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise)->front(), "reaches of noise");
+}
+
+std::uint64_t DeviceScanner::longest_walk() const {
+  if (const DirectionList* const list = pattern().list.get())
+    return std::uint64_t{list->band_offsets().size() - 1} * list->longest_band();
+  return std::uint64_t{pattern().rows()} * pattern().columns();
 }
 
 void DeviceScanner::upload_list(Device& device, Commands& commands, const DirectionList& list) {

@@ -13,8 +13,8 @@ namespace vantage::vulkan {
 
 class DeviceScanner {
  public:
-  // Throws Error invalid_argument if the pattern has 2^31 rays or more. `structure`: acceleration
-  // structure for ray queries, or null; it must outlive this.
+  // Throws Error invalid_argument if the pattern has 2^31 rays or more, or so many places of a walk. `structure`:
+  // acceleration structure for ray queries, or null; it must outlive this.
   DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
                 const TraceScanner& scanner);
 
@@ -22,6 +22,8 @@ class DeviceScanner {
   bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
   bool listed() const { return pattern().list != nullptr; }
+  // Most places of a walk through the rays near a voxel: a list's bands count as if each were as long as the longest.
+  std::uint64_t longest_walk() const;
   // Rows of a workgroup that scans or counts without tiles.
   std::uint32_t rows_of_group() const { return listed() ? group_size : block_rows; }
   bool glass() const { return limits() && scanner_.limits->glass; }

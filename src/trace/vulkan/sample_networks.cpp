@@ -133,7 +133,7 @@ class VulkanTracer::SampledCount {
     for (const Run& run : batch.runs) {
       const std::uint32_t slots = run.end_slot - run.first_slot;
       const bool last_run = &run == &batch.runs.back();
-      PairSchedule schedule(slots, voxels_, most_parts(run.scanner->pattern()), room_);
+      PairSchedule schedule(slots, voxels_, most_parts(*run.scanner), room_);
       for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
         if (progress.stopped()) return false;
         Submission submission{&run, schedule.next(t_.sampled_sizer_.rays(), t_.pairs_seen_, t_.sampled_sizer_.rays()),
@@ -198,9 +198,8 @@ class VulkanTracer::SampledCount {
   }
 
   // Parts of the longest walk, that of a cube around the station.
-  static std::uint32_t most_parts(const RayPattern& pattern) {
-    const std::uint64_t rays = std::uint64_t{pattern.rows()} * pattern.columns();
-    return static_cast<std::uint32_t>(std::max<std::uint64_t>(std::bit_ceil(rays) / sample_part, 1));
+  static std::uint32_t most_parts(const DeviceScanner& scanner) {
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(std::bit_ceil(scanner.longest_walk()) / sample_part, 1));
   }
 
   void hand_out_points(const Batch& batch) {
