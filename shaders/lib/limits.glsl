@@ -30,7 +30,7 @@ uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 directio
   return misses;
 }
 
-// Whether the echo of a ray is lost at random.
+// True if the echo of this ray is lost at random.
 bool is_lost(uint64_t ray, uint place) {
   return parameters.lost_below > 0u && random_bits(ray, place, dropout_stream) < parameters.lost_below;
 }

@@ -79,7 +79,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_zenith;
   VANTAGE_ADDRESS(Floats) sin_azimuth;
   VANTAGE_ADDRESS(Floats) cos_azimuth;
-  // Of a list, whose rows are its rays: DirectionList.
+  // The rows of a list are its rays; these find them, as DirectionList does.
   VANTAGE_ADDRESS(Uints) list_rays;       // by band of zenith, then by azimuth
   VANTAGE_ADDRESS(Floats) list_azimuths;  // of these, in a full turn from 0
   VANTAGE_ADDRESS(Uints) list_offsets;    // of each band in them, and an end

@@ -21,6 +21,11 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std::array<
   return c;
 }
 
+// 32 random bits of a ray, by its number and its station's place; random_bits() of the shaders has the same.
+constexpr std::uint32_t random_bits(std::uint64_t seed, std::uint64_t ray, std::uint32_t place, std::uint32_t stream) {
+  return philox4x32(seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place, stream})[0];
+}
+
 // A stream of numbers from Philox blocks, for code that draws sequentially. Its state is two integers, so it can be
 // saved.
 class RandomStream {

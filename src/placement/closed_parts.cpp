@@ -302,7 +302,7 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
   return !rims.empty() && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(rims.size());
 }
 
-// Of a person's height: rails from the knee to the hip, and the head.
+// Heights are shares of a person's: rails reach from the knee to the hip, and the head is looked over.
 constexpr std::array kRailHeights{0.25, 0.4, 0.5, 0.57};
 constexpr std::array kHeadHeight{0.8};
 

@@ -11,7 +11,7 @@
 
 namespace vantage {
 
-// Whether a ray within range may have no echo.
+// True if a ray of the scanner that meets something within range may have no echo.
 bool loses_echoes(const Scanner& scanner);
 
 // Largest angle between ray and normal at which a point counts; empty if points have no limits.

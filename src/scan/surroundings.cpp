@@ -20,7 +20,7 @@ double extent_of(const Scene& scene) {
   return std::max({size.x, size.y, size.z});
 }
 
-// So many directions of a list that they are a step apart on average, or all if they are no denser.
+// Returns so many directions of a list that they are a step apart on average, or all if they are no denser.
 std::vector<RayAngles> thinned(const Scanner& scanner, Angle step) {
   const double part = step.in_radians() / scanner.azimuth_step.in_radians();
   const auto stride = static_cast<std::size_t>(std::max(part * part, 1.0));

@@ -115,8 +115,7 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
   // t)²).
   const double exit = scanner_.exit_diameter_m / 2, spread = scanner_.beam_divergence.in_radians() / 2;
   // Each footprint is turned by chance, so that no edge meets the same places everywhere.
-  const std::uint32_t chance = philox4x32(
-      seed_, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, kTwistStream})[0];
+  const std::uint32_t chance = random_bits(seed_, ray, station_.place, kTwistStream);
   const double twist = 2 * pi * chance / 4294967296.0, c = std::cos(twist), s = std::sin(twist);
   std::array<Float3, kMostSubRays> from;
   RayBundle rays;

@@ -23,10 +23,9 @@ struct Hits {
   alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
   alignas(64) float t[capacity];                            // distances
   alignas(64) std::uint32_t primitive[capacity];
-  alignas(64) std::uint32_t ray_low[capacity],
-      ray_high[capacity];             // halves of the ray's number, which keys what is drawn
-  std::uint32_t slot[capacity];       // in the bundle
-  alignas(64) float range[capacity];  // output of find_ranges
+  alignas(64) std::uint32_t ray_low[capacity], ray_high[capacity];  // halves of the ray's number, which keys draws
+  std::uint32_t slot[capacity];                                     // in the bundle
+  alignas(64) float range[capacity];                                // output of find_ranges
 
   // REQUIRES: the slot has a hit; at most RayBundle::capacity calls since the size was 0.
   void add(const RayBundle& rays, std::uint32_t from, std::uint64_t ray) {

@@ -39,11 +39,9 @@ class PointJudge {
   }
 
   bool loses_echoes() const { return model_ && model_->lost_below > 0; }
-  // Whether the echo of a ray is lost at random.
+  // True if the echo of this ray is lost at random.
   bool lost(std::uint64_t ray, std::uint32_t place) const {
-    return loses_echoes() &&
-           philox4x32(model_->seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place,
-                                     dropout_stream})[0] < model_->lost_below;
+    return loses_echoes() && random_bits(model_->seed, ray, place, dropout_stream) < model_->lost_below;
   }
 
   // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either

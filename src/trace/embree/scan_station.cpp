@@ -39,8 +39,8 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
   }
 }
 
-// The tile's points: hits, or panes that return the beam, without those whose echo is too weak. `counts`: whether a
-// point meets all limits. Overwrites the bundle's hits.
+// The tile's points: hits, or panes that return the beam, without those whose echo is too weak or lost. `counts`:
+// whether a point meets all limits. Overwrites the bundle's hits.
 void find_points(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
                  Hits& points, bool* counts) {
   std::array<Passed, RayBundle::capacity> passed;

@@ -129,9 +129,9 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
-  // Whether what becomes of a hit depends on the ray's number.
+  // True if noise or lost echoes are drawn by the ray's number.
   bool draws() const { return noise_.enabled() || judge_.loses_echoes(); }
-  // Whether the echo of a ray is lost at random.
+  // True if the echo of this ray is lost at random.
   bool lost(std::uint64_t ray, std::uint32_t place) const { return judge_.lost(ray, place); }
   // Glass that weakens echoes of this scanner; null if there is none.
   const GlassPanes* glass() const { return glass_; }
