@@ -13,11 +13,11 @@ string(COMPARE EQUAL ${VANTAGE_UP_TO} report VANTAGE_WHOLE)
 # Scenes, scanners, rays, counts, objectives, evaluated stations, sites.
 set(VANTAGE_MODULES_scan core image import scene voxel placement trace scan panorama objective evaluate site)
 set(VANTAGE_HEADERS_scan
-    attainable error evaluation image measure objective on_site panorama placement progress rays scanner scene scene_builder settings simulator site
+    attainable error evaluate evaluation image measure objective on_site panorama placement progress rays registration scanner scene scene_builder settings simulator site
     station_setup targets trace types version work)
 # Optimisers, covers, plans, scans that were taken.
 set(VANTAGE_MODULES_plan optimise cover plan taken)
-set(VANTAGE_HEADERS_plan candidates cover missed optimiser planner question taken_scans)
+set(VANTAGE_HEADERS_plan candidates cover missed optimiser planner question search_types taken_scans)
 # Point clouds, tables and pictures.
 set(VANTAGE_MODULES_files export)
 set(VANTAGE_HEADERS_files export next summary)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vantage/candidates.hpp"
+
 #include "arrays.hpp"
 #include "module.hpp"
 #include "options.hpp"

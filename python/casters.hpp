@@ -33,10 +33,10 @@ struct Names<RegistrationSurfaces> {
       {{RegistrationSurfaces::surveyed, "surveyed"}, {RegistrationSurfaces::all, "all"}}};
 };
 template <>
-struct Names<MoCmaEsConfig::Scheme> {
+struct Names<MoScheme> {
   static constexpr const char* what = "scheme";
-  static constexpr std::array<std::pair<MoCmaEsConfig::Scheme, const char*>, 2> all{
-      {{MoCmaEsConfig::Scheme::generational, "generational"}, {MoCmaEsConfig::Scheme::steady_state, "steady-state"}}};
+  static constexpr std::array<std::pair<MoScheme, const char*>, 2> all{
+      {{MoScheme::generational, "generational"}, {MoScheme::steady_state, "steady-state"}}};
 };
 template <>
 struct Names<Errc> {
@@ -104,7 +104,7 @@ struct type_caster<vantage::Returns> : vantage::python::NameCaster<vantage::Retu
 template <>
 struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<vantage::RegistrationSurfaces> {};
 template <>
-struct type_caster<vantage::MoCmaEsConfig::Scheme> : vantage::python::NameCaster<vantage::MoCmaEsConfig::Scheme> {};
+struct type_caster<vantage::MoScheme> : vantage::python::NameCaster<vantage::MoScheme> {};
 
 /// (x, y, z); any sequence of three numbers is accepted.
 template <>

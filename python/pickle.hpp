@@ -13,6 +13,7 @@
 
 #include "casters.hpp"
 #include "scan.hpp"
+#include "vantage/evaluate.hpp"
 
 namespace vantage::python {
 

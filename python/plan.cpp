@@ -73,7 +73,9 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
   PlanResult result = call.run([&] {
     const SurveyProblem asked_for = [&] {
       const std::unique_lock settling(guarded->settled);
-      return own ? *own : survey_problem(guarded->site, question);
+      SurveyProblem made = own ? *own : survey_problem(guarded->site, question);
+      equip(guarded->site, made);
+      return made;
     }();
     return plan(guarded->site, asked_for, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },

@@ -209,9 +209,11 @@ Options<SurveyProblem> problem_options() {
                          "Their StationSetups, one each; none: upright, with the first scanner.")
       .add<py::iterable>("existing_names", tuple_of(&SurveyProblem::existing_names),
                          from_list(&SurveyProblem::existing_names), "Their names, one each, or none.")
-      .add<py::iterable>(
-          "scanners", tuple_of(&SurveyProblem::scanners), from_list(&SurveyProblem::scanners),
-          "Indices into `Simulator.scanners` that each station chooses from, in their order; none: the first.")
+      .add<py::iterable>("scanners", tuple_of(&SurveyProblem::scanners), from_list(&SurveyProblem::scanners),
+                         "Scanners that each station chooses from, in their order; none: the site's first.")
+      .add("every_echo", &SurveyProblem::every_echo,
+           "Whether it is posed for scanners that detect every echo. The site's then do, unless `detection` says what "
+           "they\ndetect.")
       .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
       .add("link_overlap", &SurveyProblem::link_overlap, "Least overlap of a link.")
       .add("registration", &SurveyProblem::registration, "Prior of registration.")

@@ -213,9 +213,10 @@ void add_simulators(py::module_& m) {
           "Points wanted in a voxel; the densest goal if goals differ.")
       .def("set_scene", &Simulators::set_scene, py::arg("scene"), py::call_guard<py::gil_scoped_release>(),
            "Takes another scene, mostly the same one with some meshes changed (`Scene.with_changes`). Results are then "
-           "those of a\nnew Simulator of that scene, bit for bit. On 'embree' only what differs is made anew; other "
-           "engines rebuild. Returns\nwhether the rest was kept. No other call may run meanwhile.\nRaises Error as "
-           "`Simulator` does, and stays as it was; invalid_argument for the simulator of a site.")
+           "those of a\nnew Simulator of that scene, bit for bit. On 'embree' only what differs is made anew, and "
+           "'compute_bvh' follows meshes\nthat move; otherwise the structure is rebuilt. Returns whether the rest was "
+           "kept. No other call may run meanwhile.\nRaises Error as `Simulator` does, and stays as it was; "
+           "invalid_argument for the simulator of a site.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
       .def("voxel_weights", &voxel_weights, "Weight of each voxel in coverage: (N_v,).")
       .def("goal_densities", &goal_densities, "Points wanted in each voxel: (N_v,).")

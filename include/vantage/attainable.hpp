@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@
 #include "vantage/simulator.hpp"
 
 namespace vantage {
+
+/// Shares of what is attainable that a network captures.
+struct CapturedShares {
+  Estimate all;                                 ///< Of all surveyed surface.
+  std::map<std::string, Estimate> meshes = {};  ///< Of the meshes of each pattern that was asked for.
+};
 
 /// Attainable counts of a sample of the surveyed voxels, or of all of them.
 class AttainableCounts {

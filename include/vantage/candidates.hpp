@@ -136,4 +136,47 @@ class Candidates {
 /// Error invalid_argument if no position is allowed, or a setting is out of its range.
 Candidates find_candidates(Site& site, const CandidateConfig& config = {}, const Progress& progress = {});
 
+/// How greedy_network() chooses.
+struct GreedyConfig {
+  std::size_t stations = 4;                        ///< Number of stations to choose.
+  std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;            ///< May be `every_voxel`.
+  std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::existing_setups`.
+};
+
+/// Result of greedy_network().
+struct GreedyResult {
+  std::vector<PlacedStation> stations;  ///< In the order of choice: the first k are the choice for k.
+  std::vector<double> coverage;         ///< After each, on the sample.
+  bool cancelled = false;               ///< It was stopped before it was done.
+};
+
+/// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
+/// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
+/// than candidates, and if no candidate can stand.
+GreedyResult greedy_network(Site& site, const GreedyConfig& config = {}, const Progress& progress = {});
+
+/// How exact_network() chooses.
+struct ExactConfig {
+  std::size_t stations = 4;              ///< Number of stations to choose.
+  std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;  ///< May be `every_voxel`.
+  double link = 0;          ///< Least scan overlap of the links that connect the network; 0: it need not be connected.
+  double apart_m = 0;       ///< Least distance between heads.
+  double max_seconds = 60;  ///< Time for branch and bound. If it ends first, the result depends on the machine.
+  std::vector<Vec3> existing = {};  ///< Heads of existing stations; neither counted nor returned.
+};
+
+/// Result of exact_network().
+struct ExactResult {
+  std::vector<PlacedStation> stations;  ///< Empty if no connected network was found.
+  CoverSolution choice;                 ///< The choice among candidates, and a bound on the coverage of any.
+  bool cancelled = false;               ///< It was stopped before it was done.
+};
+
+/// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A
+/// baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument if no candidate can stand.
+ExactResult exact_network(Site& site, const ExactConfig& config = {}, const Progress& progress = {});
+
 }  // namespace vantage

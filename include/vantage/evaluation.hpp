@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "vantage/attainable.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
@@ -22,6 +21,8 @@
 #include "vantage/targets.hpp"
 
 namespace vantage {
+
+class AttainableCounts;  // vantage/attainable.hpp
 
 /// Names of stations in every table and picture: "S1", "S2", … in their order, and "K1", "K2", … for existing ones,
 /// each counted from 1. `given`: the user's names, one each, or none; an empty one keeps the numbered name. If two
@@ -132,12 +133,6 @@ struct Evaluation {
   std::optional<StationLinks> links() const;
 };
 
-/// Makes the figures of a measured network: the measures with standard errors, overlaps, and the registration error if
-/// `registration` is given, by surfaces and `targets`. Links, attainable coverage and the round are left to the caller.
-/// REQUIRES: counts of all that measures and registration need.
-Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,
-                         const std::optional<RegistrationOptions>& registration = std::nullopt,
-                         std::span<const RegistrationTarget> targets = {});
 /// The round over the stations besides existing ones, along the links if they are known. `most_min` as in
 /// `OnSite::visit()`.
 Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
@@ -156,15 +151,6 @@ std::size_t closed_stations(const Evaluation& evaluation);
 double most_minutes(std::span<const Requirement> requirements);
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements);
-
-/// Parts that an evaluation uses. Borrows all of it.
-struct EvaluationSite {
-  Simulator& simulator;                 ///< Traces the stations.
-  Simulator* surroundings = nullptr;    ///< `surroundings_of(simulator)`, for scan overlaps. Null: none.
-  const OnSite* on_site = nullptr;      ///< Makes rounds on site. Null: none.
-  const ClashChecker* clash = nullptr;  ///< Needed by targets and by lines of sight between stations. Null: none.
-  const SearchArea* area = nullptr;     ///< With `clash`: tells where stations may stand instead. Null: not told.
-};
 
 /// Extent of an evaluation: counts, measures, errors.
 struct EvaluationOptions {
@@ -189,27 +175,5 @@ struct EvaluationOptions {
   double link_overlap = default_link_overlap, link = default_link;  ///< As in `Evaluation`.
   std::vector<std::string> names = {};                              ///< The stations' names, one each, or none.
 };
-
-/// Surveyed voxels that a network leaves below their goal density.
-struct UncoveredVoxels {
-  std::vector<std::uint32_t> voxels;  ///< Voxel indices, ascending.
-  std::vector<Vec3> centres;          ///< Survey frame.
-  std::vector<std::uint32_t> meshes;  ///< Index into `Scene::meshes()` of the mesh with most surface in each.
-  std::vector<std::uint32_t> points;  ///< Points of the network in each.
-};
-/// Voxels that an evaluated network does not capture. Throws Error invalid_argument unless the evaluation has the
-/// points of every voxel of this simulator (`EvaluationOptions::field`).
-UncoveredVoxels uncovered(const Simulator& simulator, const Evaluation& evaluation);
-
-/// Evaluates a network. Scan overlaps take every ray of the coarser `surroundings`, sampled or not. A cancelled
-/// evaluation has `counts.cancelled` set and no values. Throws Error invalid_argument if a measure needs something that
-/// `site` lacks, for registration without overlap, for the field of a sample or a beam on one, and as the simulator
-/// does.
-Evaluation evaluate_stations(const EvaluationSite& site, std::span<const PlacedStation> stations,
-                             const EvaluationOptions& options = {}, const Progress& progress = {});
-/// Evaluates several networks at a time, on one sample if they are sampled. Throws as above, and if a field is wanted.
-std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
-                                          std::span<const std::vector<PlacedStation>> networks,
-                                          const EvaluationOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vantage

@@ -10,40 +10,18 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
-namespace vantage {
+#include "vantage/search_types.hpp"
 
-/// Why an optimiser stopped, or `running`.
-enum class StopReason {
-  running,            ///< It has not ended.
-  max_evaluations,    ///< `OptimiserConfig::max_evaluations` is reached.
-  max_iterations,     ///< `OptimiserConfig::max_iterations` is reached.
-  target_reached,     ///< The target or the hypervolume that was asked for is reached.
-  converged,          ///< Steps or differences fell below their tolerance.
-  stagnated,          ///< No improvement for long.
-  flat,               ///< The objective does not change over a whole population.
-  invalid_objective,  ///< Every value of an iteration was NaN.
-  ill_conditioned,    ///< The covariance's condition number passed 1e14.
-  diverged,           ///< Steps grew without bound.
-  max_time,           ///< The time limit of the plan is over.
-  cancelled,          ///< The caller stopped it.
-};
-/// The name of the enumerator.
-std::string to_string(StopReason);
+namespace vantage {
 
 /// Box constraints, one pair per coordinate.
 struct Bounds {
   std::vector<double> lower, upper;  ///< One value for each coordinate.
   /// The same bounds for every coordinate.
   static Bounds uniform(std::size_t dimension, double lower, double upper);
-};
-
-/// One point with its objective values, all minimised.
-struct ParetoPoint {
-  std::vector<double> x, f;  ///< Coordinates and objective values.
 };
 
 /// Settings of CMA-ES alone.
@@ -56,13 +34,9 @@ struct CmaEsConfig {
 
 /// Settings of MO-CMA-ES alone.
 struct MoCmaEsConfig {
-  /// generational: μ parents, μ offspring each iteration. steady_state: offspring one at a time, or `batch` at a time.
-  enum class Scheme {
-    generational,  ///< As many offspring as parents, which then compete with them.
-    steady_state,  ///< Each offspring competes as soon as it is evaluated.
-  };
-  Scheme scheme = Scheme::steady_state;  ///< Which of them.
-  std::size_t batch = 1;                 ///< Offspring asked for at once in the steady state, to keep a GPU busy.
+  using Scheme = MoScheme;
+  MoScheme scheme = MoScheme::steady_state;  ///< How offspring compete.
+  std::size_t batch = 1;                     ///< Offspring asked for at once in the steady state, to keep a GPU busy.
   /// The next four apply to the steady state; all 0 gives the published algorithm. With them it needs a fraction of the
   /// evaluations on planning problems and leaves local fronts (measured in docs/evidence/optimisers.md).
   double guided = 0.5;   ///< Share of parents drawn by hypervolume contribution instead of uniformly from the front.
@@ -156,10 +130,6 @@ class Optimiser {
   /// Throws Error malformed_file and is unchanged then.
   virtual void load(std::istream&) = 0;
 };
-
-/// Makes an optimiser for `dimension` coordinates and `objectives` objectives.
-using OptimiserMaker = std::function<std::unique_ptr<Optimiser>(std::size_t dimension, std::size_t objectives,
-                                                                const OptimiserConfig& config)>;
 
 /// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) for one objective, with IPOP restarts (Auger, Hansen
 /// 2005). ask() gives λ points. A smooth transform of the coordinates keeps bounds. Its population and its front are

@@ -16,18 +16,19 @@
 #include <string_view>
 #include <vector>
 
-#include "vantage/candidates.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
-#include "vantage/optimiser.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
+#include "vantage/search_types.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
 #include "vantage/targets.hpp"
 
 namespace vantage {
+
+class Candidates;  // vantage/candidates.hpp
 
 /// A planning problem: number of stations, allowed heights, objectives and requirements.
 struct SurveyProblem {
@@ -39,9 +40,12 @@ struct SurveyProblem {
   /// Their setups, one each; empty: upright, with the first scanner.
   std::vector<StationSetup> existing_setups = {};
   std::vector<std::string> existing_names = {};  ///< The user's names of them, one each, or none.
-  /// Indices into `Simulator::scanners()` that each station chooses from, in their order, e.g. one model with finer and
-  /// finer steps. Empty: the first scanner.
-  std::vector<std::uint32_t> scanners = {};
+  /// Scanners that each station chooses from, in their order, e.g. one model with finer and finer steps. Empty: the
+  /// site's first.
+  std::vector<Scanner> scanners = {};
+  /// Whether it is posed for scanners that detect every echo, as the method's are. The site's then do, unless its
+  /// options say what they detect.
+  bool every_echo = false;
   /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height.
   std::optional<std::array<double, 2>> heights_m = std::nullopt;
   std::vector<Objective> objectives = {};  ///< At least one. One: the best network is searched; several: a front.
@@ -104,6 +108,11 @@ std::span<const std::string> problem_names();  ///< Names that `survey_problem()
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
                              std::size_t stations_max, double link_overlap = default_link_overlap);
 
+/// Lets a site have the scanners that a problem is posed for, and returns the indices of those to choose from. `plan()`
+/// calls it, too; called before the site's simulator is made, it spares setting that up twice. Throws Error as
+/// `Site::place_of`.
+std::vector<std::uint32_t> equip(Site& site, const SurveyProblem& problem);
+
 /// Settings of a search.
 struct PlanConfig {
   std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
@@ -114,9 +123,9 @@ struct PlanConfig {
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
   /// same one.
   OptimiserMaker optimiser = {};
-  MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;  ///< Scheme of MO-CMA-ES.
-  std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: depends on the engine.
-  bool exact = false;     ///< Search with every ray, the slowest way; `sample_voxels` is then 0.
+  MoScheme scheme = MoScheme::steady_state;  ///< Scheme of MO-CMA-ES.
+  std::size_t batch = 0;                     ///< Offspring at once in the steady state; 0: depends on the engine.
+  bool exact = false;                        ///< Search with every ray, the slowest way; `sample_voxels` is then 0.
   /// Search with this many surveyed voxels; 0: depends on the problem and the site.
   std::uint64_t sample_voxels = 0;
   std::optional<double> sample_share = {};  ///< The same as a share of the surveyed voxels, above 0 and at most 1.
@@ -296,49 +305,6 @@ std::vector<std::string> what_would_help(const PlanResult& result);
 /// if that is searched. `x`: decision vector; `values`: of the objectives.
 std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<const double> x,
                                       std::span<const double> values);
-
-/// How greedy_network() chooses.
-struct GreedyConfig {
-  std::size_t stations = 4;                        ///< Number of stations to choose.
-  std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
-  std::uint64_t sample_voxels = 20'000;            ///< May be `every_voxel`.
-  std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
-  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::existing_setups`.
-};
-
-/// Result of greedy_network().
-struct GreedyResult {
-  std::vector<PlacedStation> stations;  ///< In the order of choice: the first k are the choice for k.
-  std::vector<double> coverage;         ///< After each, on the sample.
-  bool cancelled = false;               ///< It was stopped before it was done.
-};
-
-/// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
-/// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
-/// than candidates, and if no candidate can stand.
-GreedyResult greedy_network(Site& site, const GreedyConfig& config = {}, const Progress& progress = {});
-
-/// How exact_network() chooses.
-struct ExactConfig {
-  std::size_t stations = 4;              ///< Number of stations to choose.
-  std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
-  std::uint64_t sample_voxels = 20'000;  ///< May be `every_voxel`.
-  double link = 0;          ///< Least scan overlap of the links that connect the network; 0: it need not be connected.
-  double apart_m = 0;       ///< Least distance between heads.
-  double max_seconds = 60;  ///< Time for branch and bound. If it ends first, the result depends on the machine.
-  std::vector<Vec3> existing = {};  ///< Heads of existing stations; neither counted nor returned.
-};
-
-/// Result of exact_network().
-struct ExactResult {
-  std::vector<PlacedStation> stations;  ///< Empty if no connected network was found.
-  CoverSolution choice;                 ///< The choice among candidates, and a bound on the coverage of any.
-  bool cancelled = false;               ///< It was stopped before it was done.
-};
-
-/// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A
-/// baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument if no candidate can stand.
-ExactResult exact_network(Site& site, const ExactConfig& config = {}, const Progress& progress = {});
 
 /// Turns pairs u1, v1, u2, v2, … into stations: finds the ground, raises heads by the scanner's height, checks for
 /// clashes.

@@ -54,9 +54,9 @@ const SettingTable<SurveyQuestion>& question_settings();
 /// One row for each setting of a search, except `start` and `checkpoint`.
 const SettingTable<PlanConfig>& plan_settings();
 
-/// Makes the problem of a question on a site. The scanners of `search_steps` join those of the site; rounds begin and
-/// end at the site's entrance. Throws Error invalid_argument.
-SurveyProblem survey_problem(Site& site, const SurveyQuestion& question = {});
+/// Makes the problem of a question on a site; rounds begin and end at the site's entrance. Throws Error
+/// invalid_argument.
+SurveyProblem survey_problem(const Site& site, const SurveyQuestion& question = {});
 
 /// Plans a survey of a site: `plan()` of the question's problem. Throws as that does.
 PlanResult plan(Site& site, const SurveyQuestion& question = {}, const PlanConfig& config = {},

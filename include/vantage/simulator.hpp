@@ -238,7 +238,7 @@ class VoxelPlanes;
 /// arena's threads. One simulator may be called from several threads: const calls run at any time, and each other call
 /// waits until the one before it has returned. A callback must not call the simulator that called it: on the calling
 /// thread that throws Error invalid_argument, on another thread (`ScanOptions::colour`) it would wait forever. Moving
-/// and destroying a simulator must run alone, and so must `set_scene`.
+/// and destroying a simulator must run alone, and so must `set_scene` and `set_scanners`.
 /// An exception from a callback ends the call and leaves the simulator unchanged. A child of fork() has neither the
 /// threads nor the device: it may only exec or _exit.
 class Simulator {
@@ -258,12 +258,16 @@ class Simulator {
 
   /// Takes another scene, mostly the same one with some meshes moved, added or removed (`with_changes`,
   /// `SceneBuilder`). Counts, points and voxels are then those of a new simulator of that scene, bit for bit (but for
-  /// `NetworkCounts::rays` of samples). On `embree` only what differs is made anew; other engines rebuild their
-  /// structure, and all do if much differs, if the scene has another local origin or shares meshes. Voxels are all made
-  /// anew where the grid moves, or meshes have several weights or wanted details. Returns whether the rest was kept.
-  /// The simulator is unchanged after an error. Throws Error as the constructor does, and invalid_argument for a
-  /// simulator of `surroundings_of` or one that works over other processes. Must run alone, const calls included.
+  /// `NetworkCounts::rays` of samples). On `embree` only what differs is made anew, and `compute_bvh` follows meshes
+  /// that move; otherwise the engine's structure is rebuilt, as it is if much differs, if the scene has another local
+  /// origin or shares meshes. Voxels are all made anew where the grid moves, or meshes have several weights or wanted
+  /// details. Returns whether the rest was kept. The simulator is unchanged after an error. Throws Error as the
+  /// constructor does, and invalid_argument for a simulator of `surroundings_of` or one that works over other
+  /// processes. Must run alone, const calls included.
   bool set_scene(const Scene& scene);
+  /// Takes other scanners. Counts and points are then those of a new simulator with them, bit for bit. Voxels are kept,
+  /// and the engine's structure is rebuilt. The simulator is unchanged after an error. Throws Error as `set_scene`.
+  void set_scanners(std::span<const Scanner> scanners);
 
   const EngineInfo& engine() const noexcept;           ///< Engine and device in use.
   const Scanner& scanner() const noexcept;             ///< The first scanner.

@@ -102,8 +102,8 @@ struct SiteChoice {
 
 /// Owns scene, scanners, ground, clash checks and simulator, each made once. Moved, not copied. Several threads may
 /// call it at once, while a plan of it runs too: calls that trace take turns, each waiting for what the other traces at
-/// the moment. `place_of`, `detect_every_echo`, `share`, moving and destroying must run alone, and so must
-/// `survey_problem` and the like, which call them.
+/// the moment. `place_of`, `detect_every_echo`, `share`, moving and destroying must run alone, and so must `equip`, and
+/// a plan until it has called that.
 class Site {
  public:
   /// Reads a model, a floor plan or points, in the formats of `Scene::load`, and chooses what the options leave open.
@@ -123,11 +123,11 @@ class Site {
   std::span<const SiteChoice> choices() const noexcept;  ///< Settings that were left open, and what they are taken as.
   const Scanner& scanner() const noexcept;               ///< The first scanner.
   std::span<const Scanner> scanners() const noexcept;    ///< Indexed by `StationSetup::scanner`.
-  /// Index of a scanner in `scanners()`, which it joins if it is new. Throws Error invalid_argument if it fails
-  /// `Scanner::check`, or is new once the simulator exists.
+  /// Index of a scanner in `scanners()`, which it joins if it is new; the simulator then takes it, if it is made.
+  /// Throws Error invalid_argument if it fails `Scanner::check`, and as `Simulator::set_scanners`.
   std::uint32_t place_of(const Scanner& scanner);
   /// Lets the scanners detect every echo, unless the options say what they detect. The paper's problems are posed for
-  /// such scanners. Throws Error invalid_argument if the simulator exists with scanners that do not.
+  /// such scanners. Throws Error as `Simulator::set_scanners`.
   void detect_every_echo();
   /// Factor of default lengths for scenes smaller than a site; 1 from 2 m.
   double length_scale() const noexcept;

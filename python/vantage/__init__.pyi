@@ -1349,7 +1349,8 @@ class SurveyProblem:
         existing: Iterable[Sequence[float]] = (),
         existing_setups: Iterable[StationSetup] = (),
         existing_names: Iterable[str] = (),
-        scanners: Iterable[int] = (),
+        scanners: Iterable[Scanner] = (),
+        every_echo: bool = False,
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
         registration: RegistrationOptions = ...,
@@ -1369,7 +1370,8 @@ class SurveyProblem:
     existing: Tuple[Vec3, ...]
     existing_setups: Tuple[StationSetup, ...]
     existing_names: Tuple[str, ...]
-    scanners: Tuple[int, ...]
+    scanners: Tuple[Scanner, ...]
+    every_echo: bool
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
     registration: RegistrationOptions

@@ -301,6 +301,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (options.targets_from) options.question.existing_targets = read_targets_csv(*options.targets_from);
   for (const StationText& station : options.keep) options.question.existing_names.push_back(station.name);
   const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
+  equip(site, problem);
   site.area();  // an error now, not behind the voxels
 
   if (program.ranks)

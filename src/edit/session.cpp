@@ -19,6 +19,7 @@
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage {
 namespace {
@@ -566,7 +567,7 @@ void EditSession::improve(const Progress& progress) {
   SurveyProblem problem = survey_problem(names, start.size(), start.size());
   problem.existing = kept;
   problem.existing_setups = existing_setups;
-  if (scanners.size() == 1) problem.scanners = {*scanners.begin()};
+  if (scanners.size() == 1) problem.scanners = {site_.scanners()[*scanners.begin()]};
   Requirement linked = make_requirement("link>=0", problem.settings());
   linked.limit = stations_.size() > 1 ? std::min(weakest, options_.link) : 0;
   problem.requirements = {std::move(linked)};

@@ -5,7 +5,9 @@
 #include "core/closest_name.hpp"
 #include "core/graph.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/evaluation.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage {
 

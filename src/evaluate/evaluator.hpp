@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "vantage/attainable.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vantage/placement.hpp"
+#include "vantage/registration.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/targets.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {

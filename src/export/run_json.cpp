@@ -9,6 +9,7 @@
 #include "core/json_text.hpp"
 #include "export/station_cells.hpp"
 #include "export/station_json.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"

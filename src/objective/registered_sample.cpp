@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "vantage/registration.hpp"
+
 namespace vantage {
 namespace {
 

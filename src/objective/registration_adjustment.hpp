@@ -15,6 +15,7 @@
 
 #include "objective/sparse_covariance.hpp"
 #include "vantage/measure.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage {
 

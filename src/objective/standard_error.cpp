@@ -16,6 +16,7 @@
 #include "objective/whole_counts.hpp"
 #include "trace/registration_sums.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage {
 namespace {

@@ -33,7 +33,7 @@ using optimise::Shape;
 using optimise::Solution;
 using optimise::SteadyFront;
 using optimise::StepStrategy;
-using Scheme = MoCmaEsConfig::Scheme;
+using Scheme = MoScheme;
 
 constexpr double kPenalty = 1e-6;  // per squared unit by which a point was clipped
 constexpr int kRedraws = 1;        // of a whole point, before coordinates outside the box are clipped

@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "plan/limits.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 

@@ -11,6 +11,7 @@
 #include "plan/answer_targets.hpp"
 #include "plan/fewest_choice.hpp"
 #include "plan/trade_off.hpp"
+#include "vantage/candidates.hpp"
 
 namespace vantage {
 namespace {

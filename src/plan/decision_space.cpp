@@ -33,7 +33,7 @@ DecisionSpace::DecisionSpace(const PlacementOracle& oracle, const SurveyProblem&
       min_(problem.stations_min),
       max_(problem.stations_max),
       heights_(problem.heights_m.has_value()),
-      scanners_(problem.scanners) {
+      scanners_(oracle.scanners) {
   check(problem);
   if (heights_) height_bounds_ = *problem.heights_m;
   // An existing station was scanned from its position, whatever the search area; its (u, v) is only for the reader.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plan/placement_oracle.hpp"
+#include "vantage/optimiser.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {

@@ -23,6 +23,7 @@ struct PlacementOracle {
   std::function<bool(const Vec3&)> in_the_way = {};       // whether a tripod on a ground point bars a door or a stair
   double height_m = 0;                                    // of the scanner's head
   double range_m = 0;                                     // of a scanner
+  std::vector<std::uint32_t> scanners = {};               // of the site, to choose from; empty: the first
 };
 
 // Borrows the site. Heights and range are the first scanner's.

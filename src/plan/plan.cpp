@@ -21,6 +21,7 @@
 #include "plan/somewhere_to_stand.hpp"
 #include "plan/spread_positions.hpp"
 #include "plan/what_pays.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -45,11 +46,6 @@ SurveyProblem with_scales(SurveyProblem problem) {
 // The scanner that sees most: what it cannot capture, none can.
 std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> scanners) {
   if (scanners.empty()) return 0;
-  for (const std::uint32_t k : scanners)
-    if (k >= simulator.scanners().size())
-      throw Error(Errc::invalid_argument, "plan: scanner " + std::to_string(k) + " is among those to choose, and the " +
-                                              "simulator has " + std::to_string(simulator.scanners().size()) +
-                                              ", counted from 0");
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
@@ -122,7 +118,7 @@ std::shared_ptr<const Candidates> look_for_candidates(PlanContext& context, Site
       std::make_shared<const Candidates>(find_candidates(site,
                                                          {.most = most_candidates(site),
                                                           .sample_voxels = sample_of_choice(problem, config, site),
-                                                          .scanner = finest(simulator, problem.scanners),
+                                                          .scanner = finest(simulator, context.oracle().scanners),
                                                           .max_seconds = kCandidatesTimeShare * max_seconds},
                                                          {.report = report, .stop = watch.stop}));
   const bool limit_wanted = needs_attainable(problem);
@@ -222,6 +218,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   const auto start = Clock::now();
   PlanTime time(wanted.max_seconds, given);  // building the site's missing parts is part of it
   const PlanWatch watch = time.watch();
+  const std::vector<std::uint32_t> scanners = equip(site, asked);
   Simulator& simulator = site.simulator();
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   const Work before = site.work();
@@ -230,7 +227,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
   require_somewhere_to_stand(site, heights);
-  PlanContext context(site, config);
+  PlanContext context(site, config, scanners);
   std::future<void> surroundings;  // put together while candidates are found
   if (asks_for(problem, &RequiredInputs::surroundings))
     surroundings = std::async(std::launch::async, [&] { site.surroundings(); });

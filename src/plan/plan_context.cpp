@@ -27,8 +27,10 @@ std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   return cpu ? 4 : 32;
 }
 
-PlanContext::PlanContext(Site& site, const PlanConfig& config)
-    : site_(site), simulator_(site.simulator()), config_(config), oracle_(make_placement_oracle(site)) {}
+PlanContext::PlanContext(Site& site, const PlanConfig& config, std::vector<std::uint32_t> scanners)
+    : site_(site), simulator_(site.simulator()), config_(config), oracle_(make_placement_oracle(site)) {
+  oracle_.scanners = std::move(scanners);
+}
 
 void PlanContext::ask(const SurveyProblem& problem) {
   problem_ = problem;

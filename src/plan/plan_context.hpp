@@ -15,8 +15,8 @@ namespace vantage {
 
 class PlanContext {
  public:
-  // Borrows all. The problem is settled: its `capture` knows what is attainable.
-  PlanContext(Site& site, const PlanConfig& config);
+  // Borrows site and configuration. `scanners`: those of the site to choose from.
+  PlanContext(Site& site, const PlanConfig& config, std::vector<std::uint32_t> scanners);
 
   // What captured shares are told by, where a measure needs it: of choices among candidates, of searches, on part of
   // their voxels, and of confirmed networks, on others. To be filled in before ask().
@@ -26,7 +26,7 @@ class PlanContext {
   std::optional<StationsThatPay> pays;
   double asked_capture = 0;  // by the problem, whatever pays
 
-  // Networks are judged by this problem's measures from now on.
+  // Networks are judged by this problem's measures from now on. It is settled: its `capture` knows what is attainable.
   void ask(const SurveyProblem& problem);
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }

@@ -19,6 +19,7 @@
 #include "plan/spread_positions.hpp"
 #include "plan/trade_off.hpp"
 #include "plan/what_pays.hpp"
+#include "vantage/candidates.hpp"
 
 namespace vantage {
 namespace {

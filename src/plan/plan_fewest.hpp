@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan/plan_context.hpp"
+#include "vantage/candidates.hpp"
 
 namespace vantage {
 

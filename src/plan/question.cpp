@@ -10,6 +10,7 @@
 #include "core/setting_table.hpp"
 #include "plan/check_problem.hpp"
 #include "plan/limits.hpp"
+#include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -111,11 +112,13 @@ std::optional<double> number_in(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-// Makes the site's scanner with each of these steps; returns indices into the site's scanners.
-std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::string>& steps) {
-  std::vector<std::uint32_t> places;
+// Returns the site's scanner with each of these steps.
+std::vector<Scanner> scanners_with(const Site& site, const std::vector<std::string>& steps, bool every_echo) {
+  std::vector<Scanner> scanners;
+  std::uint32_t made = 0;
   for (const std::string& step : steps) {
     Scanner scanner = site.scanner();
+    if (every_echo && !site.options().detection) detect_every_echo(scanner);
     const std::string preset_name = site.options().scanner.value_or("");
     if (const auto degrees = number_in(step)) {
       scanner.set_steps(Angle::degrees(*degrees), Angle::degrees(*degrees));
@@ -132,12 +135,10 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
         scanner.set_directions(preset.directions, preset.times_s);
       scanner.points_per_second = preset.points_per_second;
     }
-    const std::uint32_t place = site.place_of(scanner);
-    if (std::ranges::count(places, place) > 0)
+    if (place_in(scanners, scanner) < made++)
       throw Error(Errc::invalid_argument, "search-step: '" + step + "' is there twice");
-    places.push_back(place);
   }
-  return places;
+  return scanners;
 }
 
 // Sample sizes of a search, for errors of .002 in coverage, and of .007 in overlap, on large sites
@@ -171,7 +172,7 @@ bool SurveyQuestion::asks_for_fewest() const {
   return objectives.empty() || (!stations && !searches_number);
 }
 
-SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
+SurveyProblem survey_problem(const Site& site, const SurveyQuestion& question) {
   check_settings(question_settings(), question);
   const bool survey = question.asks_for_fewest();
   const auto stations = station_range(question);
@@ -182,7 +183,6 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
                 "pays: goes with the fewest stations, without a problem of its own; leave one out");
   if (!question.objectives.empty() && question.problem && !survey)
     throw Error(Errc::invalid_argument, "objectives: " + *question.problem + " has its own; give one of them");
-  if (!survey && question.objectives.empty()) site.detect_every_echo();
   const double least = linked_from(question);
   const double apart = question.apart_m.value_or(default_apart_m * site.length_scale());
   SurveyProblem asked = survey                        ? fewest(question, stations, least, apart)
@@ -220,7 +220,8 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
       require(asked, text);
       return 0;
     });
-  asked.scanners = scanners_with(site, question.search_steps);
+  asked.every_echo = !survey && question.objectives.empty();
+  asked.scanners = scanners_with(site, question.search_steps, asked.every_echo);
   check_problem(site, asked);
   return asked;
 }
@@ -246,6 +247,13 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
     all.sample_voxels = usual_sample(problem, *all.renew_iterations > 0, voxels);
   all.sample_share.reset();
   return all;
+}
+
+std::vector<std::uint32_t> equip(Site& site, const SurveyProblem& problem) {
+  if (problem.every_echo) site.detect_every_echo();
+  std::vector<std::uint32_t> places;
+  for (const Scanner& scanner : problem.scanners) places.push_back(site.place_of(scanner));
+  return places;
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {

@@ -161,8 +161,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                     if (text != "steady-state" && text != "generational")
                       throw Error(Errc::invalid_argument,
                                   what + ": '" + text + "' is neither steady-state nor generational");
-                    c.scheme = text == "generational" ? MoCmaEsConfig::Scheme::generational
-                                                      : MoCmaEsConfig::Scheme::steady_state;
+                    c.scheme = text == "generational" ? MoScheme::generational : MoScheme::steady_state;
                   })
           .advanced()
           .custom("max-time", "T", "Time limit of the whole plan: 90, 90s, 15min or 2h",

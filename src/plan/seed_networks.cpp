@@ -8,6 +8,7 @@
 #include "core/parse.hpp"
 #include "core/part_of.hpp"
 #include "plan/placement_oracle.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 

@@ -18,6 +18,12 @@ nlohmann::ordered_json to_json(const Objective& objective) {
           {"parameters", objective.parameters}};
 }
 
+nlohmann::ordered_json to_json(const Scanner& scanner) {
+  nlohmann::ordered_json json;
+  for (const Setting& setting : settings(scanner)) json[setting.name] = nlohmann::ordered_json::parse(setting.json);
+  return json;
+}
+
 nlohmann::ordered_json to_json(const std::vector<Target>& targets) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Target& target : targets)
@@ -75,7 +81,12 @@ Settings settings(const SurveyProblem& problem) {
   // Setups of the existing stations, if any differs from the usual one.
   SettingList setups;
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
-  if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
+  if (!problem.scanners.empty()) {
+    nlohmann::ordered_json scanners = nlohmann::ordered_json::array();
+    for (const Scanner& scanner : problem.scanners) scanners.push_back(to_json(scanner));
+    setups.add("scanners", scanners);
+  }
+  if (problem.every_echo) setups.add("every_echo", true);
   if (problem.pays_m2) setups.add("pays_m2", *problem.pays_m2, {"pays"});
   if (problem.pays_share > 0) setups.add("pays_share", problem.pays_share);
   // Targets are proposed for the answer of a search, and decide nothing in it.
@@ -101,7 +112,7 @@ Settings settings(const SurveyProblem& problem) {
 
 Settings settings(const PlanConfig& config) {
   const auto unless = [](bool open, const char* option) { return std::string(open ? "" : option); };
-  const bool generational = config.scheme == MoCmaEsConfig::Scheme::generational;
+  const bool generational = config.scheme == MoScheme::generational;
   return SettingList()
       .add("population", config.population, {unless(config.population == 0, "population")})
       .add("iterations", config.iterations, {unless(config.iterations == 0, "iterations"), false})

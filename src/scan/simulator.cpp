@@ -185,8 +185,7 @@ struct Simulator::Impl {
   // If stopped, it has no grid and must not be used.
   Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c, const Progress& progress)
       : scene(s), scanners(all.begin(), all.end()), config(c) {
-    if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
-    for (const Scanner& scanner : scanners) scanner.check();
+    check_scanners(scanners);
     if (config.max_incidence)
       check_number(whole_degrees(*config.max_incidence), "the largest incidence in degrees",
                    {.low = 0, .high = 90, .low_included = false});
@@ -197,7 +196,7 @@ struct Simulator::Impl {
         progress);
     if (!grid) return;
     goal = goal_of(*grid, data(), spacings);
-    traced = trace_scanners(data());
+    traced = trace_scanners(data(), scanners);
     registered = scanners;
     const TraceScene shared = trace_scene(share(scene), grid, traced);
     surfaces.emplace(shared.scene, grid, shared.sample_triangles);
@@ -206,22 +205,25 @@ struct Simulator::Impl {
     tracer->set_goal_density(goal);
   }
 
-  // As Simulator::set_scene().
-  bool set_scene(const Scene& later) {
+  void refuse_if_fixed(const std::string& other) const {
     if (planes)
       throw Error(Errc::invalid_argument,
-                  "a simulator of surroundings takes no other scene; make one of the simulator that has taken it");
+                  "a simulator of surroundings takes no " + other + "; make one of the simulator that has taken it");
     if (config.shared)
       throw Error(Errc::invalid_argument,
-                  "a simulator that works over other processes takes no other scene; make another simulator");
+                  "a simulator that works over other processes takes no " + other + "; make another simulator");
+  }
+
+  // As Simulator::set_scene().
+  bool set_scene(const Scene& later) {
+    refuse_if_fixed("other scene");
     const SceneData& data_then = later.data();
     const std::vector<double> spacings = spacings_of(data_then, config);
     const std::optional<SceneDifference> differs = difference(data(), data_then);
     bool kept = differs.has_value();
     // Few changed meshes are added to the estimate; otherwise, or if the sum does not fit, all are looked at.
     std::uint64_t needed_then = differs ? needed_bytes + bytes_of_new(data_then, *differs) : 0;
-    if (!differs || !config.devices.empty() || tracer->info().engine != Engine::embree ||
-        needed_then > memory_limit(config.max_memory_bytes))
+    if (!differs || needed_then > memory_limit(config.max_memory_bytes))
       needed_then = require_memory(later, scanners, config).bytes;
     const std::shared_ptr<const VoxelGrid> grid_then =
         build_grid(data_then, config, spacings,
@@ -236,12 +238,13 @@ struct Simulator::Impl {
                    },
                    {});
     const double goal_then = goal_of(*grid_then, data_then, spacings);
-    std::vector<TraceScanner> traced_then = trace_scanners(data_then);
+    std::vector<TraceScanner> traced_then = trace_scanners(data_then, scanners);
     const TraceScene shared = trace_scene(share(later), grid_then, traced_then);
     SurfaceFinder surfaces_then(shared.scene, grid_then, shared.sample_triangles);
     std::unique_ptr<Tracer> tracer_then;
     if (!differs || !tracer->take(shared, *differs)) {
       kept = false;
+      needed_then = require_memory(later, scanners, config).bytes;
       tracer_then = make_own_tracer(shared);
     }
     // No error from here on.
@@ -255,6 +258,27 @@ struct Simulator::Impl {
     return kept;
   }
 
+  // As Simulator::set_scanners().
+  void set_scanners(std::vector<Scanner> later) {
+    refuse_if_fixed("other scanners");
+    check_scanners(later);
+    const std::uint64_t needed_then = require_memory(scene, later, config).bytes;
+    std::vector<TraceScanner> traced_then = trace_scanners(data(), later);
+    std::unique_ptr<Tracer> tracer_then = make_own_tracer(trace_scene(share(scene), grid, traced_then));
+    // No error from here on.
+    tracer = std::move(tracer_then);
+    tracer->set_goal_density(goal);
+    traced = std::move(traced_then), needed_bytes = needed_then;
+    registered = later, scanners = std::move(later);
+    patches = {}, patch_scanners = {};
+    mirrors.reset(), wide_beam.reset();
+  }
+
+  static void check_scanners(std::span<const Scanner> scanners) {
+    if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
+    for (const Scanner& scanner : scanners) scanner.check();
+  }
+
   std::uint64_t bytes_of_new(const SceneData& later, const SceneDifference& differs) const {
     std::vector<MeshRange> meshes;
     for (std::size_t m = 0; m < later.ranges.size(); ++m)
@@ -265,10 +289,10 @@ struct Simulator::Impl {
     const double wide = grid.voxel_size() / finest_spacing(data, spacings);
     return wide * wide;
   }
-  std::vector<TraceScanner> trace_scanners(const SceneData& data) const {
-    const bool some_echo_is_lost = std::ranges::any_of(scanners, loses_echoes);
+  std::vector<TraceScanner> trace_scanners(const SceneData& data, std::span<const Scanner> of) const {
+    const bool some_echo_is_lost = std::ranges::any_of(of, loses_echoes);
     std::vector<TraceScanner> all;
-    for (const Scanner& scanner : scanners) all.push_back(trace_scanner(data, scanner, some_echo_is_lost));
+    for (const Scanner& scanner : of) all.push_back(trace_scanner(data, scanner, some_echo_is_lost));
     return all;
   }
   TraceScene trace_scene(std::shared_ptr<const SceneData> shared_scene, std::shared_ptr<const VoxelGrid> shared_grid,
@@ -582,6 +606,9 @@ Simulator::~Simulator() = default;
 
 bool Simulator::set_scene(const Scene& scene) {
   return impl_->alone([&] { return impl_->set_scene(scene); });
+}
+void Simulator::set_scanners(std::span<const Scanner> scanners) {
+  impl_->alone([&] { impl_->set_scanners({scanners.begin(), scanners.end()}); });
 }
 
 Work Simulator::work() const {

@@ -23,6 +23,7 @@
 #include "site/room_windows.hpp"
 #include "site/site_scanner.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 
 namespace vantage {
 namespace {
@@ -171,6 +172,7 @@ struct Site::Impl {
   bool no_ground = false;  // found out once
   std::optional<ClashChecker> clash;
   std::optional<Simulator> simulator, surroundings;
+  bool surroundings_are_old = false;  // the simulator has taken other scanners
   std::recursive_mutex making;
   // Makes a part, or waits until another thread has made it; one part may make another. The isolation keeps oneTBB from
   // giving this thread a task meanwhile that asks for the part.
@@ -297,6 +299,13 @@ struct Site::Impl {
     });
   }
 
+  // The site is unchanged after an error.
+  void take_scanners(std::vector<Scanner> all) {
+    if (simulator) simulator->set_scanners(all);
+    surroundings_are_old = true;
+    scanners = std::move(all);
+  }
+
   // Raises the weight of everything except the ground, so that ground has a third of coverage at most.
   void weigh_ground() {
     if (!options.weigh_ground || !has_area() || !ground_is_unmarked(scene, search_area())) return;
@@ -360,22 +369,18 @@ const SecurityVolume& Site::security() const noexcept { return impl_->security; 
 const std::string& Site::crs() const noexcept { return impl_->options.crs; }
 
 std::uint32_t Site::place_of(const Scanner& scanner) {
-  const std::size_t known = impl_->scanners.size();
-  const std::uint32_t place = place_in(impl_->scanners, scanner);
-  if (place < known || !impl_->simulator) return place;
-  impl_->scanners.pop_back();
-  throw Error(Errc::invalid_argument,
-              "the site's simulator is made, and \"" + scanner.name + "\" is none of its scanners");
+  std::vector<Scanner> all = impl_->scanners;
+  const std::uint32_t place = place_in(all, scanner);
+  if (all.size() > impl_->scanners.size()) impl_->take_scanners(std::move(all));
+  return place;
 }
 
 void Site::detect_every_echo() {
   const auto limited = [](const Scanner& scanner) { return scanner.detection_range_m > 0; };
   if (impl_->options.detection || std::ranges::none_of(impl_->scanners, limited)) return;
-  if (impl_->simulator)
-    throw Error(Errc::invalid_argument,
-                "detection: the problems by name are posed for a scanner that detects every echo, and the site's "
-                "simulator is made with one that does not; open the site with the setting detection, off or as it is");
-  for (Scanner& scanner : impl_->scanners) scanner.detection_range_m = 0, scanner.detection_reflectivity = 1;
+  std::vector<Scanner> all = impl_->scanners;
+  for (Scanner& scanner : all) vantage::detect_every_echo(scanner);
+  impl_->take_scanners(std::move(all));
 }
 
 Settings Site::settings() const {
@@ -433,7 +438,8 @@ Work Site::work() const {
 }
 Simulator& Site::surroundings() {
   return *impl_->alone([&] {
-    if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
+    if (!impl_->surroundings || impl_->surroundings_are_old) impl_->surroundings = surroundings_of(simulator());
+    impl_->surroundings_are_old = false;
     return &*impl_->surroundings;
   });
 }

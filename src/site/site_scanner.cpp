@@ -97,6 +97,8 @@ std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
   return noise.ends_with(".csv") ? std::filesystem::absolute(noise).string() : noise;
 }
 
+void detect_every_echo(Scanner& scanner) { scanner.detection_range_m = 0, scanner.detection_reflectivity = 1; }
+
 std::uint32_t place_in(std::vector<Scanner>& scanners, const Scanner& scanner) {
   scanner.check();
   const auto found = std::ranges::find_if(scanners, [&](const Scanner& known) { return same(known, scanner); });

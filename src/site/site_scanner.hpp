@@ -13,6 +13,8 @@ namespace vantage {
 Scanner site_scanner(const SiteOptions& options, double scale);
 // Source of its noise, in the form of the setting.
 std::string noise_source(const SiteOptions& options, const Scanner& scanner);
+// Lets a scanner detect every echo.
+void detect_every_echo(Scanner& scanner);
 // Index of `scanner` in the list, to which it is appended if it is new. Throws as `Scanner::check`.
 std::uint32_t place_in(std::vector<Scanner>& scanners, const Scanner& scanner);
 

@@ -110,7 +110,8 @@ std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> 
                                     std::function<void(const std::string&)> warn) {
   const DeviceChoice device = resolved(engine, device_index);
   if (device.engine == Engine::embree) return make_once(device, scene);
-  return std::make_unique<RebuildingTracer>([=] { return make_once(device, scene); }, std::move(warn));
+  return std::make_unique<RebuildingTracer>([=](const TraceScene& now) { return make_once(device, now); }, scene,
+                                            std::move(warn));
 }
 
 std::unique_ptr<RayFinder> make_ray_finder(const DeviceChoice& device, const std::shared_ptr<const SceneData>& scene) {

@@ -8,12 +8,13 @@
 
 namespace vantage {
 
-RebuildingTracer::RebuildingTracer(Make make, Warn warn) : make_(std::move(make)), warn_(std::move(warn)) {
+RebuildingTracer::RebuildingTracer(Make make, const TraceScene& scene, Warn warn)
+    : make_(std::move(make)), scene_(scene), warn_(std::move(warn)) {
   try {
-    tracer_ = make_();
+    tracer_ = make_(scene_);
   } catch (const DeviceFault& fault) {
     if (warn_) warn_(std::string(fault.what()) + "; it is set up once more");
-    tracer_ = make_();
+    tracer_ = make_(scene_);
   }
   info_ = tracer_->info();
 }
@@ -34,8 +35,24 @@ void RebuildingTracer::set_up_anew(const DeviceFault& fault, const std::string& 
     warn_(to_string(info_.engine) + " on device " + std::to_string(info_.device_index) + ", " + info_.device + ": " +
           fault.what() + "; it is set up anew" + what_next);
   tracer_ = nullptr;  // destroy the old tracer first, to free its resources for the new one
-  tracer_ = make_();
+  tracer_ = make_(scene_);
   tracer_->set_goal_density(goal_density_);
+}
+
+bool RebuildingTracer::take(const TraceScene& later, const SceneDifference& difference) {
+  try {
+    if (!ready().take(later, difference)) return false;
+  } catch (const DeviceFault& fault) {
+    set_up_anew(fault, " for the scene as it was");
+    return false;
+  } catch (...) {
+    tracer_ = nullptr;  // it may have taken a part
+    tracer_ = make_(scene_);
+    tracer_->set_goal_density(goal_density_);
+    throw;
+  }
+  scene_.scene = later.scene, scene_.grid = later.grid, scene_.sample_triangles = later.sample_triangles;
+  return true;
 }
 
 template <class Work>

@@ -16,11 +16,11 @@ namespace vantage {
 
 class RebuildingTracer final : public Tracer {
  public:
-  using Make = std::function<std::unique_ptr<Tracer>()>;
+  using Make = std::function<std::unique_ptr<Tracer>(const TraceScene& scene)>;
   using Warn = std::function<void(const std::string&)>;
   // Calls `make` again after a DeviceFault, thrown by `make` or by the tracer that it made. `warn` is called for each
   // fault, on the calling thread. A second failure is thrown.
-  RebuildingTracer(Make make, Warn warn);
+  RebuildingTracer(Make make, const TraceScene& scene, Warn warn);
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
@@ -37,6 +37,7 @@ class RebuildingTracer final : public Tracer {
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override;
+  bool take(const TraceScene& later, const SceneDifference& difference) override;
 
  private:
   Tracer& ready() const;
@@ -46,6 +47,7 @@ class RebuildingTracer final : public Tracer {
   auto twice(const Work& work);
 
   Make make_;
+  TraceScene scene_;
   Warn warn_;
   std::unique_ptr<Tracer> tracer_;  // null: it failed and could not be set up anew
   EngineInfo info_;

@@ -227,8 +227,7 @@ class Tracer {
   double goal_density_ = 1;
 };
 
-// Builds the engine named by `engine`; choose_engine.hpp resolves `automatic`, except that lists of directions are
-// traced on processors. A Vulkan engine that fails with its
+// Builds the engine named by `engine`; choose_engine.hpp resolves `automatic`. A Vulkan engine that fails with its
 // device is set up anew, with a call to `warn`. Throws Error no_suitable_device with every refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn = {});

@@ -7,6 +7,7 @@
 
 #include "networks.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage::bench {
 namespace {

@@ -22,7 +22,7 @@
 namespace vantage::bench {
 namespace {
 
-using Scheme = MoCmaEsConfig::Scheme;
+using Scheme = MoScheme;
 
 constexpr int kRedraws = 8;  // of stations in holes, as PlanConfig has it
 

@@ -11,6 +11,7 @@
 #include "core/philox.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage::bench {
 namespace {

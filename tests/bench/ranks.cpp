@@ -99,7 +99,7 @@ void measure_messages(RanksModel& model, const RanksOptions& options, const Netw
 double search_seconds(std::size_t stations, std::size_t population) {
   const std::size_t dimension = 2 * stations;
   OptimiserConfig config{.population = population, .bounds = Bounds::uniform(dimension, 0, 1)};
-  config.mo.scheme = MoCmaEsConfig::Scheme::generational;
+  config.mo.scheme = MoScheme::generational;
   MoCmaEs optimiser(dimension, 2, config);
   double best = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < 8; ++iteration) {

@@ -29,6 +29,7 @@
 #include "vantage/export.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/registration.hpp"
 #include "vantage/site.hpp"
 #include "vantage/targets.hpp"
 

@@ -21,6 +21,7 @@
 #include "sight.hpp"
 #include "sites/random_site.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"

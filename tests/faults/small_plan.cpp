@@ -51,7 +51,7 @@ std::string SmallPlan::run(const std::filesystem::path& checkpoint, bool resume)
   const std::vector<std::string> objectives{"coverage", "overlap", "registration"};
   const PlanConfig config{.population = 8,
                           .iterations = 1,
-                          .scheme = MoCmaEsConfig::Scheme::generational,
+                          .scheme = MoScheme::generational,
                           .sample_voxels = 400,
                           .seed = 5,
                           .checkpoint = checkpoint,

@@ -93,8 +93,9 @@ class Plans(unittest.TestCase):
         site = vantage.Site(self.site.scene, scanners=steps, engine="embree", user_size=0.2, spacing=0.03, seed=SEED)
         lying = vantage.StationSetup(tilt_deg=90)
         problem = vantage.SurveyProblem(stations_min=3, stations_max=3, existing=[(8, 0, 1.5)], existing_setups=[lying],
-                                        scanners=[0, 1], objectives=["coverage", "time"])
-        self.assertEqual((problem.existing_setups, problem.scanners), ((lying,), (0, 1)))
+                                        scanners=site.scanners, objectives=["coverage", "time"])
+        self.assertEqual(problem.existing_setups, (lying,))
+        self.assertEqual([s.azimuth_step_deg for s in problem.scanners], [0.2, 0.5])
         found = site.plan(problem, **SMALL)
         self.assertEqual([s.azimuth_step_deg for s in found.scanners], [0.2, 0.5])
         chosen = set()

@@ -59,8 +59,12 @@ class Sites(unittest.TestCase):
         self.assertEqual(given.scanners[0].detection_range_m, 50)
         late = vantage.Site.open(FOUR_WALLS, **settings)
         late.evaluate([[8, 0, 1.5]])
-        with self.assertRaisesRegex(vantage.Error, "detection: the problems by name"):
-            late.plan(problem="coverage-fix", stations=2)
+        same = late.plan(problem="coverage-fix", stations=2, population=4, iterations=1, sample=100)
+        early = vantage.Site.open(FOUR_WALLS, **settings)
+        told = early.plan(problem="coverage-fix", stations=2, population=4, iterations=1, sample=100)
+        np.testing.assert_array_equal(same.answer.heads, told.answer.heads)
+        self.assertEqual(same.answer.value("coverage"), told.answer.value("coverage"))
+        self.assertEqual(late.evaluate([[8, 0, 1.5]]).value("coverage"), early.evaluate([[8, 0, 1.5]]).value("coverage"))
 
     def test_an_evaluation_has_every_figure_of_the_program(self):
         heads = [[8, 0, 1.5], [9, 8, 1.5], [0, 12, 1.5]]

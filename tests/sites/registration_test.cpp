@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predicted registration error on a whole site: from a sample, and independent of the site's place on Earth.
+#include "vantage/registration.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "objective/built_in/built_in.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage::built_in {
 namespace {

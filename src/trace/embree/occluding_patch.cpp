@@ -30,38 +30,7 @@ struct Member {
 
 std::vector<std::uint32_t> OccludingPatches::neighbours_after(const SceneData& scene,
                                                               const SceneDifference& difference) const {
-  if (neighbours_.empty()) return {};
-  const std::uint32_t opaque = scene.opaque_count();
-  std::vector<std::uint32_t> after(std::size_t{3} * opaque, no_primitive);
-  const auto number_after = [&](std::uint32_t before) -> std::uint32_t {
-    const auto next = std::ranges::upper_bound(difference.kept, before, {}, &KeptRun::first);
-    if (next == difference.kept.begin()) return no_primitive;
-    const KeptRun& run = *(next - 1);
-    return before - run.first < run.count ? run.other + (before - run.first) : no_primitive;
-  };
-  for (const KeptRun& run : difference.kept) {
-    if (run.other >= opaque) break;
-    const std::size_t first = std::size_t{3} * run.first, other = std::size_t{3} * run.other;
-    parallel::for_all(tbb::blocked_range<std::size_t>(0, std::size_t{3} * run.count, 1 << 14), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        const std::uint32_t before = neighbours_[first + k];
-        if (before == no_primitive) continue;
-        after[other + k] = before - run.first < run.count ? run.other + (before - run.first) : number_after(before);
-      }
-    });
-  }
-  for (const KeptRun& run : not_kept(difference.kept, opaque)) {
-    const auto triangles = std::span(scene.triangles).subspan(run.first, run.count);
-    const auto [low, high] = corner_range(triangles);
-    std::vector<Triangle> own(triangles.begin(), triangles.end());
-    for (Triangle& t : own)
-      for (std::uint32_t& v : t) v -= low;
-    const std::vector<std::uint32_t> among =
-        triangle_neighbours(std::span(scene.positions).subspan(low, high - low + 1), own);
-    for (std::size_t k = 0; k < among.size(); ++k)
-      if (among[k] != no_primitive) after[std::size_t{3} * run.first + k] = run.first + among[k];
-  }
-  return after;
+  return vantage::neighbours_after(neighbours_, scene, difference);
 }
 
 bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box& box, double start,

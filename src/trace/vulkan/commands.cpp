@@ -126,16 +126,37 @@ double Commands::run_and_download(const Record& record, std::span<const Download
   return seconds;
 }
 
-void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes) {
-  if (bytes == 0) return;
-  uploaded_bytes_ += bytes;
+void Commands::stage(VkDeviceSize bytes) {
   const VkDeviceSize wanted = std::min(bytes, staging_bytes);
   if (!staging_up_ || staging_up_.size() < wanted)
     staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");
+}
+
+void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes, VkDeviceSize offset) {
+  if (bytes == 0) return;
+  uploaded_bytes_ += bytes;
+  stage(bytes);
   for (VkDeviceSize done = 0; done < bytes; done += staging_up_.size()) {
     const VkDeviceSize part = std::min(staging_up_.size(), bytes - done);
     std::memcpy(staging_up_.mapped<void>(), static_cast<const std::byte*>(data) + done, part);
-    run([&](const Recorder& r) { r.copy(staging_up_, to, {0, done, part}); });
+    run([&](const Recorder& r) { r.copy(staging_up_, to, {0, offset + done, part}); });
+  }
+}
+
+void Commands::scatter(const Buffer& to, const void* values, VkDeviceSize size, std::span<const std::uint32_t> at) {
+  if (at.empty()) return;
+  uploaded_bytes_ += at.size() * size;
+  stage(at.size() * size);
+  const std::size_t at_once = staging_up_.size() / size;
+  for (std::size_t done = 0; done < at.size(); done += at_once) {
+    const std::size_t part = std::min(at_once, at.size() - done);
+    std::memcpy(staging_up_.mapped<void>(), static_cast<const std::byte*>(values) + done * size, part * size);
+    run([&](const Recorder& r) {
+      for (std::size_t first = 0, end = 0; first < part; first = end) {
+        for (end = first + 1; end < part && at[done + end] == at[done + end - 1] + 1;) ++end;
+        r.copy(staging_up_, to, {first * size, at[done + first] * size, (end - first) * size});
+      }
+    });
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "trace/vulkan/buffer.hpp"
@@ -32,12 +33,20 @@ class Commands {
   double run_and_download(const Record& record, std::span<const Download> wanted);
 
   // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
-  void upload(const Buffer& to, const void* data, VkDeviceSize bytes);
+  void upload(const Buffer& to, const void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
+  // Copies `values` to the elements `at` of a buffer, ascending; in few submissions, however many they are.
+  template <class T>
+  void scatter(const Buffer& to, std::span<const T> values, std::span<const std::uint32_t> at) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    scatter(to, values.data(), sizeof(T), at);
+  }
   std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
   void download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
 
  private:
   void wait();
+  void scatter(const Buffer& to, const void* values, VkDeviceSize size, std::span<const std::uint32_t> at);
+  void stage(VkDeviceSize bytes);
 
   Device& device_;
   UniqueCommandPool pool_;

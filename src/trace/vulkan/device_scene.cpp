@@ -94,6 +94,45 @@ DeviceScene::DeviceScene(Device& device, Commands& commands, const TraceScene& s
                          std::span<const DeviceScanner> scanners)
     : device_(device), commands_(commands), scene_(scene), scanners_(scanners), watertight_(traversal.is_watertight()) {
   std::ranges::copy(traversal.binding().arrays, parameters_.traversal);
+  upload_grid();
+  TraceParameters& p = parameters_;
+  p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
+  if (scene_.scene->shares()) upload_places();
+  if (weakens_through_glass(scene_)) upload_glass();
+  const auto noisy = [](const DeviceScanner& scanner) { return scanner.noise(); };
+  const auto limited = [](const DeviceScanner& scanner) { return scanner.limits(); };
+  if (std::ranges::any_of(scanners_, noisy)) {
+    normal_table_ = make_device_buffer<float>(device_, commands_, normal_table(), "normal table");
+    p.normal_table = normal_table_.address();
+  }
+  if (std::ranges::any_of(scanners_, noisy) || std::ranges::any_of(scanners_, limited)) {
+    upload_shading();
+  } else {
+    write_parameters();
+  }
+}
+
+void DeviceScene::take(const SceneDifference& difference, std::span<const KeptRun> moved) {
+  const SceneData& scene = *scene_.scene;
+  upload_grid();
+  for (const KeptRun& run : moved) {
+    const auto [low, high] = corner_range(std::span(scene.triangles).subspan(run.first, run.count));
+    const auto write = [&, low = low, count = high - low + 1](const Buffer& to, const std::vector<Float3>& from) {
+      if (to) commands_.upload(to, &from[low], count * sizeof(Float3), low * sizeof(Float3));
+    };
+    write(positions_, scene.positions);
+    write(normals_, scene.normals);
+  }
+  if (neighbours_) {
+    std::vector<std::uint32_t> neighbours(std::size_t{3} * scene.opaque_count());
+    commands_.download(neighbours_, neighbours.data(), std::span(neighbours).size_bytes());
+    neighbours = neighbours_after(neighbours, scene, difference);
+    commands_.upload(neighbours_, neighbours.data(), std::span(neighbours).size_bytes());
+  }
+  write_parameters();
+}
+
+void DeviceScene::upload_grid() {
   const VoxelGrid& grid = *scene_.grid;
   demands_ = make_device_demands(device_, commands_, grid.demands());
   bricks_ = make_device_buffer<VoxelBrick>(device_, commands_, grid.bricks(), "voxel bricks");
@@ -110,20 +149,6 @@ DeviceScene::DeviceScene(Device& device, Commands& commands, const TraceScene& s
   const Box& bounds = scene_.scene->local_bounds;
   p.bounds_min = {static_cast<float>(bounds.min.x), static_cast<float>(bounds.min.y), static_cast<float>(bounds.min.z)};
   p.bounds_max = {static_cast<float>(bounds.max.x), static_cast<float>(bounds.max.y), static_cast<float>(bounds.max.z)};
-  p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
-  if (scene_.scene->shares()) upload_places();
-  if (weakens_through_glass(scene_)) upload_glass();
-  const auto noisy = [](const DeviceScanner& scanner) { return scanner.noise(); };
-  const auto limited = [](const DeviceScanner& scanner) { return scanner.limits(); };
-  if (std::ranges::any_of(scanners_, noisy)) {
-    normal_table_ = make_device_buffer<float>(device_, commands_, normal_table(), "normal table");
-    p.normal_table = normal_table_.address();
-  }
-  if (std::ranges::any_of(scanners_, noisy) || std::ranges::any_of(scanners_, limited)) {
-    upload_shading();
-  } else {
-    write_parameters();
-  }
 }
 
 void DeviceScene::write_parameters() {

@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "scene/scene_difference.hpp"
 #include "shared/trace_types.h"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/device_demands.hpp"
@@ -25,7 +26,11 @@ class DeviceScene {
   void upload_neighbours();  // only if the structure is watertight
   void upload_shading();     // normals and diffuse coefficients, with the triangles
 
+  // Follows its scene, in which the triangles of some runs have moved and the grid may be another one.
+  void take(const SceneDifference& difference, std::span<const KeptRun> moved);
+
  private:
+  void upload_grid();
   void write_parameters();
   void upload_glass();
   void upload_places();

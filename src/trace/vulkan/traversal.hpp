@@ -9,6 +9,7 @@
 #include <span>
 
 #include "scene/scene_data.hpp"
+#include "scene/scene_difference.hpp"
 #include "shared/trace_types.h"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/placed_meshes.hpp"
@@ -71,6 +72,10 @@ class Traversal {
     std::uint32_t bytes_per_tile = 0;
   };
   virtual std::optional<TilePass> tile_pass() const { return std::nullopt; }
+
+  // Takes new positions of the triangles of some runs; `scene` is otherwise the one that it was built for, and shares
+  // no meshes. Returns false, and changes nothing, if a new structure is better.
+  virtual bool move(Commands&, const TraversalScene& /*scene*/, std::span<const KeptRun> /*moved*/) { return false; }
 };
 
 // An engine, as listed in make_tracer.cpp.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/vulkan_tracer.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace vantage::vulkan {
@@ -12,6 +13,28 @@ constexpr double seconds_per_exact_submission = 0.25;  // often enough for progr
 constexpr double seconds_per_sampled_submission = 1;
 // The first dispatch of an exact submission has this share of the limit, to measure the device's speed.
 constexpr double first_share = 1.0 / 16;
+
+// Whether two scenes have the same triangles with the same attributes, but for the places of their corners.
+bool differ_by_places_alone(const SceneData& one, const SceneData& other) {
+  const auto alike = [&](std::size_t m) {
+    return one.ranges[m].first_triangle == other.ranges[m].first_triangle &&
+           one.ranges[m].triangle_count == other.ranges[m].triangle_count &&
+           one.meshes[m].role == other.meshes[m].role && one.meshes[m].diffuse == other.meshes[m].diffuse;
+  };
+  if (one.shares() || other.shares() || one.meshes.size() != other.meshes.size() ||
+      one.positions.size() != other.positions.size() || one.normals.size() != other.normals.size() ||
+      one.opaque_count() != other.opaque_count() || one.triangles != other.triangles)
+    return false;
+  for (std::size_t m = 0; m < one.meshes.size(); ++m)
+    if (!alike(m)) return false;
+  return true;
+}
+
+bool have_the_same_limits(const TraceScene& one, const TraceScene& other) {
+  return std::ranges::equal(one.scanners, other.scanners, [](const TraceScanner& a, const TraceScanner& b) {
+    return !a.limits == !b.limits && (!a.limits || a.limits->meshes == b.limits->meshes);
+  });
+}
 
 }  // namespace
 
@@ -51,6 +74,23 @@ std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& eng
   return engine.build(
       device_, commands_,
       {scene.positions, std::span(scene.triangles).first(ids.size()), ids, scene_.sort_triangles, placed});
+}
+
+bool VulkanTracer::take(const TraceScene& later, const SceneDifference& difference) {
+  const SceneData& scene = *later.scene;
+  if (difference.shifted() || !differ_by_places_alone(*scene_.scene, scene) || !have_the_same_limits(scene_, later) ||
+      weakens_through_glass(later))
+    return false;
+  const PlacedMeshes none;
+  const std::uint32_t opaque = scene.opaque_count();
+  if (!traversal_->move(commands_,
+                        {scene.positions, std::span(scene.triangles).first(opaque), {}, scene_.sort_triangles, none},
+                        not_kept(difference.kept, opaque)))
+    return false;
+  scene_.scene = later.scene, scene_.grid = later.grid, scene_.sample_triangles = later.sample_triangles;
+  device_scene_.take(difference, not_kept(difference.kept, static_cast<std::uint32_t>(scene.triangles.size())));
+  samples_ = {}, registration_.uploaded_patches = nullptr;
+  return true;
 }
 
 std::vector<DeviceScanner> VulkanTracer::make_scanners() {

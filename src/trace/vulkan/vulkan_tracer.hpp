@@ -86,6 +86,8 @@ class VulkanTracer final : public Tracer {
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override;
+  // Takes a scene in which meshes have moved in place. After an error it must not be used.
+  bool take(const TraceScene& later, const SceneDifference& difference) override;
 
  private:
   // One call of count() and of count_sampled().

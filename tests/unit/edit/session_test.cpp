@@ -13,6 +13,7 @@
 #include "unit/placement/placement_scenes.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/summary.hpp"
 

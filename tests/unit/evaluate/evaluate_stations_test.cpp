@@ -9,8 +9,10 @@
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/export.hpp"
+#include "vantage/registration.hpp"
 #include "vantage/summary.hpp"
 
 namespace vantage {

@@ -9,6 +9,7 @@
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 
 namespace vantage {
 namespace {

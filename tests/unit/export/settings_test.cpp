@@ -15,6 +15,7 @@
 #include "trace/tracer_maker.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
+#include "vantage/optimiser.hpp"
 
 namespace vantage {
 namespace {
@@ -194,8 +195,9 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"existing_setups", [](SurveyProblem& p) { p.existing_setups = {{.tilt = Angle::degrees(90)}}; }},
     {"scanners",
      [](SurveyProblem& p) {
-       p.scanners = {0, 1};
+       p.scanners = {Scanner(), Scanner{.height_m = 2}};
      }},
+    {"every_echo", [](SurveyProblem& p) { p.every_echo = true; }},
     {"heights_m",
      [](SurveyProblem& p) {
        p.heights_m = {1, 2};
@@ -218,7 +220,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
      },
      false},
     {"target", [](SurveyProblem& p) { p.target.diameter_m = 0.2; }, false}};
-static_assert(member_count<SurveyProblem>() == 20);
+static_assert(member_count<SurveyProblem>() == 21);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},
@@ -241,7 +243,7 @@ const std::vector<Change<PlanConfig>> kPlan{
        };
      },
      false, false},
-    {"scheme", [](PlanConfig& c) { c.scheme = MoCmaEsConfig::Scheme::generational; }},
+    {"scheme", [](PlanConfig& c) { c.scheme = MoScheme::generational; }},
     {"batch", [](PlanConfig& c) { c.batch = 3; }},
     {"sample_voxels", [](PlanConfig& c) { c.sample_voxels = 100; }},
     {"renew_iterations", [](PlanConfig& c) { c.renew_iterations = 10; }},

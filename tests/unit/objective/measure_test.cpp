@@ -10,6 +10,7 @@
 #include "core/philox.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/registration.hpp"
 
 namespace vantage {
 namespace {

@@ -16,7 +16,7 @@ namespace vantage {
 namespace {
 
 using bench::Algorithm;
-using Scheme = MoCmaEsConfig::Scheme;
+using Scheme = MoScheme;
 using Objectives = std::function<std::vector<double>(std::span<const double>)>;
 
 // Distances to (0, …) and (1, …): the front is f1 = (1 − √f0)², with hypervolume 5/6 against (1, 1).

@@ -11,6 +11,7 @@
 #include "support/quad_scene.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/evaluation.hpp"
 
 namespace vantage {

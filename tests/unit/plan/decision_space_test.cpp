@@ -72,10 +72,10 @@ TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
 }
 
 TEST(DecisionSpace, ChoosesScannersInEqualShares) {
-  const PlacementOracle site = test::toy_site();
+  PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 3);
   config.heights_m = {1, 2};
-  config.scanners = {4, 0, 7};
+  site.scanners = {4, 0, 7};
   const DecisionSpace space(site, config);
   EXPECT_EQ(space.dimension(), 13u);
   EXPECT_EQ(space.bounds().lower, (std::vector<double>{0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0}));
@@ -92,7 +92,7 @@ TEST(DecisionSpace, ChoosesScannersInEqualShares) {
   const std::vector<Vec3> heads{{1, 2, 4.5}};
   EXPECT_EQ(space.decode(space.encode(heads)).at(0).setup.scanner, 4u) << "the first of them where nobody says";
   // A single scanner leaves no choice.
-  config.scanners = {2};
+  site.scanners = {2};
   const DecisionSpace one(site, config);
   EXPECT_EQ(one.dimension(), 10u);
   x.resize(10);

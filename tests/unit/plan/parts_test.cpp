@@ -6,7 +6,10 @@
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
+#include "vantage/attainable.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/question.hpp"
 #include "vantage/summary.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/site_of.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene_builder.hpp"
@@ -94,7 +95,7 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
 
   const std::vector<std::string> objectives{"time", "coverage"};
   SurveyProblem problem = survey_problem(objectives, 2, 2);
-  problem.scanners = {0, 1};
+  problem.scanners = {simulator.scanners()[0], simulator.scanners()[1]};
   problem.on_site.set_up_min = 0;
   const PlanResult result = plan(site, problem, {.population = 16, .iterations = 30, .sample_voxels = 500, .seed = 4});
   bool found = false;
@@ -122,7 +123,8 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
 TEST(SearchStep, TheFewestStationsAreChosenByTheStepThatSeesMost) {
   Site site = closet_or_hall();
   SurveyProblem problem = fewest_stations(0.9, 0, 1, 8, 0);
-  problem.scanners = {0, 1};
+  problem.scanners.assign(site.scanners().begin(), site.scanners().end());
+  ASSERT_EQ(problem.scanners.size(), 2u);
   const PlanConfig config{.population = 6, .iterations = 4, .sample_voxels = 500, .seed = 4};
   const PlanResult result = plan(site, problem, config);
   ASSERT_FALSE(result.front.empty());
@@ -130,7 +132,7 @@ TEST(SearchStep, TheFewestStationsAreChosenByTheStepThatSeesMost) {
   ASSERT_TRUE(result.candidates);
   for (const PlacedStation& candidate : result.candidates->stations()) EXPECT_EQ(candidate.setup.scanner, 1u);
 
-  problem.scanners = {0, 2};
+  problem.scanners[1].height_m = -1;
   EXPECT_THROW(plan(site, problem, config), Error);
 }
 

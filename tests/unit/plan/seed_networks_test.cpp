@@ -7,6 +7,7 @@
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "unit/plan/toy_survey.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

@@ -11,6 +11,7 @@
 
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {

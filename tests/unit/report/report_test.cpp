@@ -20,6 +20,7 @@
 #include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluate.hpp"
 
 namespace vantage {
 namespace {

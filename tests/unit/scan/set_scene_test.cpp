@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulator that takes a changed scene gives what a new one gives, bit for bit, on every engine.
+// A simulator that takes a changed scene, or other scanners, gives what a new one gives, bit for bit, on every engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -198,8 +198,38 @@ TEST(SetScene, EqualsANewSimulatorAfterManyChangesOnEveryEngine) {
     }
     if (embree)
       EXPECT_GE(kept, 12) << "of 24: most changes are small";
-    else
+    else if (engine.engine == Engine::ray_query)
       EXPECT_EQ(kept, 0) << engine.device;
+  }
+}
+
+// The engine compute_bvh fits the boxes of its tree anew.
+TEST(SetScene, MovesMeshesThatStayWhereTheyAreStoredOnEveryEngine) {
+  for (const EngineInfo& engine : test::usable_engines()) {
+    Dice dice(12);
+    Scene scene = plant(dice, 6);
+    Scanner scanner = coarse_scanner(2);
+    scanner.noise = rtc360_noise();
+    SimulatorConfig config = on(engine);
+    config.max_incidence = Angle::degrees(80);
+    Simulator simulator(scene, scanner, config);
+    simulator.evaluate_sampled(std::vector<Network>{{{.position = {101, 20, 1}}}}, {.voxels = 50});
+    int kept = 0;
+    constexpr int kSteps = 4;
+    for (int step = 0; step < kSteps; ++step) {
+      SCOPED_TRACE(engine.device + ", step " + std::to_string(step));
+      SceneChange change;
+      for (int m = 0; m < 1 + step; ++m)
+        change.move.push_back({"machine-" + std::to_string((2 * step + m) % 6),
+                               {.translation = {dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), 0},
+                                .rotation = {0, 0, dice.between(-0.0005, 0.0005), 1}}});
+      scene = with_changes(scene, change);
+      kept += simulator.set_scene(scene);
+      Simulator fresh(scene, scanner, config);
+      expect_alike(simulator, fresh, 12 + static_cast<std::uint64_t>(step));
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_EQ(kept > 0, engine.engine != Engine::ray_query) << kept << " of " << kSteps << ", " << engine.device;
   }
 }
 
@@ -268,6 +298,46 @@ TEST(SetScene, IsRefusedForSurroundings) {
     EXPECT_EQ(error.code(), Errc::invalid_argument);
     EXPECT_NE(std::string(error.what()).find("surroundings"), std::string::npos) << error.what();
   }
+}
+
+TEST(SetScanners, EqualsANewSimulatorOnEveryEngine) {
+  Dice dice(10);
+  const Scene scene = plant(dice, 4);
+  Scanner lossy = coarse_scanner(3);  // with it, all points have limits
+  lossy.dropout = 0.2, lossy.detection_range_m = 9, lossy.noise = rtc360_noise();
+  const std::vector<std::vector<Scanner>> lists{{coarse_scanner(1.5)}, {coarse_scanner(2), lossy}, {lossy}};
+  const SampleOptions sample{.voxels = 200, .registration = RegistrationModel()};
+  const Network pair{{.position = {101, 20, 1}}, {.position = {103, 21, 1}}};
+  for (const EngineInfo& engine : test::usable_engines()) {
+    Simulator simulator(scene, coarse_scanner(2), on(engine));
+    for (const std::vector<Scanner>& scanners : lists) {
+      SCOPED_TRACE(engine.device + ", " + std::to_string(scanners.size()));
+      simulator.evaluate_sampled({&pair, 1}, sample);  // keeps planes
+      simulator.set_scanners(scanners);
+      ASSERT_EQ(simulator.scanners().size(), scanners.size());
+      Simulator fresh(scene, scanners, on(engine));
+      expect_alike(simulator, fresh, 2);
+      const NetworkCounts counts = simulator.evaluate_sampled({&pair, 1}, sample).front(),
+                          expected = fresh.evaluate_sampled({&pair, 1}, sample).front();
+      EXPECT_EQ(counts.registration.pairs, expected.registration.pairs);
+      EXPECT_EQ(counts.registration.surface, expected.registration.surface);
+    }
+  }
+}
+
+TEST(SetScanners, StaysAsItWasAfterAnError) {
+  Dice dice(11);
+  const Scene scene = plant(dice, 3);
+  const SimulatorConfig config{.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.05};
+  Simulator simulator(scene, coarse_scanner(2), config);
+  Scanner wrong = coarse_scanner(2);
+  wrong.height_m = -1;
+  EXPECT_THROW(simulator.set_scanners({}), Error);
+  EXPECT_THROW(simulator.set_scanners({&wrong, 1}), Error);
+  Simulator around = surroundings_of(simulator);
+  EXPECT_THROW(around.set_scanners(simulator.scanners()), Error);
+  Simulator fresh(scene, coarse_scanner(2), config);
+  expect_alike(simulator, fresh, 1);
 }
 
 // Voxels of a changed grid are those of a new one, brick by brick.

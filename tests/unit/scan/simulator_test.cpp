@@ -23,6 +23,7 @@
 #include "trace/tracer_maker.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/registration.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage {

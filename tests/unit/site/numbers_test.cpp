@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vantage/error.hpp"
+#include "vantage/optimiser.hpp"
 #include "vantage/panorama.hpp"
 #include "vantage/question.hpp"
 #include "vantage/site.hpp"

@@ -142,7 +142,7 @@ TEST(Site, MakesGroundAndSimulatorOnce) {
   EXPECT_TRUE(moved.area().locate(moved.area().project({4, 4, 0}).value()).has_value());
 }
 
-TEST(Site, TakesFurtherScannersUntilTheSimulatorIsThere) {
+TEST(Site, TakesFurtherScanners) {
   SiteOptions options = on_embree();
   options.user_size_m = 0.5, options.spacing_m = 0.2;
   Site site(floor_of(8), options);
@@ -151,11 +151,20 @@ TEST(Site, TakesFurtherScannersUntilTheSimulatorIsThere) {
   EXPECT_EQ(site.place_of(site.scanner()), 0u);
   EXPECT_EQ(site.place_of(finer), 1u);
   EXPECT_EQ(site.place_of(finer), 1u);
-  EXPECT_EQ(site.simulator().scanners().size(), 2u);
+  Simulator& simulator = site.simulator();
+  EXPECT_EQ(simulator.scanners().size(), 2u);
   EXPECT_EQ(site.place_of(finer), 1u);
+  const Simulator& surroundings = site.surroundings();
+  EXPECT_EQ(surroundings.scanners().size(), 2u);
   finer.azimuth_step = Angle::degrees(0.3);
+  EXPECT_EQ(site.place_of(finer), 2u) << "also once the simulator is made";
+  EXPECT_EQ(simulator.scanners().size(), 3u);
+  EXPECT_EQ(&site.surroundings(), &surroundings);
+  EXPECT_EQ(surroundings.scanners().size(), 3u);
+  finer.height_m = -1;
   EXPECT_THROW(site.place_of(finer), Error);
-  EXPECT_EQ(site.scanners().size(), 2u);
+  EXPECT_EQ(site.scanners().size(), 3u);
+  EXPECT_EQ(simulator.scanners().size(), 3u);
 }
 
 TEST(Site, StandsOnPartsThatTheCallerMade) {

@@ -63,7 +63,8 @@ struct Rebuilding : testing::Test {
   Device device;
   std::vector<std::string> warned;
   RebuildingTracer make() {
-    return {[this] { return std::make_unique<FragileTracer>(device); },
+    return {[this](const TraceScene&) { return std::make_unique<FragileTracer>(device); },
+            {},
             [this](const std::string& line) { warned.push_back(line); }};
   }
 };

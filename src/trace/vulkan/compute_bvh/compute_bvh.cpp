@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/compute_bvh/compute_bvh.hpp"
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "embedded_shaders.hpp"
 #include "trace/vulkan/compute_bvh/bvh.hpp"
+#include "trace/vulkan/compute_bvh/moving_bvh.hpp"
 
 namespace vantage::vulkan {
 namespace {
@@ -13,6 +18,7 @@ class ComputeBvh final : public Traversal, public RayWalk {
     const Bvh bvh = build_placed_bvh(scene.positions, scene.triangles, scene.ids, scene.placed);
     nodes_ = make_device_buffer<BvhNode>(device, commands, bvh.nodes, "BVH nodes");
     triangles_ = make_device_buffer<BvhTriangle>(device, commands, bvh.triangles, "BVH triangles");
+    node_count_ = bvh.nodes.size(), triangle_count_ = bvh.triangles.size();
     if (!bvh.placements.empty())
       placements_ = make_device_buffer<BvhPlacement>(device, commands, bvh.placements, "BVH placements");
   }
@@ -35,8 +41,28 @@ class ComputeBvh final : public Traversal, public RayWalk {
     return TilePass{shaders::tile_starts, tile_starts * sizeof(TileStart)};
   }
 
+  // The first move reads the tree back, for which others need no memory on the host.
+  bool move(Commands& commands, const TraversalScene& scene, std::span<const KeptRun> moved) override {
+    if (moved.empty()) return true;
+    if (!moving_) {
+      std::vector<BvhNode> nodes(node_count_);
+      std::vector<BvhTriangle> triangles(triangle_count_);
+      commands.download(nodes_, nodes.data(), std::span(nodes).size_bytes());
+      commands.download(triangles_, triangles.data(), std::span(triangles).size_bytes());
+      moving_.emplace(std::move(nodes), triangles);
+    }
+    const std::optional<MovingBvh::Change> change = moving_->move(scene.positions, scene.triangles, moved);
+    if (!change) return false;
+    commands.scatter<BvhNode>(nodes_, change->nodes, change->node_at);
+    commands.scatter<BvhTriangle>(triangles_, change->triangles, change->triangle_at);
+    moving_->take(*change);
+    return true;
+  }
+
  private:
   Buffer nodes_, triangles_, placements_;
+  std::size_t node_count_ = 0, triangle_count_ = 0;
+  std::optional<MovingBvh> moving_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/philox.hpp"
+#include "trace/vulkan/compute_bvh/moving_bvh.hpp"
 
 namespace vantage {
 namespace {
@@ -210,6 +211,63 @@ TEST(Bvh, IsTheSameTreeWhateverTheThreads) {
   ASSERT_EQ(many.nodes.size(), alone.nodes.size());
   EXPECT_EQ(std::memcmp(many.nodes.data(), alone.nodes.data(), many.nodes.size() * sizeof(BvhNode)), 0);
   EXPECT_EQ(std::memcmp(many.triangles.data(), alone.triangles.data(), many.triangles.size() * sizeof(BvhTriangle)), 0);
+}
+
+// Moves some triangles again and again, and checks each time that boxes hold what is below them.
+TEST(MovingBvh, HoldsWhatMoves) {
+  Soup soup = random_soup(3000);
+  Bvh bvh = soup.bvh();
+  MovingBvh moving(bvh.nodes, bvh.triangles);
+  RandomStream random(4);
+  const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random.uniform() * n); };
+  for (int time = 0; time < 20; ++time) {
+    const std::vector<KeptRun> moved{{below(1000), 1 + below(400), 0}, {2000 + below(500), 1 + below(400), 0}};
+    for (const KeptRun& run : moved)
+      for (std::uint32_t t = run.first; t < run.first + run.count; ++t)
+        for (const std::uint32_t v : soup.triangles[t]) soup.positions[v].y += 0.05f * (time % 3 == 0 ? 1.0f : -1.0f);
+    const auto change = moving.move(soup.positions, soup.triangles, moved);
+    ASSERT_TRUE(change);
+    moving.take(*change);
+    for (std::size_t k = 0; k < change->node_at.size(); ++k) bvh.nodes[change->node_at[k]] = change->nodes[k];
+    for (std::size_t k = 0; k < change->triangle_at.size(); ++k)
+      bvh.triangles[change->triangle_at[k]] = change->triangles[k];
+    EXPECT_EQ(change->triangles.size(), moved[0].count + moved[1].count);
+    EXPECT_LT(change->nodes.size(), bvh.nodes.size());
+    EXPECT_TRUE(Walk(bvh).sees_each_triangle_once());
+    for (const BvhTriangle& t : bvh.triangles) {
+      const BvhTriangle expected = bvh_triangle(soup.positions, soup.triangles[t.id & ~surveyed_bit], t.id);
+      EXPECT_EQ(std::memcmp(&t, &expected, sizeof t), 0);
+    }
+  }
+}
+
+TEST(MovingBvh, LeavesItToANewTreeWhereItsOwnWouldBeSlowOrTooTight) {
+  Soup soup = random_soup(3000);
+  const Bvh bvh = soup.bvh();
+  const MovingBvh moving(bvh.nodes, bvh.triangles);
+  const std::vector<KeptRun> every_tenth = [] {
+    std::vector<KeptRun> runs;
+    for (std::uint32_t t = 0; t < 3000; t += 10) runs.push_back({t, 1, 0});
+    return runs;
+  }();
+  const Soup before = soup;
+  for (const KeptRun& run : every_tenth)
+    for (const std::uint32_t v : soup.triangles[run.first]) soup.positions[v].x = 10 - soup.positions[v].x;
+  EXPECT_FALSE(moving.move(soup.positions, soup.triangles, every_tenth)) << "its boxes would overlap all over";
+  soup = before;
+  for (const std::uint32_t v : soup.triangles[0]) soup.positions[v].z += 1e4f;
+  EXPECT_FALSE(moving.move(soup.positions, soup.triangles, std::vector<KeptRun>{{0, 1, 0}})) << "far away";
+}
+
+TEST(MovingBvh, TakesATreeOfASingleLeaf) {
+  Soup soup = random_soup(1);
+  Bvh bvh = soup.bvh();
+  MovingBvh moving(bvh.nodes, bvh.triangles);
+  for (const std::uint32_t v : soup.triangles[0]) soup.positions[v].x -= 0.1f;
+  const auto change = moving.move(soup.positions, soup.triangles, std::vector<KeptRun>{{0, 1, 0}});
+  ASSERT_TRUE(change);
+  bvh.nodes = change->nodes, bvh.triangles = change->triangles;
+  EXPECT_TRUE(Walk(bvh).sees_each_triangle_once());
 }
 
 }  // namespace
