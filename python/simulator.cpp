@@ -217,6 +217,10 @@ void add_simulators(py::module_& m) {
            "'compute_bvh' follows meshes\nthat move; otherwise the structure is rebuilt. Returns whether the rest was "
            "kept. No other call may run meanwhile.\nRaises Error as `Simulator` does, and stays as it was; "
            "invalid_argument for the simulator of a site.")
+      .def(
+          "set_scanners", &Simulators::set_scanners, py::arg("scanners"), py::call_guard<py::gil_scoped_release>(),
+          "Takes other scanners. Results are then those of a new Simulator with them, bit for bit; voxels are kept. No "
+          "other call\nmay run meanwhile. Raises Error as `set_scene`.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
       .def("voxel_weights", &voxel_weights, "Weight of each voxel in coverage: (N_v,).")
       .def("goal_densities", &goal_densities, "Points wanted in each voxel: (N_v,).")

@@ -3,7 +3,9 @@
 
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "long_call.hpp"
 
@@ -13,8 +15,9 @@ namespace vantage::python {
 struct Simulators {
   explicit Simulators(Simulator own) : owned(std::move(own)), simulator(*owned) {}
   /// Borrows the site's.
-  explicit Simulators(Site& site) : simulator(site.simulator()) {}
+  explicit Simulators(Site& of) : site(&of), simulator(of.simulator()) {}
 
+  Site* site = nullptr;
   std::optional<Simulator> owned;
   Simulator& simulator;
   std::mutex making = {};
@@ -22,17 +25,28 @@ struct Simulators {
 
   /// Made at first use.
   Simulator& surroundings() {
+    if (site) return site->surroundings();
     const std::lock_guard lock(making);
     if (!of_all_surfaces) of_all_surfaces = surroundings_of(simulator);
     return *of_all_surfaces;
   }
   bool set_scene(const Scene& scene) {
-    if (!owned)
-      throw Error(Errc::invalid_argument,
-                  "the simulator of a site keeps the site's scene; make a Simulator of the scene, or another Site");
+    refuse_of_site("scene");
     const bool kept = simulator.set_scene(scene);
     of_all_surfaces.reset();
     return kept;
+  }
+  void set_scanners(const std::vector<Scanner>& scanners) {
+    refuse_of_site("scanners");
+    simulator.set_scanners(scanners);
+    of_all_surfaces.reset();
+  }
+
+ private:
+  void refuse_of_site(const std::string& what) const {
+    if (site)
+      throw Error(Errc::invalid_argument, "the simulator of a site keeps the site's " + what +
+                                              "; make a Simulator of the scene, or another Site");
   }
 };
 

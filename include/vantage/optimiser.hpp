@@ -34,7 +34,6 @@ struct CmaEsConfig {
 
 /// Settings of MO-CMA-ES alone.
 struct MoCmaEsConfig {
-  using Scheme = MoScheme;
   MoScheme scheme = MoScheme::steady_state;  ///< How offspring compete.
   std::size_t batch = 1;                     ///< Offspring asked for at once in the steady state, to keep a GPU busy.
   /// The next four apply to the steady state; all 0 gives the published algorithm. With them it needs a fraction of the

@@ -121,6 +121,21 @@ class ScanArrays(unittest.TestCase):
 
 
 class Changes(unittest.TestCase):
+    def test_a_simulator_takes_other_scanners(self):
+        scene = vantage.Scene.load(os.path.join(SOURCE, "data", "four_walls.glb"))
+        coarse, fine = (vantage.Scanner(azimuth_step_deg=step, zenith_step_deg=step) for step in (2, 1))
+        config = {"engine": "embree", "user_size_m": 0.4, "point_spacing_m": 0.1}
+        simulator = vantage.Simulator(scene, coarse, **config)
+        heads = np.array([[8, 0, 1.8], [0, 8, 1.8]])
+        simulator.evaluate(heads, surroundings=True)
+        simulator.set_scanners([fine])
+        got, wanted = (each.evaluate(heads, surroundings=True)
+                       for each in (simulator, vantage.Simulator(scene, fine, **config)))
+        self.assertEqual(got.coverage, wanted.coverage)
+        np.testing.assert_array_equal(got.scan_overlap_matrix, wanted.scan_overlap_matrix)
+        with self.assertRaisesRegex(vantage.Error, "of a site keeps the site's scanners"):
+            vantage.Site(scene, engine="embree").simulator.set_scanners([fine])
+
     def test_a_simulator_takes_a_changed_scene(self):
         scene = vantage.Scene.load(os.path.join(SOURCE, "data", "industrial_20k.glb"))
         scanner = vantage.Scanner(azimuth_step_deg=1, zenith_step_deg=1)
