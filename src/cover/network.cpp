@@ -5,10 +5,10 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
-#include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "core/parse.hpp"
 #include "vantage/error.hpp"
 
@@ -35,18 +35,11 @@ double weakest_link(const CoverProblem& problem, std::span<const std::size_t> ne
     for (const StationGraph::Overlap& other : problem.graph->overlaps(network[at]))
       if (places[other.candidate] < at && other.share > 0) edges.push_back({other.share, at, places[other.candidate]});
   std::ranges::sort(edges, std::greater<>{}, &Edge::share);
-  std::vector<std::uint32_t> above(network.size());
-  std::iota(above.begin(), above.end(), 0u);
-  const auto root = [&](std::uint32_t at) {
-    while (above[at] != at) at = above[at] = above[above[at]];
-    return at;
-  };
+  DisjointSets parts(network.size());
   double weakest = 1;
   std::size_t missing = network.size() - 1;
   for (const Edge& edge : edges) {
-    const std::uint32_t a = root(edge.a), b = root(edge.b);
-    if (a == b) continue;
-    above[a] = b;
+    if (!parts.join(edge.a, edge.b)) continue;
     weakest = std::min(weakest, static_cast<double>(edge.share));
     if (--missing == 0) return weakest;
   }

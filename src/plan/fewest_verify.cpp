@@ -102,7 +102,7 @@ void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span
     between.insert(between.end(), along.begin(), along.end());
   }
   choice.table.add(between, {.report = {}, .stop = stop});
-  raise_margins(choice, {}, stop);
+  choose_again(choice, stop);
 }
 
 // Chosen stations with a link of which only the sample tells that it holds, and which known links do not replace.
@@ -267,8 +267,7 @@ double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
   return entry.searched.at(choice.asked.measure()).value - entry.value(choice.asked.measure());
 }
 
-void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop) {
-  choice.margins.coverage += kBeyond * missing.coverage, choice.margins.link += kBeyond * missing.link;
+void choose_again(FewestChoice& choice, const std::stop_token& stop) {
   choice.one_fewer.reset();
   // From the present network, at this number, or else with one more.
   const CoverProblem asked = cover_problem(choice);
@@ -279,6 +278,11 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
   else
     choose_from(choice, std::move(same), stop);
   strengthen(choice, stop);
+}
+
+void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop) {
+  choice.margins.coverage += kBeyond * missing.coverage, choice.margins.link += kBeyond * missing.link;
+  choose_again(choice, stop);
 }
 
 bool keep_to_stairs(FewestChoice& choice, VerifiedNetworks& verified, const std::stop_token& stop) {
@@ -310,7 +314,7 @@ void check_links(FewestChoice& choice, const PlacementOracle& oracle, const Leas
     // Candidates that may mend a gap are checked before one of them is chosen.
     if (const auto around = around_gaps(choice, links_of(choice)); !around.empty() && !check(around)) return;
     const std::vector<std::size_t> before = choice.network.chosen;
-    raise_margins(choice, {}, stop);
+    choose_again(choice, stop);
     if (choice.network.violation > 0)
       look_between(choice, oracle, choice.stations_of(choice.network), links_of(choice), stop);
     if (choice.network.chosen == before) return;

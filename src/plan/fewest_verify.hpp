@@ -80,14 +80,17 @@ double verify(const FewestChoice& choice, VerifiedNetworks& verified);
 // ties past them. Returns true if another network is chosen.
 bool keep_to_stairs(FewestChoice& choice, VerifiedNetworks& verified, const std::stop_token& stop);
 
-// Chooses anew with margins raised, by somewhat more than what is missing.
+// Chooses again from the present network, of as many stations or else of one more.
+void choose_again(FewestChoice& choice, const std::stop_token& stop);
+
+// The same with margins raised, by somewhat more than what is missing.
 void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop);
 
 // Chooses again with further stations for what the last verified network, the chosen one, lacks of some meshes. False
 // if it lacks nothing of them.
 bool repair_meshes(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
-// The same by what the best verified network is short of. If links are too weak, the table takes in the overlaps that
+// Chooses again by what the best verified network is short of. If links are too weak, the table takes in the overlaps that
 // every ray showed of the chosen stations, and others for the least that their sample admits: links that hold stay, and
 // only the others are mended, by candidates on the way between stations where no known one does. False where that
 // cannot help.

@@ -151,8 +151,8 @@ void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simu
   context.ask(problem);
 }
 
-// Other voxels tell which links do not hold, too. Mends these, on sites that have hundreds.
-void check_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
+// Mends the links that other voxels tell not to hold, on sites that have hundreds.
+void mend_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!has_hundreds_of_links(choice, context)) return;
   Simulator& surroundings = context.surroundings();
   const std::uint64_t known_by = context.link_voxels(), all = surroundings.voxel_count();
@@ -255,14 +255,14 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   };
   keep_only_what_pays();
   calibrate(choice, context, simulator, watch);
-  check_links(choice, context, simulator, watch);
-  if (visit_units(choice, watch.stop)) check_links(choice, context, simulator, watch);
-  if (capture_meshes(choice, watch.stop)) check_links(choice, context, simulator, watch);
+  mend_links(choice, context, simulator, watch);
+  if (visit_units(choice, watch.stop)) mend_links(choice, context, simulator, watch);
+  if (capture_meshes(choice, watch.stop)) mend_links(choice, context, simulator, watch);
   if (context.pays && add_what_pays(choice, *context.pays, watch.stop)) {
     keep_only_what_pays();  // swaps may have gained so much that the last one does not pay any more
-    check_links(choice, context, simulator, watch);
+    mend_links(choice, context, simulator, watch);
   }
-  if (stand_aside(choice, context.oracle(), watch.stop)) check_links(choice, context, simulator, watch);
+  if (stand_aside(choice, context.oracle(), watch.stop)) mend_links(choice, context, simulator, watch);
   return choice;
 }
 
@@ -291,7 +291,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, PlanC
   const auto verify_again = [&] {
     visit_units(choice, watch.stop);
     stand_aside(choice, context.oracle(), watch.stop);
-    check_links(choice, context, simulator, watch);
+    mend_links(choice, context, simulator, watch);
     overstated = verify(choice, verified);
     traced += choice.network.chosen.size();
   };
