@@ -16,8 +16,8 @@ set(VANTAGE_HEADERS_scan
     attainable error evaluate evaluation image measure objective on_site panorama placement progress rays registration scanner scene scene_builder settings simulator site
     station_setup targets trace types version work)
 # Optimisers, covers, plans, scans that were taken.
-set(VANTAGE_MODULES_plan optimise cover plan taken)
-set(VANTAGE_HEADERS_plan candidates cover missed optimiser planner question search_types taken_scans)
+set(VANTAGE_MODULES_plan optimise cover candidates search plan taken)
+set(VANTAGE_HEADERS_plan candidates cover missed optimiser planner problem question search_types taken_scans)
 # Point clouds, tables and pictures.
 set(VANTAGE_MODULES_files export)
 set(VANTAGE_HEADERS_files export next summary)

@@ -18,6 +18,7 @@
 #include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage {
 
@@ -178,5 +179,24 @@ struct ExactResult {
 /// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A
 /// baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument if no candidate can stand.
 ExactResult exact_network(Site& site, const ExactConfig& config = {}, const Progress& progress = {});
+
+/// Targets that a network wants, and what they bring.
+struct TargetProposal {
+  std::vector<Target> targets;                ///< The given ones, then the proposed ones, the most useful first.
+  RegistrationError without = {}, with = {};  ///< Predicted without any target, and with all.
+  double reach_m = 0;                         ///< `target_reach_m()` of the first scanner.
+};
+
+/// Proposes as few targets as bring the predicted error to what `options` allow: each time the one of some 400 places
+/// on reached ground that lowers the mean square error over the covered surface most, at last without those that the
+/// others make needless. It ends early where another one would gain less than a fifth of a station's share of that
+/// error, unless `TargetOptions::least` asks for more. No place is in a passage, where the leaf of a door swings, by a
+/// station or on glass; no station measures three that are nearly on a line. `given`: targets and control points that
+/// are there. No random numbers. Returns nothing if it was stopped. Throws Error invalid_argument, and what the
+/// simulator throws.
+std::optional<TargetProposal> propose_targets(Site& site, std::span<const PlacedStation> stations,
+                                              const RegistrationOptions& registration = {},
+                                              const TargetOptions& options = {}, std::vector<Target> given = {},
+                                              const Progress& progress = {});
 
 }  // namespace vantage

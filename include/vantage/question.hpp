@@ -58,6 +58,12 @@ const SettingTable<PlanConfig>& plan_settings();
 /// invalid_argument.
 SurveyProblem survey_problem(const Site& site, const SurveyQuestion& question = {});
 
+/// The surveyor's question: the fewest stations that capture so much of what is attainable, all linked along some
+/// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
+/// least registration error.
+SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size_t stations_min = 1,
+                              std::size_t stations_max = max_stations, double apart_m = 1);
+
 /// Plans a survey of a site: `plan()` of the question's problem. Throws as that does.
 PlanResult plan(Site& site, const SurveyQuestion& question = {}, const PlanConfig& config = {},
                 const PlanWatch& watch = {});

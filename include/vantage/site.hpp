@@ -172,4 +172,8 @@ class Site {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Turns pairs u1, v1, u2, v2, … into stations: finds the ground, raises heads by the scanner's height, checks for
+/// clashes.
+std::vector<PlacedStation> place_stations(Site& site, std::span<const double> uvs);
+
 }  // namespace vantage

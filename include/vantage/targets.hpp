@@ -19,8 +19,6 @@
 
 namespace vantage {
 
-class Site;
-
 /// Levels of accuracy (U.S. Institute of Building Documentation, Level of Accuracy Specification Guide, 2016): a bound
 /// of the error at 95 %.
 enum class AccuracyClass {
@@ -79,25 +77,6 @@ void check(const TargetOptions& options);
 
 /// Largest distance at which a scanner measures a target of its own height.
 double target_reach_m(const Scanner& scanner, const TargetOptions& options = {});
-
-/// Targets that a network wants, and what they bring.
-struct TargetProposal {
-  std::vector<Target> targets;                ///< The given ones, then the proposed ones, the most useful first.
-  RegistrationError without = {}, with = {};  ///< Predicted without any target, and with all.
-  double reach_m = 0;                         ///< `target_reach_m()` of the first scanner.
-};
-
-/// Proposes as few targets as bring the predicted error to what `options` allow: each time the one of some 400 places
-/// on reached ground that lowers the mean square error over the covered surface most, at last without those that the
-/// others make needless. It ends early where another one would gain less than a fifth of a station's share of that
-/// error, unless `TargetOptions::least` asks for more. No place is in a passage, where the leaf of a door swings, by a
-/// station or on glass; no station measures three that are nearly on a line. `given`: targets and control points that
-/// are there. No random numbers. Returns nothing if it was stopped. Throws Error invalid_argument, and what the
-/// simulator throws.
-std::optional<TargetProposal> propose_targets(vantage::Site& site, std::span<const PlacedStation> stations,
-                                              const RegistrationOptions& registration = {},
-                                              const TargetOptions& options = {}, std::vector<Target> given = {},
-                                              const Progress& progress = {});
 
 /// Reads targets from a table as `read_stations_csv()` does, with columns name, x, y, z of the centre, and for control
 /// points sigma, in metres. Throws Error: io, malformed_file.

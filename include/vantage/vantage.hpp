@@ -19,6 +19,7 @@
 #include "vantage/panorama.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/problem.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/question.hpp"
 #include "vantage/rays.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/setting_list.hpp"
 #include "core/setting_table.hpp"
 #include "core/text.hpp"
 #include "vantage/on_site.hpp"
@@ -32,6 +33,26 @@ std::string to_string(const AccessWindow& window) {
   constexpr double kMidnight_min = 24 * 60;
   return window.rooms + "=" + clock_text(window.from_min) + "-" +
          (window.to_min == kMidnight_min ? "24:00" : clock_text(window.to_min));
+}
+
+Settings settings(const OnSiteOptions& options) {
+  SettingList list;
+  list.add("set_up_min", options.set_up_min, {"set-up"})
+      .add("photos_min", options.photos_min, {"photos"})
+      .add("walking_m_per_s", options.walking_m_per_s, {"walking"})
+      .add("detour", options.detour)
+      .add("entrance", options.entrance);
+  // Sessions are made of the answer's round, and decide nothing in a search for it.
+  if (options.day_min)
+    list.add("day", number(*options.day_min) + "min", {"day", false})
+        .add("crews", options.crews, {"crews", false})
+        .add("day_start", clock_text(options.day_start_min), {"day-start", false});
+  if (!options.windows.empty()) {
+    std::vector<std::string> windows;
+    for (const AccessWindow& window : options.windows) windows.push_back(to_string(window));
+    list.add("windows", windows, {"window", false});
+  }
+  return list.take();
 }
 
 const SettingTable<OnSiteOptions>& on_site_settings() {

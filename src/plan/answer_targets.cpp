@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plan/confirm.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/targets.hpp"
 
 namespace vantage {

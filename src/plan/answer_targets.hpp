@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "plan/measures.hpp"
+#include "search/measures.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/site.hpp"

@@ -14,7 +14,7 @@
 #include "evaluate/evaluator.hpp"
 #include "plan/answer.hpp"
 #include "plan/limits.hpp"
-#include "plan/scaled_objectives.hpp"
+#include "search/scaled_objectives.hpp"
 
 namespace vantage {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "plan/search.hpp"
+#include "search/search.hpp"
 
 namespace vantage {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "plan/candidate_table.hpp"
-#include "plan/floor_units.hpp"
-#include "plan/placement_oracle.hpp"
+#include "candidates/candidate_table.hpp"
+#include "candidates/floor_units.hpp"
+#include "site/placement_oracle.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/planner.hpp"
 

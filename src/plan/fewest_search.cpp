@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "plan/choose_optimiser.hpp"
+#include "search/choose_optimiser.hpp"
 
 namespace vantage {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "core/graph.hpp"
 #include "cover/network.hpp"
-#include "plan/decision_space.hpp"
 #include "plan/drop_networks.hpp"
+#include "search/decision_space.hpp"
 
 namespace vantage {
 namespace {

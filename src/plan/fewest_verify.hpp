@@ -14,8 +14,8 @@
 
 #include "plan/confirm.hpp"
 #include "plan/fewest_choice.hpp"
-#include "plan/measures.hpp"
-#include "plan/network_evaluator.hpp"
+#include "search/measures.hpp"
+#include "search/network_evaluator.hpp"
 
 namespace vantage {
 
@@ -90,10 +90,10 @@ void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop
 // if it lacks nothing of them.
 bool repair_meshes(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
-// Chooses again by what the best verified network is short of. If links are too weak, the table takes in the overlaps that
-// every ray showed of the chosen stations, and others for the least that their sample admits: links that hold stay, and
-// only the others are mended, by candidates on the way between stations where no known one does. False where that
-// cannot help.
+// Chooses again by what the best verified network is short of. If links are too weak, the table takes in the overlaps
+// that every ray showed of the chosen stations, and others for the least that their sample admits: links that hold
+// stay, and only the others are mended, by candidates on the way between stations where no known one does. False where
+// that cannot help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
             const std::stop_token& stop);
 

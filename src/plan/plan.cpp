@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "candidates/somewhere_to_stand.hpp"
+#include "candidates/spread_positions.hpp"
 #include "core/deadline.hpp"
 #include "core/first_numbers.hpp"
 #include "core/seconds_since.hpp"
@@ -18,8 +20,6 @@
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/plan_time.hpp"
-#include "plan/somewhere_to_stand.hpp"
-#include "plan/spread_positions.hpp"
 #include "plan/what_pays.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "plan/choose_optimiser.hpp"
-#include "plan/identity.hpp"
-#include "plan/spread_positions.hpp"
+#include "candidates/spread_positions.hpp"
+#include "search/choose_optimiser.hpp"
+#include "search/identity.hpp"
 
 namespace vantage {
 namespace {

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "candidates/floor_units.hpp"
 #include "plan/confirm.hpp"
-#include "plan/floor_units.hpp"
-#include "plan/placement_oracle.hpp"
-#include "plan/search.hpp"
-#include "plan/simulator_evaluator.hpp"
+#include "search/search.hpp"
+#include "search/simulator_evaluator.hpp"
+#include "site/placement_oracle.hpp"
 
 namespace vantage {
 

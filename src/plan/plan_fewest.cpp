@@ -11,12 +11,12 @@
 #include <limits>
 #include <utility>
 
+#include "candidates/spread_positions.hpp"
 #include "core/seconds_since.hpp"
 #include "evaluate/storey_ties.hpp"
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
 #include "plan/limits.hpp"
-#include "plan/spread_positions.hpp"
 #include "plan/trade_off.hpp"
 #include "plan/what_pays.hpp"
 #include "vantage/candidates.hpp"

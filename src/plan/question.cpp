@@ -249,11 +249,23 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
   return all;
 }
 
-std::vector<std::uint32_t> equip(Site& site, const SurveyProblem& problem) {
-  if (problem.every_echo) site.detect_every_echo();
-  std::vector<std::uint32_t> places;
-  for (const Scanner& scanner : problem.scanners) places.push_back(site.place_of(scanner));
-  return places;
+SurveyProblem fewest_stations(double capture, double link, std::size_t stations_min, std::size_t stations_max,
+                              double apart_m) {
+  SurveyQuestion question;
+  question.capture = capture, question.link = link, question.apart_m = apart_m;
+  check_settings(question_settings(), question);
+  const std::vector<std::string> goal{"registration"};
+  SurveyProblem problem = survey_problem(goal, stations_min, stations_max);
+  problem.name = "survey";
+  problem.fewest = true;
+  const auto require = [&](const char* name, double limit) {
+    if (limit > 0)
+      problem.requirements.push_back({make_objective(name, problem.settings()), Requirement::Bound::at_least, limit});
+  };
+  require("capture", capture);
+  require("link", link);
+  require("apart", apart_m);
+  return problem;
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "candidates/why_missed.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
 #include "core/parallel.hpp"
@@ -17,7 +18,6 @@
 #include "export/shown_links.hpp"
 #include "export/station_files.hpp"
 #include "export/tables.hpp"
-#include "plan/why_missed.hpp"
 #include "report/report.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"

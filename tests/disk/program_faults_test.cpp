@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "disk/disk_faults.hpp"
-#include "plan/checkpoint.hpp"
+#include "search/checkpoint.hpp"
 #include "unit/cli/program.hpp"
 
 namespace vantage::test {

@@ -8,7 +8,7 @@
 
 #include "core/read_file.hpp"
 #include "disk/disk_faults.hpp"
-#include "plan/checkpoint.hpp"
+#include "search/checkpoint.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/plan/toy_survey.hpp"
 #include "vantage/error.hpp"

@@ -8,7 +8,7 @@
 #include "core/archive.hpp"
 #include "core/read_file.hpp"
 #include "fuzz/target.hpp"
-#include "plan/checkpoint.hpp"
+#include "search/checkpoint.hpp"
 #include "vantage/optimiser.hpp"
 
 namespace vantage::fuzz {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "plan/measures.hpp"
+#include "search/measures.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage::test {

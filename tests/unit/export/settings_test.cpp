@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "export/run_json.hpp"
-#include "plan/checkpoint.hpp"
-#include "plan/identity.hpp"
-#include "plan/measures.hpp"
+#include "search/checkpoint.hpp"
+#include "search/identity.hpp"
+#include "search/measures.hpp"
 #include "trace/tracer_maker.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "unit/export/files.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {

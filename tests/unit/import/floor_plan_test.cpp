@@ -9,6 +9,7 @@
 #include "scene/scene_data.hpp"
 #include "support/site_of.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage::test {

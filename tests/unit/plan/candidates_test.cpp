@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stop_token>
 
-#include "plan/spread_positions.hpp"
+#include "candidates/spread_positions.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "vantage/error.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/checkpoint.hpp"
+#include "search/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 

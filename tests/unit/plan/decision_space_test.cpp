@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/decision_space.hpp"
+#include "search/decision_space.hpp"
 
 #include <gtest/gtest.h>
 

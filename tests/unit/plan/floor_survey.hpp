@@ -11,6 +11,7 @@
 
 #include "plan/fewest_verify.hpp"
 #include "unit/plan/toy_survey.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage::test {
 

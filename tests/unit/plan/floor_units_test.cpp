@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/floor_units.hpp"
+#include "candidates/floor_units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "plan/why_missed.hpp"
+#include "candidates/why_missed.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
 #include "vantage/error.hpp"

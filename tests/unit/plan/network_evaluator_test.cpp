@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/network_evaluator.hpp"
+#include "search/network_evaluator.hpp"
 
 #include <gtest/gtest.h>
 

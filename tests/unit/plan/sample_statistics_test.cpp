@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/sample_statistics.hpp"
+#include "search/sample_statistics.hpp"
 
 #include <gtest/gtest.h>
 

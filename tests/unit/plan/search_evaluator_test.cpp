@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/search_evaluator.hpp"
+#include "search/search_evaluator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 #include "vantage/scene_builder.hpp"
 
 namespace vantage {

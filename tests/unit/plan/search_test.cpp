@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/search.hpp"
+#include "search/search.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <utility>
 
-#include "plan/choose_optimiser.hpp"
-#include "plan/measures.hpp"
-#include "plan/scaled_objectives.hpp"
+#include "search/choose_optimiser.hpp"
+#include "search/measures.hpp"
+#include "search/scaled_objectives.hpp"
 #include "unit/plan/toy_survey.hpp"
 #include "vantage/error.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {

@@ -13,6 +13,7 @@
 #include "support/site_of.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {

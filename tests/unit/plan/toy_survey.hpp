@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "evaluate/visibility.hpp"
-#include "plan/measures.hpp"
-#include "plan/network_evaluator.hpp"
-#include "plan/placement_oracle.hpp"
-#include "plan/search.hpp"
+#include "search/measures.hpp"
+#include "search/network_evaluator.hpp"
+#include "search/search.hpp"
+#include "site/placement_oracle.hpp"
 
 namespace vantage::test {
 
