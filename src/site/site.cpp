@@ -172,7 +172,7 @@ struct Site::Impl {
   bool no_ground = false;  // found out once
   std::optional<ClashChecker> clash;
   std::optional<Simulator> simulator, surroundings;
-  bool surroundings_are_old = false;  // the simulator has taken other scanners
+  bool surroundings_are_old = false;  // since the simulator has taken other scanners; to be made anew in place
   std::recursive_mutex making;
   // Makes a part, or waits until another thread has made it; one part may make another. The isolation keeps oneTBB from
   // giving this thread a task meanwhile that asks for the part.
@@ -432,8 +432,8 @@ Simulator& Site::simulator() {
 Work Site::work() const {
   const std::lock_guard lock(impl_->making);
   Work sum;
-  for (const std::optional<Simulator>* made : {&impl_->simulator, &impl_->surroundings})
-    if (*made) sum = sum + (*made)->work();
+  if (impl_->simulator) sum = sum + impl_->simulator->work();
+  if (impl_->surroundings && !impl_->surroundings_are_old) sum = sum + impl_->surroundings->work();
   return sum;
 }
 Simulator& Site::surroundings() {

@@ -156,11 +156,15 @@ TEST(Site, TakesFurtherScanners) {
   EXPECT_EQ(site.place_of(finer), 1u);
   const Simulator& surroundings = site.surroundings();
   EXPECT_EQ(surroundings.scanners().size(), 2u);
+  site.surroundings().evaluate({{.position = {2, 2, 1.8}}});
   finer.azimuth_step = Angle::degrees(0.3);
   EXPECT_EQ(site.place_of(finer), 2u) << "also once the simulator is made";
   EXPECT_EQ(simulator.scanners().size(), 3u);
+  const Work before = site.work();
   EXPECT_EQ(&site.surroundings(), &surroundings);
   EXPECT_EQ(surroundings.scanners().size(), 3u);
+  site.surroundings().evaluate({{.position = {4, 4, 1.8}}});
+  EXPECT_EQ((site.work() - before).networks, 1u);
   finer.height_m = -1;
   EXPECT_THROW(site.place_of(finer), Error);
   EXPECT_EQ(site.scanners().size(), 3u);
