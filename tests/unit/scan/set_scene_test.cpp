@@ -196,10 +196,11 @@ TEST(SetScene, EqualsANewSimulatorAfterManyChangesOnEveryEngine) {
         if (testing::Test::HasFatalFailure()) return;
       }
     }
-    if (embree)
+    if (embree) {
       EXPECT_GE(kept, 12) << "of 24: most changes are small";
-    else if (engine.engine == Engine::ray_query)
+    } else if (engine.engine == Engine::ray_query) {
       EXPECT_EQ(kept, 0) << engine.device;
+    }
   }
 }
 
