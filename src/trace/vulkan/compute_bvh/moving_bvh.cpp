@@ -12,7 +12,8 @@
 namespace vantage {
 namespace {
 
-// A ray enters as many boxes as their areas tell. By more than this, a new tree is worth its time.
+// A ray enters as many boxes as their areas tell. Where these grow by more than this factor, a new tree is worth its
+// time.
 constexpr double kMostCost = 1.2;
 constexpr std::uint32_t kNowhere = 0xFFFFFFFFu;
 
@@ -27,7 +28,7 @@ double half_area(const vec3& half) {
 }
 double cost_of(const BvhNode& node) { return half_area(node.half0) + half_area(node.half1); }
 
-// Holds what the child's box was made around, and no more but for roundings.
+// Returns a box that holds what the child's was made around, and no more but for roundings.
 Bounds3 without_widening(const vec3& centre, const vec3& half, float widening) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Bounds3 box;
@@ -47,8 +48,8 @@ MovingBvh::MovingBvh(std::vector<BvhNode> nodes, std::span<const BvhTriangle> tr
     : nodes_(std::move(nodes)),
       parent_(nodes_.size()),
       ids_(triangles.size()),
-      place_(triangles.size()),
-      leaf_of_(triangles.size()) {
+      leaf_of_(triangles.size()),
+      place_(triangles.size()) {
   for (std::uint32_t at = 0; at < triangles.size(); ++at) {
     ids_[at] = triangles[at].id;
     place_[triangles[at].id & ~surveyed_bit] = at;

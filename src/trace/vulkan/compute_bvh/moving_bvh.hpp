@@ -34,10 +34,10 @@ class MovingBvh {
 
  private:
   std::vector<BvhNode> nodes_;
-  std::vector<std::uint32_t> parent_;  // of each node; the root's is itself
-  std::vector<std::uint32_t> ids_, place_,
-      leaf_of_;                       // of each place of a triangle; place of each triangle; node of each
-  double built_cost_ = 0, cost_ = 0;  // areas of all boxes
+  std::vector<std::uint32_t> parent_;         // of each node; the root's is itself
+  std::vector<std::uint32_t> ids_, leaf_of_;  // of the triangle at each place: its id, and the node of its leaf
+  std::vector<std::uint32_t> place_;          // of each triangle
+  double built_cost_ = 0, cost_ = 0;          // areas of all boxes
 };
 
 }  // namespace vantage
