@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is searched for, and how: problems, settings of a search, and what it tells meanwhile.
+/// Planning problems, the settings of a search for their networks, and its progress.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct SurveyProblem {
   /// Scanners that each station chooses from, in their order, e.g. one model with finer and finer steps. Empty: the
   /// site's first.
   std::vector<Scanner> scanners = {};
-  /// Whether it is posed for scanners that detect every echo, as the method's are. The site's then do, unless its
+  /// True: it is posed for scanners that detect every echo, as the method's are. The site's then do, unless its
   /// options say what they detect.
   bool every_echo = false;
   /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height.
@@ -103,8 +103,8 @@ std::vector<std::uint32_t> equip(Site& site, const SurveyProblem& problem);
 /// Settings of a search.
 struct PlanConfig {
   std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
-  /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
-  /// traces about twice as many stations as there are candidates.
+  /// Each has `population` evaluations. 0: 100; where the fewest stations are asked for, by the site, so that the
+  /// search traces about twice as many stations as there are candidates.
   std::size_t iterations = 0;
   double sigma0 = 0.2;  ///< First step of the optimiser, as a share of the search area.
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the

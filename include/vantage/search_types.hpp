@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a plan and an optimiser (vantage/optimiser.hpp) tell each other.
+/// Types by which a plan and an optimiser (vantage/optimiser.hpp) tell each other what they find.
 #pragma once
 
 #include <cstddef>

@@ -8,6 +8,13 @@
 
 namespace vantage {
 
+// Settings by their names.
+inline nlohmann::ordered_json settings_json(const Settings& settings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const Setting& setting : settings) json[setting.name] = nlohmann::ordered_json::parse(setting.json);
+  return json;
+}
+
 // Settings as options, so that they can be given to --config again.
 inline nlohmann::json options_json(const Settings& settings) {
   nlohmann::json options = nlohmann::json::object();

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/json_text.hpp"
+#include "core/options_json.hpp"
 #include "export/station_cells.hpp"
 #include "export/station_json.hpp"
 #include "vantage/candidates.hpp"
@@ -21,12 +22,6 @@ using nlohmann::ordered_json;
 
 ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-ordered_json to_json(const Settings& settings) {
-  ordered_json json = ordered_json::object();
-  for (const Setting& setting : settings) json[setting.name] = ordered_json::parse(setting.json);
-  return json;
-}
-
 ordered_json scene_json(const Scene& scene) {
   char fingerprint[17];
   std::snprintf(fingerprint, sizeof fingerprint, "%016llx", static_cast<unsigned long long>(scene.fingerprint()));
@@ -38,18 +33,18 @@ ordered_json scene_json(const Scene& scene) {
           {"meshes", scene.meshes().size()},
           {"surveyed_meshes", surveyed},
           {"bounds", {to_json(box.min), to_json(box.max)}},
-          {"options", to_json(settings(scene.options()))}};
+          {"options", settings_json(settings(scene.options()))}};
 }
 
 ordered_json scanner_json(const Scanner& scanner) {
-  ordered_json json = to_json(settings(scanner));
+  ordered_json json = settings_json(settings(scanner));
   json["rays"] = scanner.rays();
   return json;
 }
 
 ordered_json plan_json(const PlanResult& result) {
-  ordered_json json = to_json(settings(result.problem));
-  json.update(to_json(settings(result.config)));
+  ordered_json json = settings_json(settings(result.problem));
+  json.update(settings_json(settings(result.config)));
   json["population_used"] = result.population, json["batch_used"] = result.batch;
   return json;
 }
@@ -279,15 +274,15 @@ ordered_json run_parameters(const Simulator& simulator, const PlanResult* result
                        {"driver", simulator.engine().driver},
                        {"scene", scene_json(simulator.scene())},
                        {"scanner", scanner_json(simulator.scanner())},
-                       {"simulation", to_json(settings(simulator.config()))},
+                       {"simulation", settings_json(settings(simulator.config()))},
                        {"voxels", simulator.voxel_count()},
                        {"voxel_size_m", simulator.voxel_size_m()},
                        {"goal_density", simulator.goal_density()}};
   if (simulator.scanners().size() > 1)
     for (const Scanner& scanner : simulator.scanners()) json["scanners"].push_back(scanner_json(scanner));
   if (!result) return json;
-  json["walkable"] = to_json(settings(result->walkable));
-  json["security"] = to_json(settings(result->security));
+  json["walkable"] = settings_json(settings(result->walkable));
+  json["security"] = settings_json(settings(result->security));
   json["plan"] = plan_json(*result);
   return json;
 }

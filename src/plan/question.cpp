@@ -115,7 +115,6 @@ std::optional<double> number_in(const std::string& text) {
 // Returns the site's scanner with each of these steps.
 std::vector<Scanner> scanners_with(const Site& site, const std::vector<std::string>& steps, bool every_echo) {
   std::vector<Scanner> scanners;
-  std::uint32_t made = 0;
   for (const std::string& step : steps) {
     Scanner scanner = site.scanner();
     if (every_echo && !site.options().detection) detect_every_echo(scanner);
@@ -135,8 +134,9 @@ std::vector<Scanner> scanners_with(const Site& site, const std::vector<std::stri
         scanner.set_directions(preset.directions, preset.times_s);
       scanner.points_per_second = preset.points_per_second;
     }
-    if (place_in(scanners, scanner) < made++)
+    if (place_in(scanners, scanner) < scanners.size())
       throw Error(Errc::invalid_argument, "search-step: '" + step + "' is there twice");
+    scanners.push_back(std::move(scanner));
   }
   return scanners;
 }

@@ -223,8 +223,11 @@ struct Simulator::Impl {
     bool kept = differs.has_value();
     // Few changed meshes are added to the estimate; otherwise, or if the sum does not fit, all are looked at.
     std::uint64_t needed_then = differs ? needed_bytes + bytes_of_new(data_then, *differs) : 0;
-    if (!differs || needed_then > memory_limit(config.max_memory_bytes))
-      needed_then = require_memory(later, scanners, config).bytes;
+    bool all_looked_at = false;
+    const auto look_at_all = [&] {
+      if (!std::exchange(all_looked_at, true)) needed_then = require_memory(later, scanners, config).bytes;
+    };
+    if (!differs || needed_then > memory_limit(config.max_memory_bytes)) look_at_all();
     const std::shared_ptr<const VoxelGrid> grid_then =
         build_grid(data_then, config, spacings,
                    [&](double user_size_m) -> std::optional<VoxelGrid> {
@@ -233,7 +236,7 @@ struct Simulator::Impl {
                        if (auto changed = grid->changed(data(), data_then, *differs, user_size_m)) return changed;
                      }
                      kept = false;
-                     needed_then = require_memory(later, scanners, config).bytes;
+                     look_at_all();
                      return VoxelGrid::build(data_then, user_size_m, {});
                    },
                    {});
@@ -244,7 +247,7 @@ struct Simulator::Impl {
     std::unique_ptr<Tracer> tracer_then;
     if (!differs || !tracer->take(shared, *differs)) {
       kept = false;
-      needed_then = require_memory(later, scanners, config).bytes;
+      look_at_all();
       tracer_then = make_own_tracer(shared);
     }
     // No error from here on.

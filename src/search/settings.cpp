@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/options_json.hpp"
 #include "core/setting_list.hpp"
 #include "core/text.hpp"
 #include "vantage/problem.hpp"
@@ -16,12 +17,6 @@ nlohmann::ordered_json to_json(const Objective& objective) {
           {"worst", objective.scale.worst},
           {"by_alpha", objective.by_alpha},
           {"parameters", objective.parameters}};
-}
-
-nlohmann::ordered_json to_json(const Scanner& scanner) {
-  nlohmann::ordered_json json;
-  for (const Setting& setting : settings(scanner)) json[setting.name] = nlohmann::ordered_json::parse(setting.json);
-  return json;
 }
 
 nlohmann::ordered_json to_json(const std::vector<Target>& targets) {
@@ -63,7 +58,7 @@ Settings settings(const SurveyProblem& problem) {
   if (!problem.existing_setups.empty()) setups.add("existing_setups", problem.existing_setups);
   if (!problem.scanners.empty()) {
     nlohmann::ordered_json scanners = nlohmann::ordered_json::array();
-    for (const Scanner& scanner : problem.scanners) scanners.push_back(to_json(scanner));
+    for (const Scanner& scanner : problem.scanners) scanners.push_back(settings_json(settings(scanner)));
     setups.add("scanners", scanners);
   }
   if (problem.every_echo) setups.add("every_echo", true);

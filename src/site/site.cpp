@@ -369,9 +369,12 @@ const SecurityVolume& Site::security() const noexcept { return impl_->security; 
 const std::string& Site::crs() const noexcept { return impl_->options.crs; }
 
 std::uint32_t Site::place_of(const Scanner& scanner) {
-  std::vector<Scanner> all = impl_->scanners;
-  const std::uint32_t place = place_in(all, scanner);
-  if (all.size() > impl_->scanners.size()) impl_->take_scanners(std::move(all));
+  const std::uint32_t place = place_in(impl_->scanners, scanner);
+  if (place == impl_->scanners.size()) {
+    std::vector<Scanner> all = impl_->scanners;
+    all.push_back(scanner);
+    impl_->take_scanners(std::move(all));
+  }
   return place;
 }
 

@@ -99,12 +99,10 @@ std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
 
 void detect_every_echo(Scanner& scanner) { scanner.detection_range_m = 0, scanner.detection_reflectivity = 1; }
 
-std::uint32_t place_in(std::vector<Scanner>& scanners, const Scanner& scanner) {
+std::uint32_t place_in(std::span<const Scanner> scanners, const Scanner& scanner) {
   scanner.check();
   const auto found = std::ranges::find_if(scanners, [&](const Scanner& known) { return same(known, scanner); });
-  const auto place = static_cast<std::uint32_t>(found - scanners.begin());
-  if (found == scanners.end()) scanners.push_back(scanner);
-  return place;
+  return static_cast<std::uint32_t>(found - scanners.begin());
 }
 
 }  // namespace vantage

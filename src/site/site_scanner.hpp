@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "vantage/site.hpp"
 
@@ -15,7 +16,7 @@ Scanner site_scanner(const SiteOptions& options, double scale);
 std::string noise_source(const SiteOptions& options, const Scanner& scanner);
 // Lets a scanner detect every echo.
 void detect_every_echo(Scanner& scanner);
-// Index of `scanner` in the list, to which it is appended if it is new. Throws as `Scanner::check`.
-std::uint32_t place_in(std::vector<Scanner>& scanners, const Scanner& scanner);
+// Index of `scanner` in the list; its size if it is new. Throws as `Scanner::check`.
+std::uint32_t place_in(std::span<const Scanner> scanners, const Scanner& scanner);
 
 }  // namespace vantage

@@ -34,6 +34,10 @@ void RebuildingTracer::set_up_anew(const DeviceFault& fault, const std::string& 
   if (warn_)
     warn_(to_string(info_.engine) + " on device " + std::to_string(info_.device_index) + ", " + info_.device + ": " +
           fault.what() + "; it is set up anew" + what_next);
+  make_again();
+}
+
+void RebuildingTracer::make_again() {
   tracer_ = nullptr;  // destroy the old tracer first, to free its resources for the new one
   tracer_ = make_(scene_);
   tracer_->set_goal_density(goal_density_);
@@ -46,12 +50,10 @@ bool RebuildingTracer::take(const TraceScene& later, const SceneDifference& diff
     set_up_anew(fault, " for the scene as it was");
     return false;
   } catch (...) {
-    tracer_ = nullptr;  // it may have taken a part
-    tracer_ = make_(scene_);
-    tracer_->set_goal_density(goal_density_);
+    make_again();  // it may have taken a part
     throw;
   }
-  scene_.scene = later.scene, scene_.grid = later.grid, scene_.sample_triangles = later.sample_triangles;
+  scene_ = later;
   return true;
 }
 

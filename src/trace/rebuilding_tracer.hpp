@@ -41,6 +41,7 @@ class RebuildingTracer final : public Tracer {
 
  private:
   Tracer& ready() const;
+  void make_again();
   void set_up_anew(const DeviceFault& fault, const std::string& what_next);
   // Calls `work` on the tracer; after a failure, once more on a new tracer.
   template <class Work>

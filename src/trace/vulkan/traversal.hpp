@@ -73,9 +73,9 @@ class Traversal {
   };
   virtual std::optional<TilePass> tile_pass() const { return std::nullopt; }
 
-  // Takes new positions of the triangles of some runs; `scene` is otherwise the one that it was built for, and shares
-  // no meshes. Returns false, and changes nothing, if a new structure is better.
-  virtual bool move(Commands&, const TraversalScene& /*scene*/, std::span<const KeptRun> /*moved*/) { return false; }
+  // Takes new positions of the triangles of some runs, in a scene that is otherwise the one that it was built for and
+  // shares no meshes. Returns false, and changes nothing, if a new structure is better.
+  virtual bool move(Commands&, const SceneData& /*scene*/, std::span<const KeptRun> /*moved*/) { return false; }
 };
 
 // An engine, as listed in make_tracer.cpp.

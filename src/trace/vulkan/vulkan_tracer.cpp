@@ -14,7 +14,7 @@ constexpr double seconds_per_sampled_submission = 1;
 // The first dispatch of an exact submission has this share of the limit, to measure the device's speed.
 constexpr double first_share = 1.0 / 16;
 
-// Whether two scenes have the same triangles with the same attributes, but for the places of their corners.
+// Returns true if two scenes have the same triangles with the same attributes, but for the places of their corners.
 bool differ_by_places_alone(const SceneData& one, const SceneData& other) {
   const auto alike = [&](std::size_t m) {
     return one.ranges[m].first_triangle == other.ranges[m].first_triangle &&
@@ -81,13 +81,8 @@ bool VulkanTracer::take(const TraceScene& later, const SceneDifference& differen
   if (difference.shifted() || !differ_by_places_alone(*scene_.scene, scene) || !have_the_same_limits(scene_, later) ||
       weakens_through_glass(later))
     return false;
-  const PlacedMeshes none;
-  const std::uint32_t opaque = scene.opaque_count();
-  if (!traversal_->move(commands_,
-                        {scene.positions, std::span(scene.triangles).first(opaque), {}, scene_.sort_triangles, none},
-                        not_kept(difference.kept, opaque)))
-    return false;
-  scene_.scene = later.scene, scene_.grid = later.grid, scene_.sample_triangles = later.sample_triangles;
+  if (!traversal_->move(commands_, scene, not_kept(difference.kept, scene.opaque_count()))) return false;
+  scene_ = later;
   device_scene_.take(difference, not_kept(difference.kept, static_cast<std::uint32_t>(scene.triangles.size())));
   samples_ = {}, registration_.uploaded_patches = nullptr;
   return true;

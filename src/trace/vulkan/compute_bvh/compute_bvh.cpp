@@ -18,7 +18,6 @@ class ComputeBvh final : public Traversal, public RayWalk {
     const Bvh bvh = build_placed_bvh(scene.positions, scene.triangles, scene.ids, scene.placed);
     nodes_ = make_device_buffer<BvhNode>(device, commands, bvh.nodes, "BVH nodes");
     triangles_ = make_device_buffer<BvhTriangle>(device, commands, bvh.triangles, "BVH triangles");
-    node_count_ = bvh.nodes.size(), triangle_count_ = bvh.triangles.size();
     if (!bvh.placements.empty())
       placements_ = make_device_buffer<BvhPlacement>(device, commands, bvh.placements, "BVH placements");
   }
@@ -42,11 +41,11 @@ class ComputeBvh final : public Traversal, public RayWalk {
   }
 
   // The first move reads the tree back, for which others need no memory on the host.
-  bool move(Commands& commands, const TraversalScene& scene, std::span<const KeptRun> moved) override {
+  bool move(Commands& commands, const SceneData& scene, std::span<const KeptRun> moved) override {
     if (moved.empty()) return true;
     if (!moving_) {
-      std::vector<BvhNode> nodes(node_count_);
-      std::vector<BvhTriangle> triangles(triangle_count_);
+      std::vector<BvhNode> nodes(nodes_.size() / sizeof(BvhNode));
+      std::vector<BvhTriangle> triangles(triangles_.size() / sizeof(BvhTriangle));
       commands.download(nodes_, nodes.data(), std::span(nodes).size_bytes());
       commands.download(triangles_, triangles.data(), std::span(triangles).size_bytes());
       moving_.emplace(std::move(nodes), triangles);
@@ -61,7 +60,6 @@ class ComputeBvh final : public Traversal, public RayWalk {
 
  private:
   Buffer nodes_, triangles_, placements_;
-  std::size_t node_count_ = 0, triangle_count_ = 0;
   std::optional<MovingBvh> moving_;
 };
 

@@ -19,7 +19,7 @@ class MovingBvh {
   // Takes a tree of build_bvh() whose ids are numbers of triangles from 0 on, perhaps with surveyed_bit.
   MovingBvh(std::vector<BvhNode> nodes, std::span<const BvhTriangle> triangles);
 
-  // What a move changes, and where, ascending.
+  // Nodes and triangles that a move changes, and their places, ascending.
   struct Change {
     std::vector<std::uint32_t> node_at, triangle_at;
     std::vector<BvhNode> nodes;
