@@ -19,8 +19,8 @@ set(VANTAGE_HEADERS_scan
 set(VANTAGE_MODULES_plan optimise cover candidates search plan taken)
 set(VANTAGE_HEADERS_plan candidates cover missed optimiser planner problem question search_types taken_scans)
 # Point clouds, tables and pictures.
-set(VANTAGE_MODULES_files export)
-set(VANTAGE_HEADERS_files export next summary)
+set(VANTAGE_MODULES_files map words formats)
+set(VANTAGE_HEADERS_files export next pictures summary)
 # Reports, sheets, and with them the folder of a plan.
 set(VANTAGE_MODULES_report report)
 set(VANTAGE_HEADERS_report report write_plan)

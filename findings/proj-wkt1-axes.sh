@@ -9,7 +9,7 @@
 # has axes east and north. 1144000 south, 544000 west is 17.33 E 49.40 N by the code, and a place some 2600 km away by the
 # text, without a warning. The code at the text's end, AUTHORITY["EPSG","5513"], is not asked.
 # What vantage does: src/core/coordinate_reference.cpp asks the registry for the axes of a text that names its code, and
-# refuses axes other than east and north (tests/unit/export/coordinate_system_test.cpp, HasTheAxesOfTheSurvey).
+# refuses axes other than east and north (tests/unit/formats/coordinate_system_test.cpp, HasTheAxesOfTheSurvey).
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

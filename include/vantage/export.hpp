@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files that vantage writes: point clouds, coverage cartography, tables and pictures. Every file appears whole or not
-/// at all.
+/// Files that vantage writes: point clouds, coverage cartography and tables; pictures are in pictures.hpp. Every file
+/// appears whole or not at all.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include "vantage/evaluation.hpp"
 #include "vantage/missed.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/pictures.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
@@ -167,26 +168,6 @@ std::string front_json(const PlanResult& result, const Simulator& simulator);
 /// Error io.
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result);
 
-/// Draws the front, as .png or .svg by extension, as all pictures. Throws Error: io, invalid_argument (another
-/// extension).
-void draw_front(const std::filesystem::path& file, const PlanResult& result);
-/// Draws the hypervolume of the search against its evaluations.
-void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result);
-/// The front at five moments of the search, with the search's own values (figure 9 of the method).
-void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);
-/// Draws the site in plan view: shaded relief, search area, stations with the height of their ground, and links. A link
-/// is as wide as its overlap is large, on one scale in all pictures; those below `link_overlap` are not drawn. A site
-/// with stations under a roof, or with several floors, is cut 1.2 m above the floor, and cut parts are filled. Several
-/// floors stand side by side, and each again on its own page, PLAN-level-1.png and so on, from the lowest. `names`: of
-/// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
-/// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `targets`: their
-/// marks. Returns the files that it wrote.
-std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, Site& site,
-                                                  std::span<const PlacedStation> stations, const StationLinks& links,
-                                                  const std::string& title, std::span<const std::string> names = {},
-                                                  std::span<const StationError> errors = {},
-                                                  std::span<const Target> targets = {});
-
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_dark,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
 /// CSV, a line for each of the scene's rooms: `storey,room,floor_m2,ground_m2,stations,why_no_station,voxels` and the
@@ -228,21 +209,12 @@ std::size_t write_missed_bcf(const std::filesystem::path& file, std::span<const 
 /// count. Binary PLY.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,
                       PlyCoordinates coordinates = PlyCoordinates::floats);
-/// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
-/// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of
-/// these are undersides.
-void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
-                 std::span<const PlacedStation> stations, const std::string& title);
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
 /// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the
 /// largest). `field`: with station masks, of the network of `error`. Binary PLY. Throws Error.
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error, PlyCoordinates coordinates = PlyCoordinates::floats);
-/// The same in plan view, .png or .svg, a map for each floor as by `draw_missed`, with unseen parts in grey.
-void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
-                       const RegistrationError& error, std::span<const PlacedStation> stations,
-                       const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.
 void write_text(const std::filesystem::path& file, const std::string& text);

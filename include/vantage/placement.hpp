@@ -169,9 +169,9 @@ std::string explain(StationStatus);
 
 /// A station on its ground, and how it stands there.
 struct PlacedStation {
-  Uv uv;             ///< (u, v) of its ground in the search area.
-  Vec3 position;     ///< Scanner's head, survey frame: the ground plus the height. (0, 0, 0) in a hole.
-  Vec3 ground = {};  ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
+  Uv uv = {};          ///< (u, v) of its ground in the search area.
+  Vec3 position = {};  ///< Scanner's head, survey frame: the ground plus the height. (0, 0, 0) in a hole.
+  Vec3 ground = {};    ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;  ///< Tells if a scanner can stand there, or why not.
   bool existing = false;                     ///< Existing station, scanned before the plan.
   StationSetup setup = {};                   ///< Which scanner, and how it is turned.

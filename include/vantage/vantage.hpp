@@ -17,6 +17,7 @@
 #include "vantage/on_site.hpp"
 #include "vantage/optimiser.hpp"
 #include "vantage/panorama.hpp"
+#include "vantage/pictures.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/problem.hpp"

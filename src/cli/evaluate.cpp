@@ -14,9 +14,9 @@
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
 #include "core/options_json.hpp"
-#include "export/run_json.hpp"
-#include "export/shown_links.hpp"
-#include "export/station_json.hpp"
+#include "formats/run_json.hpp"
+#include "formats/station_json.hpp"
+#include "map/shown_links.hpp"
 
 namespace vantage::cli {
 namespace {

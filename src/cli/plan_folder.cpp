@@ -10,7 +10,7 @@
 #include "cli/options.hpp"
 #include "core/options_json.hpp"
 #include "core/read_json.hpp"
-#include "export/station_json.hpp"
+#include "formats/station_json.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage::cli {

@@ -10,7 +10,7 @@
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
 #include "core/options_json.hpp"
-#include "export/run_json.hpp"
+#include "formats/run_json.hpp"
 
 namespace vantage::cli {
 namespace {

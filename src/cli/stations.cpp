@@ -8,7 +8,7 @@
 #include "cli/options.hpp"
 #include "cli/station_scanners.hpp"
 #include "core/read_json.hpp"
-#include "export/station_json.hpp"
+#include "formats/station_json.hpp"
 
 namespace vantage::cli {
 namespace {

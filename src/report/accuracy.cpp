@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "export/voxel_errors.hpp"
+#include "map/voxel_errors.hpp"
 #include "report/place_names.hpp"
 
 namespace vantage {

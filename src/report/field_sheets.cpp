@@ -11,11 +11,11 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "export/chart.hpp"
-#include "export/place_discs.hpp"
-#include "export/plan_map.hpp"
-#include "export/search_tint.hpp"
-#include "export/section.hpp"
+#include "map/chart.hpp"
+#include "map/place_discs.hpp"
+#include "map/plan_map.hpp"
+#include "map/search_tint.hpp"
+#include "map/section.hpp"
 
 namespace vantage {
 namespace {

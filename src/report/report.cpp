@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report.hpp"
 
-#include "export/front_view.hpp"
+#include "map/front_view.hpp"
 #include "plan/answer.hpp"
 #include "vantage/export.hpp"
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "export/pictures.hpp"
+#include "map/pictures.hpp"
 #include "report/accuracy.hpp"
 #include "vantage/report.hpp"
 #include "vantage/summary.hpp"

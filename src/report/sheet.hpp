@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "export/canvas.hpp"
+#include "map/canvas.hpp"
 #include "report/sheet_layout.hpp"
 
 namespace vantage {

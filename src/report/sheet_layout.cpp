@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "export/distance_apart.hpp"
+#include "map/distance_apart.hpp"
 
 namespace vantage {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "export/canvas.hpp"
+#include "map/canvas.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {

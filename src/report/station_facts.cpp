@@ -9,7 +9,7 @@
 #include "core/first_numbers.hpp"
 #include "core/text.hpp"
 #include "evaluate/known_points.hpp"
-#include "export/section.hpp"
+#include "map/section.hpp"
 #include "report/coverage_cells.hpp"
 #include "report/place_names.hpp"
 

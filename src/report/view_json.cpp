@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/plan_levels.hpp"
+#include "map/plan_levels.hpp"
 #include "report/coverage_cells.hpp"
 #include "report/packed.hpp"
 #include "report/report_json.hpp"

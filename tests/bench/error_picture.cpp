@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "core/text.hpp"
-#include "export/chart.hpp"
-#include "export/front_view.hpp"
+#include "map/chart.hpp"
+#include "map/front_view.hpp"
 
 namespace vantage::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "export/canvas.hpp"
+#include "map/canvas.hpp"
 
 namespace vantage::bench {
 

@@ -13,7 +13,7 @@
 
 #include "bench/baselines.hpp"
 #include "core/text.hpp"
-#include "export/chart.hpp"
+#include "map/chart.hpp"
 #include "search/decision_space.hpp"
 #include "site/placement_oracle.hpp"
 #include "support/site_of.hpp"

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/text.hpp"
-#include "export/chart.hpp"
+#include "map/chart.hpp"
 #include "support/site_of.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/placement.hpp"

@@ -13,7 +13,7 @@
 
 #include "core/philox.hpp"
 #include "core/text.hpp"
-#include "export/chart.hpp"
+#include "map/chart.hpp"
 #include "ranks/mpi_transport.hpp"
 #include "ranks/rank_tracers.hpp"
 #include "ranks_model.hpp"

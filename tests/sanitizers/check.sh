@@ -26,7 +26,7 @@ fi
 
 cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 -DVANTAGE_BUILD_CLI=ON -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
 if [ "${1-}" = quick ]; then
-  set -- trace_test scan_test export_test scene_test placement_test voxel_test trace_vulkan_test golden_test ranks_test image_test core_test
+  set -- trace_test scan_test map_test words_test formats_test scene_test placement_test voxel_test trace_vulkan_test golden_test ranks_test image_test core_test
 elif [ $# = 0 ]; then
   # Plans of whole sites and the layout of structs have nothing more to show here, and what starts the program a hundred
   # times takes an hour. The longest first.

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/export/files.hpp"
+#include "unit/formats/files.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

@@ -11,7 +11,7 @@
 #include "support/boxes_on_ground.hpp"
 #include "support/site_of.hpp"
 #include "support/temporary_folder.hpp"
-#include "unit/export/files.hpp"
+#include "unit/formats/files.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage {

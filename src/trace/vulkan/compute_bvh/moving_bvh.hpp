@@ -21,9 +21,9 @@ class MovingBvh {
 
   // Nodes and triangles that a move changes, and their places, ascending.
   struct Change {
-    std::vector<std::uint32_t> node_at, triangle_at;
-    std::vector<BvhNode> nodes;
-    std::vector<BvhTriangle> triangles;
+    std::vector<std::uint32_t> node_at = {}, triangle_at = {};
+    std::vector<BvhNode> nodes = {};
+    std::vector<BvhTriangle> triangles = {};
     double cost = 0;
   };
   // Moves the triangles of some runs, by their numbers, to new positions. Empty if a new tree would be faster to walk,

@@ -2,7 +2,7 @@
 #include "e57_file.hpp"
 
 #include "cloud_files.hpp"
-#include "export/e57_paged_file.hpp"
+#include "formats/e57_paged_file.hpp"
 
 namespace vantage::test {
 
