@@ -54,7 +54,7 @@ std::string element(const char* name, const std::string& content) {
 
 constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
-// Where a point of the survey frame is in the coordinates of the model's file; none if that is not known.
+// Converts points of the survey frame to the coordinates of the model's file, if these are known.
 class ModelFrame {
  public:
   explicit ModelFrame(const Scene& scene) {
