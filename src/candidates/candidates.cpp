@@ -112,7 +112,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
     while (found.coverage_.size() < goal && found.ended_.empty()) {
       const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
       const auto share = [&](double done) {
-        // How often they are doubled is not known yet; mostly this often.
+        // The number of doublings is not known yet; `kExpected` candidates is the most common end.
         const std::size_t expected = std::min(std::max(goal, kExpected), spread.stations.size());
         progress((static_cast<double>(first) + done * static_cast<double>(here)) / static_cast<double>(expected));
       };

@@ -189,7 +189,7 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
     if (now.attainable)
       spdlog::info("{:.1f} % of the site is attainable, by the best of {} places all over the ground for each surface",
                    100 * *now.attainable, now.evaluations);
-    // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
+    // Tells the remaining time as soon as it is known, of the whole plan and of each long part.
     if (now.whole_seconds_left) {
       const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
       spdlog::info("the number of stations is nearly known; about {} left in all", duration_text(left));
@@ -213,7 +213,7 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
   return plan(site, problem, config, watch);
 }
 
-// Where the search starts, if not anywhere.
+// Computes a start for the search if --seed-with asks for one.
 void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem, PlanConfig& config, Program& program,
                   const Deadline& start_by) {
   if (options.seed_with.empty()) return;

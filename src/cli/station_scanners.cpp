@@ -12,7 +12,7 @@
 namespace vantage::cli {
 namespace {
 
-// Points fill a field of view but for its rim. What differs by more was set, or is cut off by the sky.
+// Points fill a field of view except near its edge. A larger difference was set, or comes from the sky.
 constexpr double kNarrower_deg = 10, kWider_deg = 2;
 // Steps differ by less if they are the same setting.
 constexpr double kSameStep = 0.02;
