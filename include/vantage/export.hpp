@@ -35,7 +35,7 @@ struct StationScan {
   std::string name;         ///< Name as shown to people: "S1".
   Vec3 head;                ///< The scanner's head, survey frame, metres.
   Scanner scanner;          ///< Its model, and how its rays are numbered and headed.
-  StationSetup setup = {};  ///< How it is turned.
+  StationSetup setup = {};  ///< Heading, tilt and scanner.
 };
 
 /// Returns `outputs` and what such a file always has: the reflectivity, as intensity, in .las and .e57.
@@ -199,7 +199,7 @@ struct ElementShare {
   std::string name = {};                ///< `MeshInfo::name`.
   std::string ifc_class = {};           ///< "IfcWall", as the importer of IFC puts it into the name; empty: none.
   std::string global_id = {};           ///< Its GlobalId, likewise.
-  double area_m2 = 0;                   ///< Of all its triangles.
+  double area_m2 = 0;                   ///< Area of all its triangles.
   std::uint64_t voxels = 0;             ///< Voxels with most surface of it.
   std::optional<double> captured = {};  ///< Share of the goal points of these.
   std::optional<Angle> incidence = {};  ///< Median over its seen voxels, each from the station that sees it best.
@@ -228,9 +228,9 @@ std::size_t write_missed_bcf(const std::filesystem::path& file, std::span<const 
 /// count. Binary PLY.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,
                       PlyCoordinates coordinates = PlyCoordinates::floats);
-/// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
-/// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of
-/// these are undersides.
+/// Draws the same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. If voxels lie above
+/// each other, one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden
+/// one, since most of these are undersides.
 void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
                  std::span<const PlacedStation> stations, const std::string& title);
 
