@@ -144,7 +144,7 @@ void DayOptions::add(CLI::App& command) {
 void run_day(const DayOptions& options) {
   const std::filesystem::path folder = options.folder;
   std::filesystem::create_directories(folder);
-  // Of an earlier run: two digits and the ending.
+  // Removes files of an earlier run: two digits and the ending.
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".e57" && entry.path().stem().string().size() == 2)
       std::filesystem::remove(entry.path());

@@ -105,7 +105,7 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
   const Chart chart(canvas, area, x, y, "");
   std::vector<Rect> taken;
 
-  // How many times faster than exact, along the top.
+  // The axis along the top: speed relative to exact.
   const double exact = time_of(dots, Way::exact);
   canvas.text({area.x + area.width / 2, area.y - 32}, "Times faster than exact",
               {.size = 13.5, .across = Align::middle});

@@ -213,7 +213,7 @@ Pool read_plans(const std::vector<std::string>& files) {
   return pool;
 }
 
-// How far samples are off the prediction from every voxel, network by network.
+// Errors of samples relative to the prediction from every voxel, network by network.
 class Samples {
  public:
   void add(Simulator& simulator, const Network& network, std::uint64_t voxels, std::size_t draws) {

@@ -18,7 +18,7 @@ class Sight {
   // Spreads `spots` points evenly over the area of all surfaces that stop rays. `spacing_m`: wanted distance of points.
   Sight(const SceneData& scene, const Scanner& scanner, double spacing_m, std::size_t spots, std::uint64_t seed = 1);
 
-  // Whether nothing stands between two points, survey frame.
+  // True if nothing stands between two points, survey frame.
   bool free(const Vec3& a, const Vec3& b) const { return !blocked(a - origin_, b - origin_, 0); }
 
   struct View {

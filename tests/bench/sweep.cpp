@@ -38,7 +38,7 @@ using test::Surface;
 constexpr double kEdge_m = 0.25;
 // A room without a station is left out if less of it is captured than this share of what is captured of the site.
 constexpr double kRoomShare = 0.7;
-// Of the median distance to what a station sees: nearer to it no other may stand that it sees.
+// Least distance of stations that see each other, as a share of the median distance to what the station sees.
 constexpr double kNearest = 0.25;
 // A link is through a wall if scans share less than this part of the wanted overlap by rays.
 constexpr double kTrueLink = 0.5;
@@ -376,7 +376,7 @@ std::vector<std::string> round_cells(const SweptSite& swept, Site& site, const P
           least ? number(*least) : "–"};
 }
 
-// What no plan may do, in words.
+// Returns in words the faults that no plan may have.
 std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   std::vector<std::string> faults;
   const auto none = [&](std::size_t count, const std::string& what) {

@@ -177,7 +177,7 @@ class Maker {
     }
     if (lawn)
       add_box(add_part(made_.site, "lawn", sites::kGrass, Surface::floor), block(-8, x1 + 6, -8, y1 + 7, -0.5, -slab));
-    // What is entered: by the entrance; else only what is told decides.
+    // The entrance decides which rooms are entered; without one, only the settings do.
     if (entrance || lawn)
       for (std::size_t i = 0; i < rooms * storeys; ++i)
         if (!entrance || root(i) != root(0)) made_.shut.insert("room " + std::to_string(i));

@@ -153,7 +153,7 @@ TEST_F(ImportCommandTest, TakesColumnsUnitAndAxisOfPointsInText) {
   expect_room("no,height,north,east\n" +
                   room_text([&](double x, double y, double z) { return with('.', "1,%.2f,%.2f,%.2f")(z, y, x); }),
               {});
-  // What is not clear is asked, and leaves no file.
+  // The import refuses an unclear unit with a question, and leaves no file.
   write("turned.xyz", room_text([&](double x, double y, double z) { return plain(z, y, x); }));
   expect_refused(run_program({"import", path("turned.xyz"), "--columns", "x,y,z", "-o", path("none.glb")}), 1,
                  "turned.xyz: its unit");

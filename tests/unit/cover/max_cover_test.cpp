@@ -114,7 +114,7 @@ TEST(MaxCover, AddsUpNoHalvesBehindADoor) {
   for (std::size_t room = 0; room < kRooms; ++room)
     for (std::size_t k = 0; k < 3; ++k) {
       std::ranges::fill(amounts, 0u);
-      // Of the room the door captures a half of 16, each of the others all of its own 20 and a half of the rest.
+      // In its room the door captures a half of 16, and each of the others all of its own 20 and a half of the rest.
       for (std::size_t e = 0; e < kEach; ++e)
         amounts[room * kEach + e] = k == 0 ? (e < 16 ? kGoal / 2 : 0) : ((e < 20) == (k == 1) ? kGoal : kGoal / 2);
       matrix.add(amounts);

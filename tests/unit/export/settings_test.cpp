@@ -20,7 +20,7 @@
 namespace vantage {
 namespace {
 
-// How many members an aggregate has, so that none can be added without a line below.
+// Counts the members of an aggregate, so that none can be added without a line below.
 struct Anything {
   template <class T>
   operator T() const {  // never called: only asked whether it would do

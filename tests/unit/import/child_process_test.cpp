@@ -26,7 +26,7 @@ class ChildProcessTest : public ImportTest {
   Ended shell(const std::string& script, const Limits& limits = {}) const {
     return importers::run_limited({"/bin/bash", "-c", script}, {}, {folder_ / "readable"}, limits);
   }
-  // What these lines of Python, each on its own, are let do: their numbers.
+  // Returns the numbers of the lines of Python that may run, each on its own.
   Ended python(const std::vector<std::string>& lines) const {
     std::string script = "import ctypes, mmap, os, resource, signal, socket, subprocess, sys, threading\n";
     for (std::size_t k = 0; k < lines.size(); ++k)

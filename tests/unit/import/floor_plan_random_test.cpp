@@ -167,7 +167,7 @@ class RandomPlan {
     room.area -= area;
   }
 
-  // What does not show, or is not read, across a room.
+  // Draws entities across a room that are invisible, or that the importer does not read.
   void decoys(double wide) {
     const double x = std::min(wide, rooms.front().area / deep_) / 2;
     const auto across = [&](const char* layer) {

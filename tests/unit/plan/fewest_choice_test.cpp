@@ -163,7 +163,7 @@ TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(test::apart_m(stations[i].position, stations[j].position), 1);
 }
 
-// What is asked of the cells in one corner, of which the fewest stations capture less.
+// The requirement is on the cells in one corner, of which the fewest stations capture less.
 TEST(CaptureMeshes, AddsTheStationsThatItTakesAndNoneMore) {
   FewestChoice choice = chosen(floor_problem(0.5), 12);
   const std::size_t before = choice.placed();

@@ -336,7 +336,7 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
   EXPECT_GE(told(with, {"charged", "batteries:", "2"}), 1) << "and over each session's stations";
   EXPECT_EQ(report_json(report_of(powered, survey.site, {}))["networks"][0]["visit"]["sessions"][1]["batteries"], "2");
 
-  // Where hours keep stations out of all sessions, times are those of the others.
+  // If hours keep stations out of all sessions, times are those of the others.
   Evaluation fewer = found;
   fewer.visit->sessions.pop_back();
   const Report of_fewer = report_of(fewer, survey.site, {});

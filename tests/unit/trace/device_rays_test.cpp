@@ -380,7 +380,7 @@ struct Batches {
   RayBatches batches{[this] { return std::make_unique<FragileFinder>(fragile); }};
   std::size_t largest = 0;
 
-  // Whether every ray got its own answer.
+  // Returns true if every ray got its own answer.
   bool run(std::size_t many) {
     std::vector<std::uint32_t> answers(many);
     const bool whole = batches.run(many,
