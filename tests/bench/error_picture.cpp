@@ -74,7 +74,7 @@ void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>&
     const double time = time_of(dots, way);
     if (time == 0) continue;
     const double at = chart.at(time, y.low).x, width = canvas.text_width(words, text);
-    // Beside its line, on the side away from the other exact one.
+    // Writes the name beside its line, on the side away from the other exact one.
     const double side = way == Way::every_ray ? 9 : -9;
     Rect best{};
     std::ptrdiff_t fewest = std::numeric_limits<std::ptrdiff_t>::max();

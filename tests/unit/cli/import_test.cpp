@@ -99,7 +99,7 @@ TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
   ASSERT_EQ(all.size(), 4u);
   EXPECT_TRUE(all[2]["existing"].get<bool>() && !all[3]["existing"].get<bool>());
   EXPECT_EQ(all[1]["position"], (nlohmann::json{5.0, 3.0, 1.6}));
-  // With the file's names and steps; what is new goes on from there.
+  // Keeps the file's names and steps; new stations are numbered on from there.
   EXPECT_EQ(all[0]["name"], "S1");
   EXPECT_EQ(all[3]["name"], "S4");
   EXPECT_NEAR(all[1]["step"].get<double>(), 0.4, 1e-9);

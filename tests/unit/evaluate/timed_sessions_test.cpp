@@ -142,7 +142,7 @@ TEST(TimedSessions, AreAsShortAsEveryMinuteThatIsTriedInTheirOrder) {
 }
 
 TEST(TimedSessions, KeepTheirHoursAndTakeLittleMoreThanTheBestOfAll) {
-  // Shares of the minutes that the best of all sessions take, waiting among them.
+  // Upper limits on the minutes, relative to the best of all sessions, waiting included.
   constexpr double kMostMinutes = 1.5, kMeanMinutes = 1.02;
   std::mt19937 random(11);
   int bound_trials = 0, more_sessions = 0, alone = 0;

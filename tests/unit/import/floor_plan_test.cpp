@@ -302,7 +302,7 @@ std::filesystem::path two_halls(const std::filesystem::path& folder, int lines, 
   return folder;
 }
 
-// Parts of the floor that no way leads to, planned or not.
+// Parts of the floor that no path leads to, planned or not.
 std::size_t not_entered(const Scene& scene) {
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);

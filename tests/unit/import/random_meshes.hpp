@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid files of meshes, and what is in them.
+// Random valid files of meshes, with their known content.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as files: what is in them, and what is not.
+// The report as files: content that must be there, and content that must not.
 #include "report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(Report, ThePageNamesNoAddressToLoadFrom) {
     EXPECT_EQ(count(page.substr(0, page.find("<script")), loads), 0u) << loads;
   EXPECT_EQ(count(page, "alert(1)</script>"), 0u);
   EXPECT_EQ(count(page, "<!--.glb"), 0u);
-  // each script ends once: none by what a name holds
+  // names in the content end no script
   EXPECT_EQ(count(page, "<script"), count(page, "</script>"));
 }
 

@@ -785,7 +785,7 @@ TEST(Simulator, RefusesToBeCalledByACallbackOfItsOwnCall) {
   EXPECT_TRUE(callers.agrees(0));  // and it serves again
 }
 
-// As other processes would share the work, but it does all of it itself.
+// Stands for other processes that share the work, but leaves all of it to the simulator's own tracer.
 struct Counted final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
                                std::uint64_t fingerprint) override {
