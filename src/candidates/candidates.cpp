@@ -18,8 +18,8 @@ namespace {
 // Candidates between two checks of the clock.
 constexpr std::size_t chunk = 64;
 constexpr std::size_t kExpected = 512;
-// Whatever the sum over a large site says, there are candidates until the ground has one within this distance, and
-// every place sees one within this multiple of their spacing. No room is missed by candidates nearer than its width.
+// Candidates grow at least until all ground has one within this distance, and every place sees one within this multiple
+// of their spacing. Candidates nearer than the width of a room do not miss it.
 constexpr double kFarthest_m = 3, kSeenWithin = 2, kNarrowest_m = 1;
 
 SpreadPositions spread_or_refuse(Site& site, std::size_t most) {

@@ -83,8 +83,8 @@ bool on_a_line_with_any(const Target& target, std::span<const Target> others) {
   return false;
 }
 
-// Chooses places by what each takes from the mean square error, without an adjustment for each: a target's
-// information is Uᵀ U with few rows, so the covariance follows by the matrix inversion lemma.
+// Chooses places by their decrease of the mean square error, without an adjustment for each: a target's information is
+// Uᵀ U with few rows, so the covariance follows by the matrix inversion lemma.
 class TargetChooser {
  public:
   TargetChooser(const RegistrationAdjustment& adjustment, std::span<const RegistrationTarget> places)

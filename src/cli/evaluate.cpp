@@ -146,7 +146,7 @@ struct EvaluateCommandOptions {
   }
 };
 
-// As `plan` looks at it before it searches.
+// Finds what is attainable, as `plan` does before its search.
 Candidates attainable_by(Site& site, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "looking at what can be captured");
   return find_candidates(site, {.sample_voxels = sample},

@@ -26,9 +26,9 @@
 namespace vantage::cli {
 namespace {
 
-// A first network is chosen by no more voxels than this.
+// Largest sample for the choice of a first network.
 constexpr std::uint64_t kStartSample = 20'000;
-// The search has so much of the time left at least.
+// Least share of the remaining time for the search.
 constexpr double kStartTimeShare = 0.5;
 
 struct PlanOptions {
@@ -108,7 +108,7 @@ void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
 }
 
-// Voxels that a start is chosen by.
+// Sample size for the choice of a start.
 std::uint64_t start_sample(const PlanConfig& config) {
   return config.exact ? every_voxel : std::min<std::uint64_t>(config.sample_voxels, kStartSample);
 }
@@ -131,7 +131,7 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
   return heads;
 }
 
-// Heads of the best choice for the largest network that was found in time; empty where none was.
+// Heads of the best choice for the largest network that was found in time; empty if none was.
 std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const PlanConfig& config, double seconds,
                               Program& program, std::stop_token stop) {
   const auto least = [&](Objective::Kind kind) {

@@ -65,7 +65,7 @@ void take_settings(StationText& station, const importers::TakenSettings& scan, c
   if (other_bottom) last = bottom;
   if (other_top || other_bottom)
     station.view.zenith_start = Angle::degrees(first), station.view.vertical = Angle::degrees(2 * (last - first));
-  // Points say that the scanner reaches them, and not how far else.
+  // Points show that the scanner reaches them, but not its range.
   if (scan.range_m[0] < base.min_range_m) station.view.nearest_m = scan.range_m[0];
   if (scan.range_m[1] > base.max_range_m) station.view.farthest_m = scan.range_m[1];
 }
@@ -98,7 +98,7 @@ std::string quoted(const std::vector<std::string>& names) {
   return names.size() > kNamed ? text + fmt::format(" and {} more", names.size() - kNamed) : text;
 }
 
-// Names of scans by what their file does not tell, and of the scanners that are assumed.
+// Names of scans by the values that their file lacks, and of the scanners that are assumed.
 struct Assumed {
   std::vector<std::string> unknown, stepless, by_density, bases;
 

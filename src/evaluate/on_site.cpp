@@ -184,7 +184,7 @@ std::size_t unlinked_in(const std::vector<std::size_t>& order, const Matrix& lin
 std::vector<std::size_t> shortest_with(const Stops& round, const Matrix& link, std::size_t unlinked) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const std::size_t n = round.stations(), sets = std::size_t{1} << n, states = sets * n, all = sets - 1;
-  // The least way to `last` over the stations of `set`, with so many steps without a link, and the stop before.
+  // Shortest path to `last` over the stations of `set` with so many unlinked steps, and the stop before.
   std::vector<double> least((unlinked + 1) * states, kNever);
   std::vector<std::uint8_t> before(least.size());
   const auto at = [&](std::size_t steps, std::size_t set, std::size_t last) { return steps * states + set * n + last; };
@@ -587,7 +587,7 @@ void OnSite::Impl::wait(Session& session, const Part& part, const std::vector<do
   session.minutes += session.waiting_min;
 }
 
-// Sessions that keep the access windows, then the others' as without.
+// Returns sessions that keep the access windows, then those of the other stations, cut as without windows.
 std::vector<OnSite::Impl::Part> OnSite::Impl::parts_within(const TimedStops& stops) const {
   const FilledSessions filled = fill_sessions(stops, day());
   std::vector<Part> parts;

@@ -129,7 +129,7 @@ struct Camera {
   Vec3 eye, direction, up;
 };
 
-// From where most points of the element are in free sight; the first place of all if none is from anywhere.
+// Returns the place that sees most points of the element; the first place of all if none sees any.
 Camera camera_at(const Body& body, const ClashChecker& clash) {
   Vec3 best{};
   std::ptrdiff_t most = -1;
