@@ -379,8 +379,8 @@ TEST_F(Plan, IsDoneWithinTheTimeGiven) {
       all.insert(file.path().filename().string());
     return all;
   };
-  // A busy machine may have no time for all files, and says which it left out. A finished search keeps its state, and
-  // some answers take targets.
+  // Under load there may be no time for all files, and the program says which it left out. A finished search keeps its
+  // state, and some answers take targets.
   const std::set<std::string> written = names("plan");
   for (const std::string& file : names("whole"))
     EXPECT_TRUE(written.contains(file) || file == "checkpoint.bin" || file == "targets.csv" ||

@@ -204,8 +204,8 @@ TEST(MaxCover, RefusesWhatMakesNoSense) {
   EXPECT_THROW(min_cover({.matrix = empty, .coverage = 0.5}), Error);
 }
 
-// Along a wall of 10 000 elements, each candidate covers 100 in a row. So 80 stations cover at most 80 times 100, which
-// stations side by side reach.
+// Along a wall of 10 000 elements, each candidate covers 100 in a row: 80 stations cover at most 80 times 100, and side
+// by side they do.
 TEST(MaxCover, HasNoLimitOf64Stations) {
   constexpr std::uint32_t elements = 10'000, sight = 100, apart = 25;
   CoverageMatrix matrix(std::vector<std::uint32_t>(elements, 1), 10);
