@@ -20,7 +20,7 @@ inline py::array_t<double> matrix_of(PairMatrix matrix) {
   return py::array_t<double>(Shape{n, n}, data, owner);
 }
 
-/// What the scans of an evaluation hold, as a dict; None if it is not known.
+/// Returns the data in the scans of an evaluation, as a dict; None if it is not known.
 py::object data_of(const Evaluation& e);
 extern const char* const kData;  // its docstring
 

@@ -18,7 +18,7 @@ struct GuardedSite {
   Site site;
   std::mutex mutex = {};
   std::shared_mutex settled = {};                       ///< Alone while a question may change the site's scanners.
-  std::mutex making = {};                               ///< Of `simulators`.
+  std::mutex making = {};                               ///< Guards `simulators`.
   std::optional<Simulators> simulators = std::nullopt;  ///< Made when it is first asked for.
 
   /// For the time of a call that no other of its kind runs beside. Throws Error invalid_argument if one does.

@@ -3,8 +3,8 @@
 ///
 /// The attainable count a_v of a voxel is the most points that one station alone leaves in it, up to the goal g_v, over
 /// a set of stations: one on each candidate. With weights w_v, attainable coverage is Σ w_v a_v/g_v / Σ w_v. A network
-/// with n_v points in each voxel captures Σ w_v min(a_v, n_v)/g_v / Σ w_v a_v/g_v of it. So stations that only add
-/// points where one station gets no more of the surface count for nothing.
+/// with n_v points in each voxel captures Σ w_v min(a_v, n_v)/g_v / Σ w_v a_v/g_v of it. Stations that only add points
+/// where one station already gets as much of the surface count for nothing.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ namespace vantage {
 
 /// Shares of what is attainable that a network captures.
 struct CapturedShares {
-  Estimate all;                                 ///< Of all surveyed surface.
-  std::map<std::string, Estimate> meshes = {};  ///< Of the meshes of each pattern that was asked for.
+  Estimate all;                                 ///< Share for all surveyed surface.
+  std::map<std::string, Estimate> meshes = {};  ///< Share for the meshes of each pattern that was asked for.
 };
 
 /// Attainable counts of a sample of the surveyed voxels, or of all of them.
@@ -46,7 +46,7 @@ class AttainableCounts {
   /// Elements of the surveyed meshes of a pattern.
   struct OfMeshes {
     std::string meshes;             ///< The pattern, as it was given.
-    std::vector<std::uint8_t> has;  ///< By element, 1 for those of them.
+    std::vector<std::uint8_t> has;  ///< 1 for each element of those meshes, else 0.
   };
   /// Tells the share captured of the surveyed meshes of a pattern too, as `captured()` of vantage/objective.hpp takes
   /// it. Throws Error invalid_argument if no surveyed mesh has such a name. REQUIRES: the simulator of these counts.

@@ -81,7 +81,7 @@ StationGraph overlap_graph(Simulator& surroundings, std::span<const PlacedStatio
 /// forbidden. Uses no random numbers. Throws Error invalid_argument if no position is allowed.
 std::vector<PlacedStation> candidate_positions(Site& site, std::size_t most);
 
-/// How candidates are found.
+/// Settings of `find_candidates()`.
 struct CandidateConfig {
   std::size_t first = 128;  ///< Initial number; it is doubled until a limit holds.
   std::size_t most = 4096;  ///< Largest number.
@@ -100,7 +100,7 @@ Settings settings(const CandidateConfig& config);
 class Candidates {
  public:
   const std::vector<PlacedStation>& stations() const noexcept { return stations_; }  ///< All are ok.
-  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< Of these stations, in order.
+  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< For these stations, in order.
   /// The most points that a station on one of them leaves in each voxel of the sample.
   const AttainableCounts& attainable_counts() const noexcept { return attainable_counts_; }
   /// The coverage matrix with attainable counts as goals: its F is the share of what is attainable.
@@ -137,7 +137,7 @@ class Candidates {
 /// Error invalid_argument if no position is allowed, or a setting is out of its range.
 Candidates find_candidates(Site& site, const CandidateConfig& config = {}, const Progress& progress = {});
 
-/// How greedy_network() chooses.
+/// Settings of `greedy_network()`.
 struct GreedyConfig {
   std::size_t stations = 4;                        ///< Number of stations to choose.
   std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
@@ -158,7 +158,7 @@ struct GreedyResult {
 /// than candidates, and if no candidate can stand.
 GreedyResult greedy_network(Site& site, const GreedyConfig& config = {}, const Progress& progress = {});
 
-/// How exact_network() chooses.
+/// Settings of `exact_network()`.
 struct ExactConfig {
   std::size_t stations = 4;              ///< Number of stations to choose.
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.

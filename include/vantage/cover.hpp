@@ -105,7 +105,7 @@ class StationGraph {
   float overlap(std::size_t i, std::size_t j) const;
   /// Candidates that overlap with `i`, rising.
   std::span<const Overlap> overlaps(std::size_t i) const { return overlaps_[i]; }
-  /// Whether two candidates are linked, by an overlap of at least `least`. REQUIRES: least > 0.
+  /// Returns true if an overlap of at least `least` links two candidates. REQUIRES: least > 0.
   bool linked(std::size_t i, std::size_t j, double least) const {
     return i != j && static_cast<double>(overlap(i, j)) >= least;
   }

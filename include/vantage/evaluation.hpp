@@ -63,16 +63,16 @@ StationLinks station_links(const OverlapMatrix& overlap, double least, std::span
 /// The same by scan overlap.
 StationLinks station_links(const ScanOverlapMatrix& overlap, double least, std::span<const PlacedStation> stations);
 
-/// A link that alone ties ground at two heights together, though the way on foot between its stations is long: it goes
-/// through a window or across a void, and not up the stair.
+/// A link that alone ties ground at two heights together, although the path on foot between its stations is long. It
+/// goes through a window or across a void, and not up the stair.
 struct StoreyTie {
   std::size_t a = 0, b = 0;  ///< Stations, by their places in the network.
-  double value = 0;          ///< Of the link.
+  double value = 0;          ///< Strength of the link.
   double apart_m = 0;        ///< Between their heads.
   double way_m = 0;          ///< On foot.
 };
 
-/// What the scans of stations hold, besides those of existing ones.
+/// Amount of data in the scans of stations, without existing ones.
 struct ScanData {
   /// Points on all surfaces: counted, or estimated from the coarser scans of `EvaluationSite::surroundings`.
   double points = 0;
@@ -90,7 +90,7 @@ struct Evaluation {
   double goal_density = 1;   ///< Points wanted in a voxel.
   /// Counts. `groups` and `registration` are left out: the figures below are made of them.
   NetworkCounts counts = {};
-  Work work = {};         ///< Of the call that made it, with the other networks of that call.
+  Work work = {};         ///< Work of the call that made it, including the other networks of that call.
   VoxelField field = {};  ///< Points of every voxel, if they were asked for.
   /// Figures by the names of their measures, e.g. "coverage", in the measures' units. NaN: not known.
   std::map<std::string, Estimate> values = {};
@@ -141,9 +141,9 @@ Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
 /// as far as a way on foot exists that is longer than 15 m, and than 1.5 times the line between the heads. Links
 /// along shorter ways are preferred to them, then links of larger values. Empty if links are not known.
 std::vector<StoreyTie> storey_ties_of(const Evaluation& evaluation, const OnSite& on_site);
-/// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day; two stations that existing ones link are
-/// linked. What `OnSite::sessions()` refuses is told in `Visit::not_split`, and stations whose access windows no
-/// session keeps in `Visit::closed`.
+/// Splits the evaluation's round into sessions, if `OnSiteOptions` have a day. Two stations that existing ones link
+/// count as linked. `Visit::not_split` tells why `OnSite::sessions()` refused; `Visit::closed` lists stations whose
+/// access windows no session keeps.
 void add_sessions(Evaluation& evaluation, const OnSite& on_site);
 /// Stations that no session can scan within the access windows of their rooms.
 std::size_t closed_stations(const Evaluation& evaluation);

@@ -36,7 +36,7 @@ struct StationScan {
   std::string name;         ///< Name as shown to people: "S1".
   Vec3 head;                ///< The scanner's head, survey frame, metres.
   Scanner scanner;          ///< Its model, and how its rays are numbered and headed.
-  StationSetup setup = {};  ///< How it is turned.
+  StationSetup setup = {};  ///< Heading, tilt and scanner.
 };
 
 /// Returns `outputs` and what such a file always has: the reflectivity, as intensity, in .las and .e57.
@@ -180,7 +180,7 @@ struct ElementShare {
   std::string name = {};                ///< `MeshInfo::name`.
   std::string ifc_class = {};           ///< "IfcWall", as the importer of IFC puts it into the name; empty: none.
   std::string global_id = {};           ///< Its GlobalId, likewise.
-  double area_m2 = 0;                   ///< Of all its triangles.
+  double area_m2 = 0;                   ///< Area of all its triangles.
   std::uint64_t voxels = 0;             ///< Voxels with most surface of it.
   std::optional<double> captured = {};  ///< Share of the goal points of these.
   std::optional<Angle> incidence = {};  ///< Median over its seen voxels, each from the station that sees it best.

@@ -49,8 +49,8 @@ Settings settings(const MissedOptions& options);
 /// Status of one voxel, with shares of its goal density in [0, 1].
 struct VoxelStatus {
   WhyMissed why = WhyMissed::captured;  ///< Its status.
-  float captured = 0;                   ///< What the network left.
-  float attainable = 0;                 ///< What the best single candidate would leave, or `captured` if that is more.
+  float captured = 0;                   ///< Share by the network.
+  float attainable = 0;                 ///< Share by the best single candidate, or `captured` if that is more.
 };
 
 /// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other
@@ -65,7 +65,7 @@ struct MissedShare {
 
 /// A room, with what a network captures of it and where one can stand in it.
 struct RoomShare {
-  MissedShare share = {};  ///< Of the voxels in the room or at its boundary; its node is the room's name.
+  MissedShare share = {};  ///< Shares of the voxels in the room or at its boundary; its node is the room's name.
   double ground_m2 = 0;    ///< Area of the search area in it.
   std::optional<LeftOutReason> left_out = {};  ///< Why one cannot stand on most of its floor, if any; `sealed` first.
 };
@@ -83,7 +83,7 @@ struct MissedVoxels {
   /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one. The
   /// whole site's captured share is its coverage, from all voxels; the sample splits the rest.
   std::vector<MissedShare> shares = {};
-  std::vector<RoomShare> rooms = {};  ///< Of the sample, one for each of the scene's rooms.
+  std::vector<RoomShare> rooms = {};  ///< One for each of the scene's rooms, from the same sample.
   std::size_t candidates = 0;         ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.

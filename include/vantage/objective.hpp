@@ -34,8 +34,8 @@ struct MeasuredNetwork {
   /// objective needs them. `surroundings_voxels`: the number of its voxels.
   const NetworkCounts* surroundings = nullptr;
   std::uint64_t surroundings_voxels = 0;  ///< See `surroundings`.
-  double minutes_on_site = 0;             ///< By `OnSite`, without existing stations; 0 where no objective needs it.
-  /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
+  double minutes_on_site = 0;             ///< Found by `OnSite`, without existing stations; 0 if no objective needs it.
+  /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN if no objective needs it.
   Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
   const Scene* scene = nullptr;  ///< The surveyed scene, for `captured()`.
   /// The same share of the meshes of each pattern that objectives name (`Objective::meshes`).
@@ -109,7 +109,7 @@ struct Objective {
   /// For the number of stations alone. If the number is searched, the search minimises the decision variable α of
   /// equation 7 instead, which has no steps.
   bool by_alpha = false;
-  /// How a choice of stations among candidates, before a search for few stations, can use a limit on it. The search
+  /// Kinds of limits that a choice of stations among candidates, before a search for few stations, can use. The search
   /// handles limits of every kind; the choice knows those on coverage, links, distances and time.
   enum class Kind {
     other,     ///< The choice does not know it.

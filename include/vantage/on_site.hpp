@@ -95,14 +95,14 @@ struct Session : Round {
 /// A station of a visit that no session can scan within the access windows of its room.
 struct ClosedStation {
   std::size_t station = 0;  ///< As in `Round::order`.
-  std::string why;          ///< What would have to change, for people.
+  std::string why;          ///< Reason, and the change that would help, for people.
 };
 
 /// The round over all stations.
 struct Visit : Round {
   double day_min = 0;                 ///< `OnSiteOptions::day_min` of the sessions; 0: none were asked for.
   std::vector<Session> sessions;      ///< In the order of the round, by day and crew; empty: none, or not asked for.
-  std::string not_split;              ///< What keeps the round from being split into sessions; empty: nothing.
+  std::string not_split;              ///< Reason why the round cannot be split into sessions; empty: there is none.
   std::vector<ClosedStation> closed;  ///< Stations in no session, since none can keep their access windows.
   std::size_t bound = 0;              ///< Stations that access windows are for.
 };
@@ -140,13 +140,13 @@ class OnSite {
   Visit visit(std::span<const PlacedStation> stations, const LinkStrength& link = {},
               double most_min = std::numeric_limits<double>::infinity()) const;
   /// Cuts a visit of these stations into sessions of at most `OnSiteOptions::day_min`: as few as its order allows.
-  /// Among these cuts that one is taken whose sessions fall into the fewest parts, then the one with the fewest
-  /// sessions that are not linked, then with the shortest longest session, then with the least walking. A visit without
-  /// stations, or options without a day, give none. With access windows, stations that they are for come first: a
-  /// session takes as many of them as fit in a day, by cheapest insertion, and then others, each time the one that adds
-  /// the fewest minutes; it leaves the entrance as late as that allows. What no such session takes is cut as above.
-  /// Stations whose windows no session can keep are in none (`add_windows`). Throws Error invalid_argument if a day is
-  /// too short for one station and the walk there and back.
+  /// Among these cuts it takes the one whose sessions have the fewest components in all, then the fewest unlinked
+  /// sessions, then the shortest longest session, then the least walking. A visit without stations, or options without
+  /// a day, give none. With access windows, stations that have one come first: a session takes as many of them as fit
+  /// in a day, by cheapest insertion. It then takes others, each time the one that adds the fewest minutes, and leaves
+  /// the entrance as late as that allows. The remaining stations are cut as above. Stations whose windows no session
+  /// can keep are in none (`add_windows`). Throws Error invalid_argument if a day is too short for one station and the
+  /// walk there and back.
   std::vector<Session> sessions(std::span<const PlacedStation> stations, const Visit& visit,
                                 const LinkStrength& link = {}) const;
   /// Sets `Visit::closed` and `bound` of a visit of these stations, if the options have a day and access windows.

@@ -34,7 +34,7 @@ struct CmaEsConfig {
 
 /// Settings of MO-CMA-ES alone.
 struct MoCmaEsConfig {
-  MoScheme scheme = MoScheme::steady_state;  ///< How offspring compete.
+  MoScheme scheme = MoScheme::steady_state;  ///< Competition among offspring.
   std::size_t batch = 1;                     ///< Offspring asked for at once in the steady state, to keep a GPU busy.
   /// The next four apply to the steady state; all 0 gives the published algorithm. With them it needs a fraction of the
   /// evaluations on planning problems and leaves local fronts (measured in docs/evidence/optimisers.md).

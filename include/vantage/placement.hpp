@@ -30,8 +30,8 @@ struct PlanRegion {
 /// corners of one polygon, x,y a line, from any other file. Throws Error: io, malformed_file.
 PlanRegion read_region(const std::string& file);
 
-/// How a search area is derived if the scene marks none. It consists of upward, gentle and clear surfaces that a person
-/// with a tripod can reach from the entrance.
+/// Settings for deriving a search area if the scene marks none. It consists of upward, gentle and clear surfaces that a
+/// person with a tripod can reach from the entrance.
 struct WalkableOptions {
   Angle max_slope = Angle::degrees(25);  ///< Between a triangle's normal and up; most pitched roofs are steeper.
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
@@ -103,7 +103,7 @@ std::string to_string(ClosedKind);  ///< The name of the enumerator.
 /// Floor that something bars the way to.
 struct ClosedPart {
   double area_m2 = 0;  ///< Its area.
-  double share = 0;    ///< Of all floor, reached and closed.
+  double share = 0;    ///< Share of all floor, reached and closed.
   Vec3 place;          ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
   ClosedKind kind = ClosedKind::room;  ///< Kind of the part.
   Bar bar = Bar::no_way;               ///< Obstacle on the way to it.
@@ -141,8 +141,8 @@ class SearchArea {
   std::span<const LeftOut> left_out() const noexcept;
   std::span<const ClosedPart> not_entered() const noexcept;  ///< Closed parts that it leaves out, largest first.
   std::span<const ClosedPart> entered() const noexcept;      ///< Closed parts that it holds, largest first.
-  std::span<const Vec3> entries() const noexcept;            ///< Where the site is entered, survey frame.
-  bool on_plane() const noexcept;                            ///< Whether a plane was laid under the model.
+  std::span<const Vec3> entries() const noexcept;            ///< Places at which one enters the site, survey frame.
+  bool on_plane() const noexcept;                            ///< True if a plane was laid under the model.
   /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so
   /// are points at most 1e-9 of the (u, v) extent outside. If charts overlap, the first triangle of the mesh wins.
   std::optional<Vec3> locate(Uv uv) const;
@@ -174,10 +174,10 @@ struct PlacedStation {
   Vec3 ground = {};    ///< Point under the head where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;  ///< Tells if a scanner can stand there, or why not.
   bool existing = false;                     ///< Existing station, scanned before the plan.
-  StationSetup setup = {};                   ///< Which scanner, and how it is turned.
+  StationSetup setup = {};                   ///< Scanner on it, and its orientation.
 };
-/// Whether the station adds to what its network measures: not in a hole, a solid or a clash. An existing station was
-/// scanned, so it counts despite a clash in the model. Heads off the ground and outside the search area count.
+/// True if the station counts in measures: it is not in a hole, a solid or a clash. An existing station was scanned, so
+/// it counts despite a clash in the model. Heads off the ground and outside the search area count.
 bool active(const PlacedStation& station);
 
 /// The security volume of section 4.3: two spheres above the ground.
@@ -198,15 +198,15 @@ class ClashChecker {
   /// Throws Error invalid_argument if a value is negative or not finite, or if radius_m >= lower_m (the ground itself
   /// would clash) while the check is on.
   ClashChecker(const Scene& scene, const SecurityVolume& volume = {});
-  /// Whether a mesh comes closer to a sphere above `ground` (survey frame) than its radius.
+  /// True if a mesh comes closer to a sphere above `ground` (survey frame) than its radius.
   bool clashes(const Vec3& ground) const;
   /// Also checks the head, `height_m` above `ground`, and the mast from the lower sphere's bottom to the head.
   bool clashes(const Vec3& ground, double height_m) const;
-  /// Whether a point (survey frame) lies within a closed solid whose triangles face outward.
+  /// True if a point (survey frame) lies within a closed solid whose triangles face outward.
   bool inside(const Vec3& point) const;
   /// First surface straight below a point, at most `limit_m` lower.
   std::optional<Vec3> ground_below(const Vec3& point, double limit_m) const;
-  /// Whether the line between two points (survey frame), e.g. two heads, is free.
+  /// True if the line between two points (survey frame), e.g. two heads, is free.
   bool sees(const Vec3& a, const Vec3& b) const;
   /// The same of many pairs, 1 if free, else 0; an array of one element is for all of the other. Throws Error
   /// invalid_argument, with the row, for a point that is not in reach, and for arrays that do not fit together.
@@ -222,7 +222,7 @@ class ClashChecker {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// How far from a head `Site::nearest_place` looks unless told otherwise.
+/// Default distance from a head up to which `Site::nearest_place` searches.
 inline constexpr double nearest_place_reach_m = 5;
 
 /// Advice for a station that does not stand well.
@@ -238,7 +238,7 @@ std::string move_text(const Vec3& head, const StationMove& move);
 /// A station placed by its head.
 struct PlacedHead {
   PlacedStation station;  ///< (u, v) as given, or of the search area above or below the ground.
-  bool has_uv = false;    ///< Whether (u, v) exists.
+  bool has_uv = false;    ///< True if (u, v) exists.
 };
 
 }  // namespace vantage

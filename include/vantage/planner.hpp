@@ -41,7 +41,7 @@ struct PlanEntry : Evaluation {
 /// A point of the trade-off: the best network found of so many stations.
 struct TradeOffPoint {
   std::vector<PlacedStation> stations = {};     ///< Existing ones first.
-  std::map<std::string, Estimate> values = {};  ///< By the names of their measures, as an entry's.
+  std::map<std::string, Estimate> values = {};  ///< Keyed by the names of their measures, as an entry's.
   std::optional<double> minutes_on_site = {};   ///< Without existing stations.
   bool answer = false;                          ///< The plan's answer.
   bool knee = false;                            ///< The point farthest above the line from the first to the last.
@@ -51,13 +51,13 @@ struct TradeOffPoint {
 /// and a share of that would be much.
 inline constexpr std::size_t few_for_average = 10;
 
-/// How many stations pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
+/// Number of stations that pay (`SurveyProblem::pays_m2`), by a greedy choice among the candidates.
 struct StationsThatPay {
-  double least_m2 = 0;       ///< What a further one would have to capture besides the others.
-  std::size_t stations = 0;  ///< Further stations that do, and those in `parts`.
+  double least_m2 = 0;       ///< Least surface that a further one must capture besides the others.
+  std::size_t stations = 0;  ///< Further stations that capture as much, and those in `parts`.
   std::size_t parts = 0;     ///< Rooms and other parts of the floor that have one of their own besides.
-  double capture = 0;        ///< Share of what is attainable that so many can have: what the plan then requires.
-  double next_m2 = 0;        ///< What a further one would capture.
+  double capture = 0;        ///< Share of what is attainable that so many can have, which the plan then requires.
+  double next_m2 = 0;        ///< Surface that a further one would capture.
 };
 
 /// Surface and time that a further station would add to a plan's answer: the mean of a fifth more of them, chosen one
@@ -86,9 +86,9 @@ struct PlanResult {
   /// Attainable coverage of the candidates and the stations of the front, the denominator of `capture`. Measured on
   /// voxels by which nothing was chosen, unless the site has few. Empty if `capture` is not used.
   std::optional<Estimate> attainable = std::nullopt;
-  std::optional<StationsThatPay> pays = {};    ///< Where `SurveyProblem::pays_m2` decides the number.
-  std::optional<FurtherStation> further = {};  ///< Where `capture` is used and the fewest stations are asked for.
-  /// Stations against what they capture, from one to a few beyond the answer, if `capture` decides their number.
+  std::optional<StationsThatPay> pays = {};    ///< Set if `SurveyProblem::pays_m2` decides the number.
+  std::optional<FurtherStation> further = {};  ///< Set for the fewest stations if `capture` is used.
+  /// Numbers of stations and their capture, from one to a few beyond the answer, if `capture` decides the number.
   /// Estimated on the voxels of `attainable`, except for the answer.
   std::vector<TradeOffPoint> trade_off;
   std::vector<PlanIteration> history;  ///< One for each iteration.
@@ -103,7 +103,7 @@ struct PlanResult {
   std::uint64_t resumed_evaluations = 0;         ///< Number of evaluations taken from a checkpoint.
   StopReason stop_reason = StopReason::running;  ///< Reason for which the search ended.
   double seconds = 0, trace_seconds = 0;         ///< Time of the call, and of its tracing; not reproducible.
-  Work work = {};                                ///< Of this plan, without building the site's simulators.
+  Work work = {};                                ///< Work of this plan, without building the site's simulators.
 };
 
 /// As `Progress`, for a search.

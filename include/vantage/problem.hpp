@@ -51,10 +51,10 @@ struct SurveyProblem {
   /// objectives under all requirements.
   bool fewest = false;
   /// Each station has to capture so much surface that the others do not, in m². A plan finds the number after which a
-  /// further one would not, adds one for each room and part of the floor that has none and where one adds a fifth of
-  /// that at least, and requires what so many can `capture`, or what a requirement asks for if that is more. Further
-  /// stations that links need stay as far as they pay, too. Where `stations_max` or a limit on the time on site ends it
-  /// before, it requires no more than its answer has.
+  /// further one would not. It adds one for each room and part of the floor that has none and where one adds a fifth of
+  /// that at least. It requires what so many can `capture`, or a requirement's limit if that is more. Further stations
+  /// that links need stay as long as they pay. If `stations_max` or a limit on the time on site ends it before, it
+  /// requires only what its answer has.
   std::optional<double> pays_m2 = {};
   /// The same as a share of what the stations before it capture on average, of few as if they were
   /// `few_for_average`; the larger of both counts.

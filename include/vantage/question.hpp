@@ -14,12 +14,12 @@
 
 namespace vantage {
 
-/// Defaults: new surface that a further station has to capture, in m² and as a share of what those before it capture on
-/// average, and least distance between two stations. Lengths are of sites of usual size (`Site::length_scale()`).
+/// Defaults: new surface that a further station has to capture, in m² and as a share of the average of those before it,
+/// and least distance between two stations. Lengths are of sites of usual size (`Site::length_scale()`).
 inline constexpr double default_pays_m2 = 25, default_pays_share = 0.1, default_apart_m = 1;
 
-/// A question. By default it asks for the connected stations that pay: as many as capture `default_pays_m2` each, and
-/// `default_pays_share`.
+/// A question. The default asks for the connected stations that pay: as many as capture `default_pays_m2` and
+/// `default_pays_share` each.
 struct SurveyQuestion {
   std::optional<std::string> problem = {};     ///< "survey", or one of `problem_names()`.
   std::optional<double> capture = {};          ///< Least share of attainable coverage, whatever it takes.
@@ -45,7 +45,7 @@ struct SurveyQuestion {
   std::vector<Target> existing_targets = {};            ///< As `SurveyProblem::existing_targets`.
   TargetOptions target = {};                            ///< As `SurveyProblem::target`.
 
-  /// Whether it asks for the fewest stations.
+  /// True if it asks for the fewest stations.
   bool asks_for_fewest() const;
 };
 

@@ -26,7 +26,7 @@ struct ReportOptions {
   /// Points of every voxel under the answer. Null: the answer's own, or from a sample.
   const VoxelField* field = nullptr;
   const MissedVoxels* missed = nullptr;         ///< Why voxels of the answer are not captured. Null: left out.
-  std::span<const ElementShare> elements = {};  ///< Of the answer, for a table in report.html; empty: left out.
+  std::span<const ElementShare> elements = {};  ///< For a table in report.html, of the answer; empty: left out.
   bool pictures = true;                         ///< Show the views of the answer's stations in report.html.
   std::filesystem::path logo = {};              ///< Picture at the head, .png or .jpg; empty: none.
   std::string date = {};                        ///< Date at the head, as it is to be read; empty: none.

@@ -82,8 +82,8 @@ struct Scanner {
   /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
   /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;
-  /// How long a charged battery lasts: minutes with the scanner on, and scans. Of a scanner that takes two at once, a
-  /// half of what both last. Each is 0, not stated, or 1 and more; if both are stated, the one that ends first counts.
+  /// Life of a charged battery: minutes with the scanner on, and scans. If a scanner takes two at once, each has half
+  /// of what both last. 0: not stated, else 1 or more. If both are stated, the one that ends first counts.
   double battery_min = 0;
   double battery_scans = 0;  ///< See `battery_min`.
 
@@ -92,7 +92,7 @@ struct Scanner {
   std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }  ///< Rays of a scan: rows times columns.
   RayAngles angles(std::uint64_t ray) const;                                ///< REQUIRES: ray < rays().
   double time_s(std::uint64_t ray) const;  ///< Seconds from the begin of a scan. REQUIRES: ray < rays().
-  double seconds() const;                  ///< Of a scan, without setting up.
+  double seconds() const;                  ///< Duration of a scan, without setting up.
   /// Takes other steps. Uneven rows stay where they are. Throws Error invalid_argument if the scanner has a list of
   /// directions.
   void set_steps(Angle azimuth, Angle zenith);

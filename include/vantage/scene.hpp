@@ -47,7 +47,7 @@ struct MeshInfo {
 /// A room that the file names, as IFC does (`IfcSpace`). Survey frame.
 struct Room {
   std::string name;    ///< Its number and its long name.
-  std::string storey;  ///< Of the `IfcBuildingStorey` above it; "" if there is none.
+  std::string storey;  ///< Name of the `IfcBuildingStorey` above it; "" if there is none.
   Box box;             ///< Around it.
   /// Loops around its floor, seen from above: corners (x, y). A point is in the room if it is within an odd number of
   /// them. Empty: the box alone.
@@ -95,7 +95,7 @@ const char* to_string(SharedMeshes shared) noexcept;  ///< "auto", "always", "ne
 /// Throws Error invalid_argument for any other text.
 SharedMeshes shared_meshes_from_string(const std::string& text);
 
-/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names; a node without a name goes by its
+/// Settings of `Scene::load`. Patterns are shell globs (`*`, `?`) on node names; a node without a name goes by its
 /// mesh's. A node hands its role down to its children.
 /// Precedence: pattern, then extras on node, mesh, material. If several patterns match a node, the one with most
 /// letters other than `*` and `?` wins; among equals, the last in the order below.
@@ -132,8 +132,8 @@ struct SceneOptions {
   /// Patterns (case does not matter) of the layers that a floor plan has its walls on. Empty: those named as walls,
   /// else those whose lines enclose rooms.
   std::vector<std::string> wall_layers = {};
-  std::optional<double> wall_height_m = std::nullopt;  ///< Of a floor plan, above 0. Empty: 2.7.
-  /// Meshes that several nodes place are stored so (docs/scenes.md). It changes memory, and results by no more than the
+  std::optional<double> wall_height_m = std::nullopt;  ///< Height in a floor plan, above 0. Empty: 2.7.
+  /// Storage of meshes that several nodes place (docs/scenes.md). It changes memory, and results by no more than the
   /// rounding of coordinates (docs/evidence/stability.md).
   SharedMeshes shared_meshes = SharedMeshes::automatic;
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
@@ -167,15 +167,15 @@ class Scene {
   /// Surveyed and blocking ones; indices of meshes are their places here.
   std::span<const MeshInfo> meshes() const noexcept;
   std::size_t triangle_count() const noexcept;   ///< Triangles of all surveyed and blocking meshes.
-  std::span<const Room> rooms() const noexcept;  ///< In the file's order; empty where it has none.
-  /// Whether the file marks a search area. If not, one is derived from walkable surfaces.
+  std::span<const Room> rooms() const noexcept;  ///< In the file's order; empty if it has none.
+  /// True if the file marks a search area. If not, one is derived from walkable surfaces.
   bool has_search_area() const noexcept;
   /// Readable notes of the load: what was dropped or turned, how much precision was lost.
   std::span<const std::string> notes() const noexcept;
   /// The `vantage` object of the file's `asset.extras` as JSON text, "{}" if absent: default parameters of built-in
   /// scenes.
   const std::string& defaults_json() const noexcept;
-  const SceneOptions& options() const noexcept;  ///< How the file was read.
+  const SceneOptions& options() const noexcept;  ///< Settings the file was read with.
   /// Hash of everything that can change a result: geometry, roles, weights, materials, search area. Names are left out.
   std::uint64_t fingerprint() const noexcept;
 

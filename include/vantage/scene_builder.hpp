@@ -65,14 +65,14 @@ class SceneBuilder {
 
   /// Returns the scene as it stands now. Throws Error malformed_file if nothing is surveyed, as `Scene::load` does.
   Scene build();
-  bool rebuilt_all() const noexcept;  ///< Whether the last `build` remade every mesh.
+  bool rebuilt_all() const noexcept;  ///< True if the last `build` remade every mesh.
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// What changes in a scene. Patterns are shell globs (`*`, `?`) on the names of `Scene::meshes()`, which are those of
+/// Changes to a scene. Patterns are shell globs (`*`, `?`) on the names of `Scene::meshes()`, which are those of
 /// nodes.
 struct SceneChange {
   /// Patterns of meshes to move, with their new pose: from where they stand in the scene, rotated about the origin of

@@ -39,7 +39,7 @@ struct SettingRow {
   /// Throws Error invalid_argument, as `set` does, if the options hold a value that `set` does not read. Empty: it
   /// reads every value of the type.
   std::function<void(const Options&, const std::string& what)> check = {};
-  std::function<bool(const Options&)> given;  ///< Whether the user gave it a value. Empty: it always has one.
+  std::function<bool(const Options&)> given;  ///< True if the user gave it a value. Empty: it always has one.
   bool repeated = false;                      ///< Takes any number of values, each given on its own.
   bool by_scene = false;                      ///< A scene may carry a default for it.
   bool by_preset = false;                     ///< A scanner's preset gives it, which overrides a scene's default.

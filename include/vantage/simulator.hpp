@@ -110,7 +110,7 @@ struct BeamOptions {
 /// Settings of a beam; any of them gives the beam its width.
 const SettingTable<std::optional<BeamOptions>>& beam_settings();
 
-/// How `Simulator::scan` works.
+/// Settings of `Simulator::scan`.
 struct ScanOptions {
   std::uint32_t outputs = scan_position;  ///< `ScanOutput` bits.
   std::uint32_t place = 0;                ///< Station's index in its network; it keys the noise.
@@ -178,7 +178,7 @@ struct ScanPoints {
 /// As the size of a sample: all surveyed voxels.
 inline constexpr std::uint64_t every_voxel = std::numeric_limits<std::uint64_t>::max();
 
-/// How `Simulator::evaluate` and `evaluate_each` trace every ray.
+/// Settings of `Simulator::evaluate` and `evaluate_each`, which trace every ray.
 struct EveryRayOptions {
   bool overlap = true;  ///< Keeps station masks and counts pairs.
   bool skip = true;     ///< Leaves out rays and parts of rays that cannot reach a surveyed voxel. Counts do not change.
@@ -198,7 +198,7 @@ struct EveryRayOptions {
 enum class CountTo {
   all,   ///< Every point.
   goal,  ///< Up to the goal density: a voxel there may show fewer points than it got.
-  one,   ///< Whether there is any: pairs and registration are right, and no coverage.
+  one,   ///< One point at most: pairs and registration are right, and no coverage.
 };
 
 /// Sample and outputs of `Simulator::evaluate_sampled`.

@@ -27,7 +27,7 @@ namespace vantage {
 /// Settings of a site. `Site` chooses values that are left empty, from the scene's own defaults if it has some;
 /// `Site::choices()` lists them. Lengths in metres.
 struct SiteOptions {
-  SceneOptions scene = {};  ///< How the file is read.
+  SceneOptions scene = {};  ///< Settings for reading the file.
 
   /// The scanners that stations choose from, complete. Empty: one, made of the members up to `battery`.
   std::vector<Scanner> scanners = {};
@@ -138,7 +138,7 @@ class Site {
   /// All settings, for results and configuration files.
   Settings settings() const;
 
-  bool has_area();  ///< Whether there is ground to stand on.
+  bool has_area();  ///< True if there is ground to stand on.
   /// Throws Error invalid_argument if there is none.
   const SearchArea& area();
   const ClashChecker& clash();  ///< Made if needed.

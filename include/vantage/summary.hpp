@@ -25,8 +25,8 @@ std::string mixed_text(const MixedPoints& mixed, std::uint64_t points);
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
                           std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {},
                           std::span<const std::string> set_ups = {});
-/// How each station may be set up by the control points that its scan measures: "resection from 3". Empty if there is
-/// no control point.
+/// Returns for each station how it may be set up by the control points that its scan measures: "resection from 3".
+/// Empty if there is no control point.
 std::vector<std::string> set_ups_of(const Evaluation& evaluation);
 
 /// A line of a summary: its heading ("planned", "captured", "mixed", "linked", "registered", "to check", "control",

@@ -28,15 +28,15 @@ namespace vantage {
 /// A point that stands for all points of a scan in a small cell.
 struct TakenPoint {
   std::array<float, 3> offset;  ///< Their mean, from the scanner's head, along the survey's axes, metres.
-  std::uint32_t points;         ///< How many they are, at most 16 384.
+  std::uint32_t points;         ///< Number of these points, at most 16 384.
 };
 
-/// How a scan was fitted to the model.
+/// Result of fitting a scan to the model.
 struct ScanFit {
-  bool fitted = false;    ///< False: the scan keeps the pose of its file.
+  bool fitted = false;    ///< Reason why not, as the end of a sentence that begins with the scan's name.
   std::string why = {};   ///< Then the reason, as the end of a sentence that begins with the scan's name.
-  double shift_m = 0;     ///< How far its head was moved.
-  Angle turn = {};        ///< And by how much it was turned.
+  double shift_m = 0;     ///< Distance by which its head was moved.
+  Angle turn = {};        ///< Angle by which it was turned.
   double residual_m = 0;  ///< Root mean square distance of its points near the model from the model's planes.
   double near_share = 0;  ///< Share of its points that lie near the model.
 };
@@ -77,8 +77,8 @@ struct FoundThing {
 struct SeenThrough {
   std::string mesh;      ///< `MeshInfo::name`.
   Box box = {};          ///< Around what was seen through, survey frame, metres.
-  double area_m2 = 0;    ///< Of what was seen through.
-  bool removed = false;  ///< It is all of the mesh, nearly: the site as it was found does without it.
+  double area_m2 = 0;    ///< Area of the surface that was seen through.
+  bool removed = false;  ///< True if it is nearly all of the mesh: the site as it was found does without it.
 };
 
 /// Cells beside what scans saw, in the space of a person above the ground, that no scan saw.
@@ -88,7 +88,7 @@ struct UnknownSpace {
   std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Ascending.
 };
 
-/// How a site differs from its model, by the scans.
+/// Differences between a site and its model, by the scans.
 struct SiteChanges {
   std::vector<FoundThing> things = {};  ///< Largest first.
   /// Things of one scan that another scan saw through: people who stood still, cars that left. They count as nothing.
@@ -96,15 +96,15 @@ struct SiteChanges {
   std::vector<SeenThrough> seen_through = {};           ///< Parts of the model that scans saw through.
   double cell_m = 0;                                    ///< Cells of things.
   Vec3 corner = {};                                     ///< Lower corner of cell (0, 0, 0), survey frame.
-  std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Of all things, ascending.
+  std::vector<std::array<std::int32_t, 3>> cells = {};  ///< Cells of all things, ascending.
   std::vector<std::uint32_t> removed = {};              ///< Meshes of `Scene::meshes()`, ascending.
   UnknownSpace unknown = {};                            ///< If it is a goal: see `unknown_space()`.
   /// True if the site differs from its model.
   bool any() const { return !cells.empty() || !removed.empty() || !unknown.cells.empty(); }
 };
 
-/// Things are clusters of points farther than `tolerance_m` from every surface, larger than 0.3 m. So is a person who
-/// stood still, unless another scan saw through them. Empty if stopped.
+/// Finds things: clusters of points farther than `tolerance_m` from every surface, larger than 0.3 m. A person who
+/// stood still is one too, unless another scan saw through them. Empty if stopped.
 SiteChanges changes_of(Site& site, std::span<const TakenScan> scans, double tolerance_m = default_tolerance_m,
                        const Progress& progress = {});
 
@@ -129,7 +129,7 @@ struct NextConfig {
   double taken_within_m = 1;
   std::uint64_t sample_voxels = 20'000;  ///< Voxels that candidates are judged on.
   std::size_t most = 32;                 ///< Most further stations.
-  bool unknown = false;                  ///< Whether the edge of `unknown_space()` is a goal.
+  bool unknown = false;                  ///< True if the edge of `unknown_space()` is a goal.
 };
 
 /// Its members as named values, for results and configuration files.
@@ -142,7 +142,7 @@ const SettingTable<NextConfig>& next_settings();
 struct NextStation {
   PlacedStation station;                    ///< Place and set-up.
   std::optional<std::size_t> planned = {};  ///< Index among the planned stations, if it is one.
-  double gain = 0;                          ///< What it adds to the captured share, after those before it.
+  double gain = 0;                          ///< Share that it adds to the captured one, after those before it.
   double captured = 0;                      ///< The share with it.
   /// Its strongest link to a station before it: index among the taken scans, then the next stations; empty if alone.
   std::optional<std::size_t> linked_to = {};
@@ -155,24 +155,24 @@ struct NextStation {
 struct PlannedStation {
   std::optional<std::size_t> taken_as = {};  ///< Scan that was taken there.
   StationStatus status = StationStatus::ok;  ///< On the site as it was found.
-  double gain = 0;                           ///< What it would add now, as a share of what is attainable.
-  bool chosen = false;                       ///< Whether it is among the next stations.
+  double gain = 0;                           ///< Share of what is attainable that it would add now.
+  bool chosen = false;                       ///< True if it is among the next stations.
 };
 
 /// The answer tells what is captured, what is missing, and where to stand next. Shares are of what is attainable on the
 /// site as found.
 struct NextAnswer {
-  Estimate captured;                    ///< By the real points.
+  Estimate captured;                    ///< Share by the real points.
   Estimate attainable;                  ///< Share of the site's surface that stations can capture.
-  std::vector<double> captured_by;      ///< By each taken scan alone.
+  std::vector<double> captured_by;      ///< Share by each taken scan alone.
   std::vector<double> hidden_by;        ///< Missing share that a thing hides from all taken scans, one for each thing.
   double not_seen = 0;                  ///< Missing share that no thing hides.
   double unknown = 0;                   ///< Missing share that is the edge of unknown space.
   std::vector<NextStation> next;        ///< Empty: there is enough.
   std::vector<PlannedStation> planned;  ///< One for each planned station.
   double captured_then = 0;             ///< With all of `next`.
-  bool linked = true;                   ///< Whether taken scans and next stations are connected by links.
-  bool enough = true;                   ///< Whether `captured_then` reaches the wanted share, and all are linked.
+  bool linked = true;                   ///< True if links connect all taken scans and next stations.
+  bool enough = true;                   ///< True if `captured_then` reaches the wanted share, and all are linked.
   Visit visit = {};                     ///< The round over the next stations.
   std::size_t candidates = 0;           ///< Places that were tried.
   std::vector<PlacedStation> taken;     ///< The scans as existing stations, on the site as found.

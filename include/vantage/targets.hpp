@@ -51,15 +51,15 @@ bool any_ties(std::span<const Target> targets) noexcept;
 
 /// Needs of a scan that measures a target, and places for new ones.
 struct TargetOptions {
-  double diameter_m = 0.145;  ///< Of a sphere, or width of a checkerboard; above 0.
+  double diameter_m = 0.145;  ///< Diameter of a sphere, or width of a checkerboard; above 0.
   double height_m = 1.5;      ///< Centre of a proposed one above the ground.
   /// Standard deviation of a fitted centre in each axis, above 0, besides range noise and what a calibration leaves.
   /// Empty: 0.2 mm by a scanner that states its accuracy of angles and of ranges, 1 mm by one that does not.
   std::optional<double> sigma_m = {};
   std::size_t least_points = 60;     ///< A scan with fewer points on a target does not measure it.
-  std::size_t least = 0, most = 40;  ///< Proposed targets.
-  /// What the predicted registration error is judged by. Proposals end once it is met. Empty: the class that the site's
-  /// scans are for (`SiteOptions::deliverable`), if any, and else LOA30.
+  std::size_t least = 0, most = 40;  ///< Number of proposed targets.
+  /// Accuracy class that judges the predicted registration error. Proposals end once it is met. Empty: the class that
+  /// the site's scans are for (`SiteOptions::deliverable`), if any, and else LOA30.
   std::optional<AccuracyClass> accuracy_class = {};
   std::optional<double> largest_rms_m = {};  ///< Proposals go on while the error is above this; above 0.
   bool exact = false;  ///< Trace every ray, as evaluations and plans do, in place of a sample of the voxels.

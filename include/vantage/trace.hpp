@@ -15,7 +15,7 @@
 
 namespace vantage {
 
-/// How rays are traced. Counts do not depend on the choice, except for ray-triangle rounding at edges.
+/// Engines that trace rays. Counts do not depend on the choice, except for ray-triangle rounding at edges.
 enum class Engine {
   automatic,    ///< The best hardware GPU; else `embree`.
   ray_query,    ///< Vulkan compute shaders with VK_KHR_ray_query.
@@ -177,7 +177,7 @@ class StationMasks {
 
   bool empty() const { return words_ == 0; }      ///< No masks were asked for.
   std::size_t voxels() const { return voxels_; }  ///< Number of voxels.
-  std::size_t words() const { return words_; }    ///< Of 64 stations each.
+  std::size_t words() const { return words_; }    ///< Number of words, for 64 stations each.
   /// Bit b means that station 64 w + b has a point in the voxel. REQUIRES: w < words(), voxel < voxels().
   std::uint64_t word(std::size_t w, std::size_t voxel) const {
     if (words_ == 1) return only_word_[voxel];

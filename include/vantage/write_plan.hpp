@@ -18,7 +18,7 @@
 
 namespace vantage {
 
-/// How a result folder is written.
+/// Settings of `write_plan()`.
 struct FolderOptions {
   ReportOptions report = {};  ///< Head of the reports. Their field and missed surface are the answer's.
   bool reports = true;        ///< Write report.html and report.pdf, if this build can.
@@ -41,7 +41,7 @@ struct FolderWatch {
   std::stop_token stop = {};                               ///< Leaves out what a time limit leaves out.
 };
 
-/// What was written.
+/// Result of `write_plan()`.
 struct WrittenFolder {
   std::vector<std::string> left_out = {};  ///< Names of the files that the time or a stop left out, sorted.
   std::optional<MissedVoxels> missed =

@@ -19,36 +19,36 @@ namespace vantage {
 // Traces stations one by one and returns their columns on a sample. A stopped call returns the columns of the first
 // ones.
 using TraceColumns = std::function<CoverageMatrix(std::span<const PlacedStation>, const Progress&)>;
-// On a sample of so many voxels of a simulator, which it borrows. `goals`: of each voxel, in place of the simulator's.
+// Traces on a sample of the simulator's voxels. Borrows it. `goals`: one for each voxel, instead of the simulator's.
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals = {});
-// Of the surroundings: which voxels each station sees, without how densely.
+// Traces on a sample of the surroundings: the voxels that each station sees, without their density.
 TraceColumns seen_columns_of(Simulator& surroundings, std::uint64_t sample_voxels);
 
-// Which stations stand so near that one of them does for both.
+// Distances below which one of two stations replaces the other.
 struct StationSpacing {
-  double nearest_m = 0;  // whatever stands between them
-  // The least distance of a station with that column from another one that it sees; empty: nearest_m alone.
+  double nearest_m = 0;  // at any visibility
+  // Returns the least distance of a station with that column from others that it sees; empty: nearest_m alone.
   std::function<double(const PlacedStation&, std::span<const CoverageMatrix::Entry>)> least_m = {};
-  std::function<bool(const Vec3&, const Vec3&)> sees = {};  // whether nothing stands between two heads
+  std::function<bool(const Vec3&, const Vec3&)> sees = {};  // true if nothing stands between two heads
 };
-// A quarter of the median distance from its head to what a station captures half of at least. `centres`: of the
-// elements.
+// A quarter of the median distance from a head to the elements that its station captures to a half at least. `centres`:
+// one for each element.
 inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
-// True if a link of each of these pairs of stations ties storeys past the stair.
+// Returns for each pair of stations 1 if its link ties storeys past the stair, else 0.
 using PastStairs = std::function<std::vector<std::uint8_t>(std::span<const PlacedStation>,
                                                            std::span<const std::pair<std::size_t, std::size_t>>)>;
 
-// Lower bound of a share of which a sample of `size` shows `share`, by so many standard errors (Wilson: Probable
-// Inference, the Law of Succession, and Statistical Inference, 1927). REQUIRES: size > 0.
+// Lower bound of a share that is `share` on a sample of `size`, by so many standard errors (Wilson: Probable Inference,
+// the Law of Succession, and Statistical Inference, 1927). REQUIRES: size > 0.
 double least_share(double share, double size, double errors);
 
 class CandidateTable {
  public:
-  // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each
-  // other. `unsampled`: the share of the surroundings that their sample leaves out.
+  // `surroundings`: columns over all surfaces; empty if links do not matter. Stations that stand too near exclude each
+  // other. `unsampled`: share of the surroundings outside the sample.
   CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing, double unsampled = 1);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
@@ -60,23 +60,23 @@ class CandidateTable {
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }
-  // Takes overlaps for the least that their sample admits from now on, by so many standard errors: among thousands of
-  // pairs, those that are chosen as links are those that the sample flatters.
+  // Replaces sampled overlaps by lower bounds, so many standard errors below, from now on. Pairs chosen as links among
+  // thousands are those that the sample overestimates.
   void take_least_overlaps(double errors);
-  // Takes in overlaps between chosen stations, as every ray or a larger sample shows them. They stay so. REQUIRES: a
-  // matrix of as many.
+  // Takes in overlaps between chosen stations, by every ray or a larger sample. They stay known. REQUIRES: a matrix of
+  // as many stations.
   void take_in(std::span<const std::size_t> chosen, const ScanOverlapMatrix& overlap);
-  // Whether a pair's overlap was taken in.
+  // True if a pair's overlap was taken in.
   bool is_known(std::size_t i, std::size_t j) const { return known_.contains(std::minmax(i, j)); }
-  // From now on links of at least `link` that tie storeys past the stair do not count, wherever others connect the
-  // stations of both ends: the graph tells that they share nothing.
+  // From now on, ignores links of at least `link` that tie storeys past the stair, if others connect the stations of
+  // both ends. The graph has no overlap for them.
   void keep_to_stairs(PastStairs past_stairs, double link);
   void count_all_links();  // as before
-  // Standard error of a sampled overlap of that share, for the station of a network that sees least of the sample.
+  // Standard error of a sampled overlap of `share`, for the station of a network that sees the fewest sampled voxels.
   double overlap_error(std::span<const std::size_t> network, double share) const;
-  // The station of the table that stands nearest. REQUIRES: a table that has some.
+  // Returns the station of the table that is nearest. REQUIRES: a table with stations.
   std::size_t nearest(const PlacedStation& station) const;
-  // Whether no two of these stations stand too near, each taken for the nearest one of the table.
+  // True if no two of these stations stand too near. Each counts as the nearest one of the table.
   bool spaced(std::span<const PlacedStation> stations) const;
   // Extended by each addition.
   const StationGraph& graph() const { return graph_; }

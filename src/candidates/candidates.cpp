@@ -18,8 +18,8 @@ namespace {
 // Candidates between two checks of the clock.
 constexpr std::size_t chunk = 64;
 constexpr std::size_t kExpected = 512;
-// Whatever the sum over a large site says, there are candidates until the ground has one within this distance, and
-// every place sees one within this multiple of their spacing. No room is missed by candidates nearer than its width.
+// Candidates grow at least until all ground has one within this distance, and every place sees one within this multiple
+// of their spacing. Candidates nearer than the width of a room do not miss it.
 constexpr double kFarthest_m = 3, kSeenWithin = 2, kNarrowest_m = 1;
 
 SpreadPositions spread_or_refuse(Site& site, std::size_t most) {
@@ -112,7 +112,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
     while (found.coverage_.size() < goal && found.ended_.empty()) {
       const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
       const auto share = [&](double done) {
-        // How often they are doubled is not known yet; mostly this often.
+        // The number of doublings is not known yet; `kExpected` candidates is the most common end.
         const std::size_t expected = std::min(std::max(goal, kExpected), spread.stations.size());
         progress((static_cast<double>(first) + done * static_cast<double>(here)) / static_cast<double>(expected));
       };

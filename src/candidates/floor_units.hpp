@@ -30,8 +30,8 @@ class FloorUnits {
   std::vector<UvBox> charts_;       // one alone is no part
 };
 
-// Units that take a station of their own where one captures `least_m2` that others do not, by a sample with
-// `element_m2` of surface for each voxel.
+// Units that get a station of their own if it captures `least_m2` of new surface. Each voxel of the sample stands for
+// `element_m2` of surface.
 struct UnitsToVisit {
   FloorUnits units;
   double least_m2 = 0, element_m2 = 0;

@@ -63,7 +63,7 @@ class Judge {
     // The nearest first: few lines decide most voxels.
     std::vector<std::pair<double, std::size_t>> order(candidates_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
-    // By far most lines are never looked at, so the order is found as it is needed.
+    // Most lines are never examined, so a heap orders only those that are.
     std::ranges::make_heap(order, std::greater<>{});
     std::size_t left = order.size();
     bool free_line = false, in_range = false, steep = false, bright = false;

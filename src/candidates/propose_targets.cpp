@@ -64,7 +64,7 @@ std::vector<Target> useful(const ClashChecker& clash, std::vector<Target> places
   return places;
 }
 
-// Whether a station measures all three targets, and they lie nearly on a line.
+// True if one station measures all three targets, and they lie nearly on a line.
 bool on_a_line(const Target& a, const Target& b, const Target& c) {
   const bool together = std::ranges::any_of(a.stations, [&](std::size_t station) {
     return std::ranges::binary_search(b.stations, station) && std::ranges::binary_search(c.stations, station);
@@ -83,8 +83,8 @@ bool on_a_line_with_any(const Target& target, std::span<const Target> others) {
   return false;
 }
 
-// Chooses places by what each takes from the mean square error, without an adjustment for each: a target's
-// information is Uᵀ U with few rows, so the covariance follows by the matrix inversion lemma.
+// Chooses places by their decrease of the mean square error, without an adjustment for each: a target's information is
+// Uᵀ U with few rows, so the covariance follows by the matrix inversion lemma.
 class TargetChooser {
  public:
   TargetChooser(const RegistrationAdjustment& adjustment, std::span<const RegistrationTarget> places)
@@ -95,12 +95,12 @@ class TargetChooser {
 
   double mean_square() const { return std::max((metric_.cwiseProduct(covariance_)).sum(), 0.0); }
 
-  // What a target at a place takes from the mean square error; 0 if fewer than two stations measure it.
+  // Decrease of the mean square error by a target at a place; 0 if fewer than two stations measure it.
   double gain(std::size_t place) const {
     if (rows_[place].columns.empty()) return 0;
     return (identity(place) + product(place, covariance_)).llt().solve(product(place, weighted_)).trace();
   }
-  // What it grows by without the target at a place, which was put there.
+  // Increase of the mean square error without the target that was put at a place.
   double loss(std::size_t place) const {
     return (identity(place) - product(place, covariance_)).llt().solve(product(place, weighted_)).trace();
   }

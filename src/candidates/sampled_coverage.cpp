@@ -28,7 +28,7 @@ SampledCoverage::SampledCoverage(const Simulator& simulator, std::uint64_t sampl
     weights.push_back(simulator.voxel_weight(voxel));
     point_weights_.push_back(simulator.point_weight(voxel));
   }
-  // All are 1, or none is.
+  // Either all point weights are 1, or none is.
   if (!point_weights_.empty() && point_weights_.front() == 1) point_weights_.clear();
   matrix_ = CoverageMatrix(std::move(weights),
                            simulator.goal_density() * (point_weights_.empty() ? 1 : densest_point_weight));

@@ -76,7 +76,7 @@ class PositionGrid {
  public:
   explicit PositionGrid(double side_m) : side_m_(side_m) {}
   void add(const Vec3& position) { squares_[square(position)].push_back(position); }
-  // Whether with(position) holds for one within a square's side.
+  // True if with(position) holds for a position within a square's side.
   template <class With>
   bool any_near(const Vec3& place, const With& with) const {
     const auto [x, y] = square(place);

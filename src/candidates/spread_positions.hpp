@@ -26,8 +26,8 @@ double ground_area_m2(const SearchMesh& mesh);
 SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                  std::size_t most);
 
-// Those of `others` from which none of `stations` within `reach_m` is seen, nor one of those before: ground behind
-// walls that are nearer than the next station.
+// Returns those of `others` that see none of `stations` within `reach_m`, nor one returned before: ground behind walls
+// that are nearer than the next station.
 std::vector<PlacedStation> unseen_positions(const PlacementOracle& site, std::span<const PlacedStation> stations,
                                             std::span<const PlacedStation> others, double reach_m);
 

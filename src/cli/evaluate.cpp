@@ -146,7 +146,7 @@ struct EvaluateCommandOptions {
   }
 };
 
-// As `plan` looks at it before it searches.
+// Finds what is attainable, as `plan` does before its search.
 Candidates attainable_by(Site& site, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "looking at what can be captured");
   return find_candidates(site, {.sample_voxels = sample},
@@ -205,7 +205,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     refuse("--registration: looks at what scans share, which --no-overlap leaves out");
 }
 
-// How the network is evaluated, but for its names and what is attainable.
+// Options for the evaluation, except for names and attainable coverage.
 EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simulator& simulator,
                                      const Network& network, const Progress& progress) {
   EvaluationOptions chosen{.overlap = !options.no_overlap,

@@ -18,12 +18,12 @@
 namespace vantage::cli {
 namespace {
 
-// Scans with a smaller share of points near the model are told.
+// Share of points near the model below which a scan gets a warning.
 constexpr double kSurelyNear = 0.6;
-// Further things are told together, and so are small ones that hide little.
+// Number of things that are listed singly. Further ones, and small ones that hide little, are listed together.
 constexpr std::size_t kToldThings = 8;
 constexpr double kLittle = 0.0005, kLargeThing_m = 1;
-// A planned station that would add less is no longer worth it.
+// Gain below which a planned station is no longer worth its time.
 constexpr double kWorthless = 0.01;
 
 struct NextOptions {

@@ -32,7 +32,7 @@ bool names_another_command(CLI::App& command, const std::string& key) {
          std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return other->get_name() == key; });
 }
 
-// Whether a higher layer excludes this option: --exact against a configured sample.
+// True if a higher layer excludes this option: --exact against a configured sample.
 bool excluded(const CLI::Option& option) {
   const auto& others = option.get_excludes();
   return std::any_of(others.begin(), others.end(), [](const CLI::Option* other) { return other->count() > 0; });

@@ -36,7 +36,7 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string
 CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        std::vector<std::string>& target);
 
-// How coordinates of .ply files are written.
+// Adds the option for the coordinates of .ply files.
 CLI::Option* add_ply_doubles(CLI::App& app, PlyCoordinates& target);
 
 // Adds an option for each row of a table, under the heading `group`, if given.

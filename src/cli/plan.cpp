@@ -26,9 +26,9 @@
 namespace vantage::cli {
 namespace {
 
-// A first network is chosen by no more voxels than this.
+// Largest sample for the choice of a first network.
 constexpr std::uint64_t kStartSample = 20'000;
-// The search has so much of the time left at least.
+// Least share of the remaining time for the search.
 constexpr double kStartTimeShare = 0.5;
 
 struct PlanOptions {
@@ -108,7 +108,7 @@ void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
   for (const PlacedStation& station : stations) question.existing_setups.push_back(station.setup);
 }
 
-// Voxels that a start is chosen by.
+// Sample size for the choice of a start.
 std::uint64_t start_sample(const PlanConfig& config) {
   return config.exact ? every_voxel : std::min<std::uint64_t>(config.sample_voxels, kStartSample);
 }
@@ -131,7 +131,7 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
   return heads;
 }
 
-// Heads of the best choice for the largest network that was found in time; empty where none was.
+// Heads of the best choice for the largest network that was found in time; empty if none was.
 std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const PlanConfig& config, double seconds,
                               Program& program, std::stop_token stop) {
   const auto least = [&](Objective::Kind kind) {
@@ -189,7 +189,7 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
     if (now.attainable)
       spdlog::info("{:.1f} % of the site is attainable, by the best of {} places all over the ground for each surface",
                    100 * *now.attainable, now.evaluations);
-    // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
+    // Tells the remaining time as soon as it is known, of the whole plan and of each long part.
     if (now.whole_seconds_left) {
       const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
       spdlog::info("the number of stations is nearly known; about {} left in all", duration_text(left));
@@ -213,7 +213,7 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
   return plan(site, problem, config, watch);
 }
 
-// Where the search starts, if not anywhere.
+// Computes a start for the search if --seed-with asks for one.
 void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem, PlanConfig& config, Program& program,
                   const Deadline& start_by) {
   if (options.seed_with.empty()) return;

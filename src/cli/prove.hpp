@@ -9,12 +9,12 @@
 
 namespace vantage::cli {
 
-// What candidates capture together of what is attainable, by their columns.
+// Returns the captured share of attainable coverage of a choice of candidates, by their columns.
 Estimate captured_by(const AttainableCounts& attainable, const CoverageMatrix& matrix,
                      std::span<const std::size_t> chosen);
 
-// Bounds what any network of as many stations captures, the first `kept` of `stations` given, says how near these come,
-// and writes it to `file` as JSON. Of what is attainable, or else coverage.
+// Bounds the captured share of any network with as many stations, the first `kept` of them given, or else its coverage.
+// Logs how near these stations come, and writes it to `file` as JSON.
 void prove(const std::filesystem::path& file, Site& site, std::span<const PlacedStation> stations, std::size_t kept,
            bool of_attainable, Program& program);
 

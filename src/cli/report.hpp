@@ -22,7 +22,7 @@
 
 namespace vantage::cli {
 
-// What stands at the head of reports.
+// Options for the head of reports.
 struct ReportHead {
   std::optional<std::string> logo, date;
 

@@ -12,7 +12,7 @@
 namespace vantage::cli {
 namespace {
 
-// Points fill a field of view but for its rim. What differs by more was set, or is cut off by the sky.
+// Points fill a field of view except near its edge. A larger difference was set, or comes from the sky.
 constexpr double kNarrower_deg = 10, kWider_deg = 2;
 // Steps differ by less if they are the same setting.
 constexpr double kSameStep = 0.02;
@@ -65,7 +65,7 @@ void take_settings(StationText& station, const importers::TakenSettings& scan, c
   if (other_bottom) last = bottom;
   if (other_top || other_bottom)
     station.view.zenith_start = Angle::degrees(first), station.view.vertical = Angle::degrees(2 * (last - first));
-  // Points say that the scanner reaches them, and not how far else.
+  // Points show that the scanner reaches them, but not its range.
   if (scan.range_m[0] < base.min_range_m) station.view.nearest_m = scan.range_m[0];
   if (scan.range_m[1] > base.max_range_m) station.view.farthest_m = scan.range_m[1];
 }
@@ -98,7 +98,7 @@ std::string quoted(const std::vector<std::string>& names) {
   return names.size() > kNamed ? text + fmt::format(" and {} more", names.size() - kNamed) : text;
 }
 
-// Names of scans by what their file does not tell, and of the scanners that are assumed.
+// Names of scans by the values that their file lacks, and of the scanners that are assumed.
 struct Assumed {
   std::vector<std::string> unknown, stepless, by_density, bases;
 

@@ -31,7 +31,7 @@ constexpr double kBoundSlack = 1e-6;
 constexpr double kKnownSlack = 1e-7;
 // A cut is added if it is violated by this share of all weight.
 constexpr double kViolated = 1e-9;
-// A pocket limits an element if the doors allow so much less of it.
+// A pocket limits an element if its doors lower the element's coverage by more than this.
 constexpr double kLimited = 1e-6;
 
 }  // namespace
@@ -65,7 +65,7 @@ struct BendersMaster::Impl {
     for (double& b : base) b = std::min(b, 1.0);
   }
 
-  // Neighbouring numbers share a group: along a space-filling curve they are covered alike.
+  // Neighbouring elements share a group, since elements along a space-filling curve are covered alike.
   std::size_t group_of(std::size_t element) const { return element * groups / weight.size(); }
   double share(const CoverageMatrix::Entry& one) const { return std::min(one.amount / matrix.goal(one.element), 1.0); }
 
@@ -111,7 +111,7 @@ struct BendersMaster::Impl {
       return !of.empty() && std::ranges::any_of(of[element], [&](std::uint32_t p) { return members[p][k] != 0; });
     }
   };
-  // Lowers what is covered at y by them.
+  // Finds the pockets that apply at y, and lowers the coverage of the elements that they limit.
   PocketUse pockets_used(std::span<const double> y, std::span<const Pocket> pockets,
                          std::vector<double>& covered) const {
     PocketUse use;
@@ -163,8 +163,8 @@ struct BendersMaster::Impl {
     return sum;
   }
 
-  // The bound that the duals of the cuts prove, computed here anew. With u_c >= 0 on the cuts of each group, with a sum
-  // of at most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every y.
+  // Upper bound on F(y), proven by the duals of the cuts. With u_c >= 0 on the cuts of each group, with a sum of at
+  // most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every y.
   double proven(std::span<const double> dual, double stations) const {
     std::vector<double> used(groups), gain(candidates);
     std::vector<double> u(dual.begin(), dual.end());
@@ -187,7 +187,7 @@ struct BendersMaster::Impl {
   double stations_proven(std::span<const double> dual, double wanted) const {
     double least = 0, most = static_cast<double>(candidates);
     if (proven(dual, most) < wanted) return most;
-    // It grows with the number and is linear between whole ones: bisect to well below the effect on a ceiling.
+    // The bound grows with the number, linearly between integers: bisect to well below the effect on a ceiling.
     for (int step = 0; step < 50; ++step) {
       const double middle = 0.5 * (least + most);
       (proven(dual, middle) < wanted ? least : most) = middle;
@@ -341,8 +341,8 @@ Relaxed BendersMaster::Impl::solve(bool fewest, double limit, double tolerance, 
   }
 }
 
-// At most one of two candidates that exclude each other. One row for each candidate: if it is taken, none of the others
-// is. Existing candidates are exempt.
+// Allows at most one of two candidates that exclude each other. Each candidate has a row: if it is taken, none of the
+// others is. Existing candidates are exempt.
 void BendersMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations) const {
   if (!problem.graph) return;
   const auto exists = [&](std::size_t k) { return std::ranges::find(existing, k) != existing.end(); };

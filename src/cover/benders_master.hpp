@@ -37,7 +37,7 @@ class BendersMaster {
 
   // F(y). REQUIRES: one value for each candidate.
   double value(std::span<const double> y) const;
-  // Bounds F around y by its supergradient there.
+  // Adds cuts: the supergradient at y bounds F everywhere, most tightly around y.
   void cut_at(std::span<const double> y);
 
   // θ_group <= constant + Σ_k of_k y_k.
@@ -47,12 +47,12 @@ class BendersMaster {
     std::vector<double> of;  // a coefficient for each candidate
     std::size_t idle = 0;    // rounds for which it was slack
   };
-  // Candidates that are taken only together with one of `doors`, of which each member is one or stands behind one.
+  // Candidates that are taken only with one of `doors`. Each member is a door, or is linked through one.
   struct Pocket {
     std::vector<std::uint32_t> members, doors;
   };
-  // One for each group. For networks that keep to the pockets these are tighter: all of a pocket adds no more to an
-  // element than its doors are taken, so that halves of a station in a room and of one in its door do not add up.
+  // Returns a cut for each group. Pockets make cuts tighter: all candidates of a pocket add no more to an element than
+  // the share to which its doors are taken. Half a station in a room and half a one in its door then do not add up.
   std::vector<Cut> supergradients(std::span<const double> y, std::span<const Pocket> pockets = {}) const;
   const std::vector<Cut>& cuts() const;  // so far
   std::size_t groups() const;
@@ -64,9 +64,9 @@ class BendersMaster {
   // of a solution whose coverage is short by at most the tolerance. Infinite if all candidates have less.
   Relaxed min_stations(double coverage, double tolerance, double seconds, const Progress& progress = {});
 
-  // The best integer y of at most `stations` stations, by branch and bound over the cuts so far; empty if none was
-  // found in time. `bound` is an upper bound for every such choice. Choices below `known` are ignored. Exclusions of
-  // the problem apply, links do not.
+  // Returns the best integer y of at most `stations` stations, by branch and bound over the cuts so far; empty if it
+  // found none in time. `bound` is an upper bound for every such choice. Choices below `known` are ignored. Exclusions
+  // of the problem apply, links do not.
   struct Choice {
     std::vector<std::size_t> candidates;
     double bound = 1;

@@ -27,11 +27,11 @@ constexpr double kSeparated = 1e-3, kCovered = 1e-6;
 constexpr double kProgramSlack = 1e-6;
 // A value this near to 0 or 1 is whole.
 constexpr double kIntegral = 1e-6;
-// A problem is branched once its bound falls by less than this share in so many rounds.
+// A problem is branched once its bound falls by less than this share in `kTailRounds` rounds.
 constexpr double kTail = 2e-4;
 constexpr std::size_t kTailRounds = 4;
-// Nested cuts for one candidate, each with the last one's set filled up (Koch, Martin: Solving Steiner tree problems in
-// graphs to optimality, 1998).
+// Nested cuts for each candidate: before each, the capacities of the last cut's set are filled up (Koch, Martin:
+// Solving Steiner tree problems in graphs to optimality, 1998).
 constexpr int kNested = 3;
 // Rows are dropped after so many slack rounds.
 constexpr std::size_t kSlackRounds = 12;
@@ -46,8 +46,8 @@ class NodeCuts {
  public:
   explicit NodeCuts(const std::vector<Set>& links) : links_(links) {}
 
-  // A smallest set of candidates between `root` and `to`, the doors of a pocket of all that `to` reaches without them,
-  // and its capacity. Of the sets of that capacity the one nearest to the root. REQUIRES: not linked.
+  // Returns a set of candidates of least capacity that separates `to` from `root`, and its capacity; among equals the
+  // set nearest to the root. They are the doors of a pocket: all that `to` reaches without them. REQUIRES: not linked.
   std::pair<BendersMaster::Pocket, double> between(std::size_t root, std::size_t to, std::span<const double> capacity);
 
  private:
@@ -135,13 +135,13 @@ std::pair<BendersMaster::Pocket, double> NodeCuts::between(std::size_t root, std
   entered_.assign(n, 0), left_.assign(n, 0);
   while (augment(root, to, capacity)) {
   }
-  // The separator: candidates that border on reached ones and are not passed.
+  // The separator consists of the candidates that border on reached ones and are not passed.
   std::vector<char> in_set(n, 0);
   for (std::size_t k = 0; k < n; ++k)
     if (left_[k])
       for (const std::uint32_t other : links_[k])
         if (!left_[other]) in_set[other] = 1;
-  // Those that `to` does not reach around the others are left out.
+  // Leaves out those that `to` does not reach around the others.
   std::vector<char> seen(n, 0);
   std::vector<std::uint32_t> open{static_cast<std::uint32_t>(to)};
   seen[to] = 1;
@@ -203,7 +203,7 @@ class Branching {
   void add_separator(std::size_t root, std::size_t to, const Set& set);
   void drop_idle();
   void bound_columns(const Part& part);
-  // Lowers the bound of a part by cuts. Returns the candidate to branch on; none if the part is done with.
+  // Lowers the bound of a part by cuts. Returns the candidate to branch on; empty if the part is finished.
   std::optional<std::size_t> solve(Part& part);
   bool separate(std::size_t root, const std::vector<double>& y);
   void keep(BendersMaster::Pocket pocket);
@@ -284,7 +284,7 @@ void Branching::drop_idle() {
   lp_.deleteRows(static_cast<int>(drop.size()), drop.data());
 }
 
-// A root reaches N / 2 links far if there are no existing candidates.
+// Each candidate is at most N / 2 links from the root if there are no existing candidates.
 void Branching::bound_columns(const Part& part) {
   std::vector<int> drop;
   std::vector<Row> kept;

@@ -15,7 +15,7 @@ namespace {
 
 // Largest number of candidates on a path, and number of the most promising paths that are evaluated as a whole.
 constexpr std::size_t kLongestPath = 4, kPathsTried = 24;
-// A path may be left for a candidate without a link that gains so many times as much as each of the path.
+// A path is dropped for a candidate without a link if that gains this many times as much as each on the path.
 constexpr double kWorthLeaving = 5;
 
 using Path = std::vector<std::size_t>;
@@ -60,7 +60,7 @@ class Growth {
             best && gain(*best) * static_cast<double>(path.size()) > kWorthLeaving * gain_along(path))
           path.assign(1, *best);
       if (path.empty()) {
-        // No path adds anything. Only coverage is left to gain; missing links are a violation.
+        // No path gains anything, so only candidates without links do; missing links are a violation.
         if (along_links && enough) break;
         along_links = false;
         const auto best = best_anywhere();
@@ -81,14 +81,14 @@ class Growth {
       if (network_.size() < most_) network_.push_back(k), gains_.add(k), joinable_.add(k);
   }
 
-  // Whether `k` may stand with all candidates on the way back from `at`.
+  // True if `k` may stand with all candidates on the path back from `at`.
   bool may_follow(std::size_t k, std::size_t at, std::span<const std::size_t> from) const {
     for (; from[at] < none_; at = from[at])
       if (at == k || problem_.graph->excluded(k, at)) return false;
     return true;
   }
 
-  // The gain of a candidate that may stand; 0 of others.
+  // Returns the gain of a candidate that may stand, and 0 for any other.
   CoverUnits units(std::size_t k) const { return joinable_.may_stand(k) ? gains_[k] : 0; }
   double gain(std::size_t k) const { return gains_.share(units(k)); }
   double gain_along(const Path& path) const;
@@ -105,7 +105,7 @@ class Growth {
   std::vector<std::size_t> free_, network_;
   CoverGains gains_;
   Joinable joinable_;
-  std::size_t most_ = 0;                            // largest number in the network
+  std::size_t most_ = 0;                            // most stations, existing ones included
   std::vector<std::vector<std::uint32_t>> linked_;  // by candidate, rising; none if links are not asked for
 };
 
@@ -134,7 +134,7 @@ std::optional<std::size_t> Growth::best_anywhere() const {
   return best;
 }
 
-// The gain of all candidates of a path together.
+// Gain of all candidates of a path together.
 double Growth::gain_along(const Path& path) const {
   if (path.size() == 1) return gain(path.front());
   double sum = 0;
@@ -157,7 +157,7 @@ double Growth::gain_along(const Path& path) const {
   return sum;
 }
 
-// The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
+// Path along links, from the network to a promising candidate, with the largest gain per candidate on it.
 Path Growth::best_path() const {
   std::vector<std::size_t> hops(none_, none_), from(none_, none_), reached = network_, next;
   for (const std::size_t k : network_) hops[k] = 0;
@@ -186,7 +186,7 @@ Path Growth::best_path() const {
       if (gain(k) > 0) ends.push_back({sum / static_cast<double>(hop), k});
       if (hop == 1) one_step = std::max(one_step, units(k));
     }
-    // A longer path gains more for each candidate only if one of them gains more than any that is a step away.
+    // A longer path gains more per candidate only if one of its candidates gains more than all that are one step away.
     if (std::ranges::none_of(free_, [&](std::size_t k) { return hops[k] == none_ && units(k) > one_step; })) break;
     reached.swap(next);
   }
@@ -206,7 +206,7 @@ Path Growth::best_path() const {
   return best;
 }
 
-// The candidates between the first component that has a path to another one, and that one; empty if none has.
+// Candidates from the first component that has a path to another one, up to that one; empty if none has.
 Path Growth::path_between_components() const {
   const Components parts = components_of(problem_, network_, problem_.link);
   for (std::size_t part = 0; part < parts.count; ++part)

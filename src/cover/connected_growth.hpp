@@ -13,8 +13,8 @@ namespace vantage {
 // A growing network keeps to paths along links, or leaves them for a candidate that gains much more.
 enum class Links { kept, left_for_gain };
 
-// Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.
-// `columns`: of the problem's matrix.
+// Adds candidates to `network` until coverage and links are as wanted, `problem.most` are placed, or none helps.
+// `columns`: index of the problem's matrix.
 std::vector<std::size_t> grow_connected(const CoverProblem& problem, const ColumnIndex& columns,
                                         std::vector<std::size_t> network, Links links = Links::kept);
 // Grows `network` likewise, then improves it by swaps.

@@ -16,7 +16,7 @@ namespace {
 
 using Candidates = std::vector<std::size_t>;
 
-// A network this near to its bound, in coverage, counts as the best: branch and bound has tolerances.
+// Difference in coverage up to which a network counts as optimal: branch and bound has tolerances.
 constexpr double kClosed = 1e-5;
 
 std::vector<double> as_shares(std::span<const std::size_t> chosen, std::size_t candidates) {
@@ -36,7 +36,7 @@ Candidates heuristic_choice(const CoverProblem& problem, const std::stop_token& 
   return improve_by_swaps(problem, std::move(chosen), stop);
 }
 
-// Branch and bound over the cuts. Cuts are added while a choice has less coverage than they say, until one has the
+// Branch and bound over the cuts. Adds cuts while a choice has less coverage than the cuts predict, until one has the
 // coverage of the bound.
 void branch_and_bound(const CoverProblem& problem, BendersMaster& master, double seconds, CoverSolution& result,
                       const std::stop_token& stop) {
@@ -89,7 +89,7 @@ CoverSolution max_cover(const CoverProblem& asked, const BoundConfig& config, co
   if (asked.most < 1 || asked.most == std::numeric_limits<std::size_t>::max())
     throw Error(Errc::invalid_argument, "cover: give the number of stations, 1 or more");
   CoverProblem problem = asked;
-  problem.coverage = 1;  // as much as there is
+  problem.coverage = 1;  // as high as possible
   CoverSolution result;
   result.chosen = heuristic_choice(problem, progress.stop);
   const Candidates found(

@@ -10,15 +10,15 @@
 namespace vantage {
 namespace {
 
-// Number of starting networks of one candidate fewer: those that lose least.
+// Number of networks of one station fewer that a search starts from: those with the least loss.
 constexpr std::size_t kBeginnings = 3;
-// Largest network that is grown one by one: each station added takes swaps of all.
+// Largest network that is grown station by station: each addition takes swaps of all.
 constexpr std::size_t kOneByOne = 128;
 // Step by which the required weakest link grows.
 constexpr double kLinkStep = 0.02;
 
-// A feasible network is better than any other, the fewer stations the better. Among others a further station has to
-// help by `least_help`.
+// A feasible network beats any other; among feasible ones, the one of fewer stations wins. Among infeasible ones each
+// station must lower the violation by `least_help`.
 bool is_better(const CoverSolution& a, const CoverSolution& b, double least_help) {
   const auto cost = [least_help](const CoverSolution& one) {
     return one.violation == 0 ? 0 : one.violation + least_help * static_cast<double>(one.chosen.size());
@@ -48,8 +48,8 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
   return places;
 }
 
-// Adds one candidate at a time, with swaps after each, until the network is feasible. Growth alone can shut itself in:
-// where candidates keep a distance from each other, a chosen one may block the only way to the rest.
+// Adds one candidate at a time, with swaps after each, until the network is feasible. Growth alone can get stuck: if
+// candidates keep a distance, a chosen one may block the only way to the rest.
 CoverSolution grow_one_by_one(CoverProblem problem, const ColumnIndex& columns, const std::stop_token& stop) {
   const std::size_t fewest = problem.fewest,
                     most = std::min({problem.most, problem.matrix.candidates() - problem.existing.size(), kOneByOne});
@@ -97,7 +97,7 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
       other = evaluate_cover(problem, tabu.run(other.chosen, problem.link));
     if (is_better(other, best, problem.least_help)) best = std::move(other);
   }
-  // One fewer while that is no worse, even if the network is not feasible.
+  // Removes stations one by one while that is no worse, even if the network is not feasible.
   while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {
     const std::vector<std::size_t> places = places_by_loss(problem, best.chosen);
     std::optional<CoverSolution> fewer;

@@ -105,7 +105,7 @@ NetworkLinks::Trees NetworkLinks::trees() const {
               .cut = std::vector<std::uint8_t>(size, 0),
               .without = std::vector<std::size_t>(size, 0)};
   trees.order.reserve(size);
-  // `low`: the earliest member that one or those below it are linked to.
+  // `low`: the earliest member that a member, or one below it, is linked to.
   std::vector<std::size_t> entered(size, 0), low(size, 0), next(size, 0), path;
   std::size_t count = 0;
   const auto enter = [&](std::size_t member) {
@@ -138,7 +138,7 @@ NetworkLinks::Trees NetworkLinks::trees() const {
       trees.without[above] += trees.cut[at];
     }
   }
-  // A root has nothing above: what it cuts off is all that is left of its tree.
+  // A root has no component above it: without it, only the parts below it are left.
   for (std::size_t at = 0; at < size; ++at) trees.without[at] += count - (trees.parent[at] == size ? 1 : 0);
   return trees;
 }

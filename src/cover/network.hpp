@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions of the solvers about a problem and their network.
+// Links, components and violations of a solver's network.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ std::vector<std::size_t> free_candidates(const CoverProblem& problem);
 // Components of a network by links of at least `link`; one if `link` is 0.
 Components components_of(const CoverProblem& problem, std::span<const std::size_t> network, double link);
 
-// The members of a network that each candidate is linked to, by at least `link`, and what is left of the network
-// without one of them. All are linked if `link` is 0.
+// Links of each candidate to the members of a network, of at least `link`, and components of the network without one
+// member. All are linked if `link` is 0.
 class NetworkLinks {
  public:
   // Borrows the problem's graph.
@@ -42,16 +42,16 @@ class NetworkLinks {
     return all_ ? std::span<const std::uint32_t>() : std::span(places_[candidate]);
   }
   // Trees of a depth-first search over the network (Hopcroft, Tarjan: Efficient Algorithms for Graph Manipulation,
-  // 1973): what falls apart without which member.
+  // 1973). They show which components the removal of a member leaves.
   struct Trees {
     std::vector<std::size_t> order;    // members as they are entered; those below one follow it
     std::vector<std::size_t> parent;   // by member; the network's size for a root
     std::vector<std::size_t> end;      // by member: the place in `order` after those below it
-    std::vector<std::uint8_t> cut;     // by member: whether it and those below it have no link above their parent
+    std::vector<std::uint8_t> cut;     // by member: 1 if no link leads from it, or those below it, above its parent
     std::vector<std::size_t> without;  // by member: number of components without it
   };
   Trees trees() const;
-  // Components of the network, or of all members but one, which is in none: `of` has the network's size.
+  // Components of all members. `of` has the network's size.
   Components components() const { return components_without(network_.size(), trees()); }
   Components components_without(std::size_t at, const Trees& trees) const;
   // Number of components that a candidate is linked to. `without`: the place of a member that does not count.
@@ -76,7 +76,7 @@ class NetworkLinks {
   std::vector<std::vector<std::uint32_t>> places_;  // by candidate
 };
 
-// Which candidates may join a network, kept as members come and go.
+// Candidates that may join a network, updated as members come and go.
 class Joinable {
  public:
   // Borrows the problem.
@@ -87,7 +87,7 @@ class Joinable {
   // Number of members that a candidate may not stand with: itself, if it is one, and those that exclude it.
   std::uint32_t against(std::size_t candidate) const { return against_[candidate]; }
   bool may_stand(std::size_t candidate) const { return against_[candidate] == 0; }
-  // The same once a member has left, of which it is said whether it excludes the candidate.
+  // The same after a member leaves; the caller says if that one excludes the candidate.
   bool may_stand_without(std::size_t candidate, bool leaving_excludes) const {
     return against_[candidate] == (leaving_excludes ? 1 : 0);
   }
@@ -96,7 +96,7 @@ class Joinable {
   void count(std::size_t candidate, int by);
 
   const CoverProblem& problem_;
-  std::vector<std::uint32_t> against_;  // by candidate: itself, if a member, and members that exclude it
+  std::vector<std::uint32_t> against_;  // by candidate: members that exclude it, and itself if it is one
 };
 
 // `CoverSolution::violation` of a network with this coverage and number of components.

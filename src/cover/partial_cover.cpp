@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// Units of a coverage of 1: as many as 64 bits hold sums of, and their changes.
+// Units for a coverage of 1: as many as leave room in 64 bits for sums and their changes.
 constexpr double kCoverUnits = 0x1p60;
 // Blocks of elements that are looked at side by side.
 constexpr std::size_t kBlocks = 64;

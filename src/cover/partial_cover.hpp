@@ -36,16 +36,16 @@ class PartialCover {
 // Coverage in whole numbers, so that sums of changes are exact: F is units / ColumnIndex::whole().
 using CoverUnits = std::int64_t;
 
-// Candidates of each element: the transposed matrix, with what an element's amounts cover.
+// Candidates of each element: the transposed matrix, with the coverage that an element's amounts give.
 class ColumnIndex {
  public:
   struct Column {
     std::uint32_t candidate, amount;
   };
   struct Element {
-    CoverUnits whole = 0, each = 0;  // covered, and by a unit of its amount
+    CoverUnits whole = 0, each = 0;  // when covered; per unit of amount
     std::uint64_t enough = 0;        // amount that covers it
-    // Units that an amount alone covers, and units that are not covered with it.
+    // Units that an amount covers by itself, and units that are still missing with it.
     CoverUnits by(std::uint64_t amount) const { return each * static_cast<CoverUnits>(std::min(amount, enough)); }
     CoverUnits missing(std::uint64_t amount) const { return std::max(whole - by(amount), CoverUnits{0}); }
   };
@@ -64,11 +64,11 @@ class ColumnIndex {
   double whole_ = 0;
 };
 
-// A set S with the gains of all candidates to it. A change costs what the elements of its columns touch: the rows of
-// those whose coverage changes.
+// A set S, and the gain of each candidate to it. A change costs time in proportion to the matrix entries of the
+// elements whose coverage it changes.
 class CoverGains {
  public:
-  // An element that S has another amount of than before.
+  // An element whose amount in S has changed.
   struct Change {
     std::uint32_t element;
     std::uint64_t had, has;
@@ -77,7 +77,7 @@ class CoverGains {
   // Keeps references.
   CoverGains(const CoverageMatrix& matrix, const ColumnIndex& columns, std::span<const std::size_t> chosen);
   void add(std::size_t candidate);
-  // Returns the elements that count and change, until the next call. REQUIRES: leaving in S
+  // Returns the changed elements that count; valid until the next call. REQUIRES: leaving in S
   std::span<const Change> replace(std::size_t leaving, std::size_t joining);
 
   const PartialCover& cover() const { return cover_; }
@@ -88,7 +88,7 @@ class CoverGains {
     return columns_.whole() > 0 ? static_cast<double>(units) / columns_.whole() : 0;
   }
 
-  // Calls gained(k, d) for candidates k whose gain grows by d once `leaving` is not in S, in parts.
+  // Calls gained(k, d), perhaps several times for one k: its gain grows by the sum of d if `leaving` leaves S.
   template <class Gained>
   void for_gains_without(std::size_t leaving, const Gained& gained) const {
     for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {

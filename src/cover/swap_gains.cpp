@@ -59,8 +59,8 @@ void SwapGains::measure(Member& member) const {
     if (more[k] != 0) member.more.push_back({static_cast<std::uint32_t>(k), more[k]});
 }
 
-// A candidate gains more without the member as far as it can give what the member gives: the less of an element is
-// missing with all members, and the more without this one.
+// For each element, the further gain of a candidate without the member is min(gives, missing without it) − min(gives,
+// missing with it).
 void SwapGains::update(Member& member, std::span<const Touched> touched) {
   for (const auto& [change, amount] : touched) {
     const ColumnIndex::Element element = columns_.element(change.element);

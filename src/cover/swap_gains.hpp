@@ -10,11 +10,11 @@
 
 namespace vantage {
 
-// A network with what each candidate gains, in it and without each of its members, kept from swap to swap. A swap costs
-// what its two columns touch: the rows of their elements, once for each member that has them, too.
+// Gains of all candidates to a network, and to it without each of its members, updated by swaps. A swap costs the
+// matrix entries of its two columns' elements, once more for each member that has the element.
 class SwapGains {
  public:
-  // The gain of a candidate without a member, less its gain with it.
+  // Additional gain of a candidate if a member leaves.
   struct More {
     std::uint32_t candidate;
     CoverUnits gain;
@@ -26,8 +26,8 @@ class SwapGains {
   void replace(std::size_t at, std::size_t joining);
 
   const CoverGains& now() const { return gains_; }
-  CoverUnits loss(std::size_t at) const { return members_[at].loss; }  // without the member at that place
-  // Candidates that may gain more without the member at that place, rising: all others gain as much as with it.
+  CoverUnits loss(std::size_t at) const { return members_[at].loss; }  // if the member at `at` leaves
+  // Candidates that may gain more without the member at `at`, rising; all others gain the same as with it.
   std::span<const More> without(std::size_t at) const { return members_[at].more; }
 
  private:

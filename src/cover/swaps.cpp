@@ -41,7 +41,7 @@ class SwapSearch {
     std::ranges::fill(more_, 0);
     gains_.for_gains_without(out, [&](std::size_t k, CoverUnits gain) { more_[k] += gain; });
     joinable_.remove(out);
-    std::optional<Components> others;  // of the network without the leaving one; made when first needed
+    std::optional<Components> others;  // of the others; found when first needed
     std::size_t best = out;
     CoverUnits most = gains_.loss(out);
     for (std::size_t k = 0; k < more_.size(); ++k)
@@ -66,7 +66,7 @@ class SwapSearch {
   CoverGains gains_;
   Joinable joinable_;
   std::optional<NetworkLinks> links_;  // none where the network need not be connected
-  std::size_t parts_ = 1;              // that the network was in; swaps leave it in no more
+  std::size_t parts_ = 1;              // components at the start; swaps leave no more
   std::vector<CoverUnits> more_;       // by candidate: its further gain without the leaving one
 };
 

@@ -43,8 +43,8 @@ struct TabuSearch::State {
   bool is_tabu(std::size_t candidate) const { return tabu_until[candidate] > swap; }
 };
 
-// The best of all swaps of a network, the first one among equals. Most are told to be worse by their coverage alone,
-// with as few components as the joining candidate may leave.
+// Finds the best swap of a network, the first one among equals. Most swaps are rejected by an upper bound: their
+// coverage, with as few components as the joining candidate may leave.
 class TabuSearch::BestSwap {
  public:
   BestSwap(const CoverProblem& problem, double whole, const State& state)
@@ -58,7 +58,7 @@ class TabuSearch::BestSwap {
         least_(state.best.violation),
         for_links_(problem.matrix.candidates(), 0) {
     if (state.link <= 0) return;
-    // A member that leaves is a component of its own at most.
+    // A leaving member takes away one component at most, and only if it was alone.
     const bool any_alone = std::ranges::any_of(state.chosen, [&](std::size_t k) { return state.links.of(k).empty(); });
     const double link = violation(problem, problem.coverage, 2) * problem.coverage * whole_;
     for (std::size_t k = 0; k < for_links_.size(); ++k)
@@ -75,8 +75,8 @@ class TabuSearch::BestSwap {
       for (const SwapGains::More& other : state_.gains.without(at))
         consider(other.candidate, now_[other.candidate] + other.gain);
     }
-    // Candidates that gain as much without the leaving one, the most promising first; a gain that is too small for
-    // others does no harm.
+    // Candidates whose gain does not grow without the leaving one, most promising first. Others are included: their
+    // gain is a lower bound here, which does no harm.
     std::vector<std::pair<double, std::size_t>> promising;
     for (std::size_t k = 0; k < problem_.matrix.candidates(); ++k)
       if (is_enough(most_left + now_[k], k) && state_.joinable.against(k) < 2)
@@ -134,13 +134,13 @@ class TabuSearch::BestSwap {
   CoverUnits coverage_;
   double least_;  // violation of the best network so far
   Swap best_;
-  // In units: the coverage that the best swap has at least, and by candidate what it has to have more for links that it
-  // leaves missing.
+  // In units: least coverage of a swap that can be the best, and by candidate the further coverage that makes up for
+  // the links that it leaves missing.
   double enough_ = -std::numeric_limits<double>::infinity();
   std::vector<double> for_links_;
   std::size_t at_ = 0;
   CoverUnits left_ = 0;            // coverage without the leaving one
-  std::optional<Components> cut_;  // the components without it, where these are more
+  std::optional<Components> cut_;  // components without it, if these are more
 };
 
 TabuSearch::TabuSearch(const CoverProblem& problem, const ColumnIndex& columns, std::stop_token stop)

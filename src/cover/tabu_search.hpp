@@ -18,21 +18,21 @@ std::uint64_t swaps_made() noexcept;
 
 class TabuSearch {
  public:
-  // Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
-  // return. A candidate that came may leave again after half as many.
+  // Swaps without a decrease of the violation before a search gives up, and swaps before a candidate that left may
+  // return. A candidate that joined may leave after half as many.
   static constexpr std::size_t kPatience = 40, kTabu = 7;
 
-  // Keeps references. `columns`: of the problem's matrix.
+  // Keeps references. `columns`: index of the problem's matrix.
   TabuSearch(const CoverProblem& problem, const ColumnIndex& columns, std::stop_token stop = {});
 
   // Makes the best swap each time, even to a worse network, and returns the best network found. Ends once nothing is
-  // violated. `link` replaces that of the problem.
+  // violated. `link` replaces the problem's.
   std::vector<std::size_t> run(const std::vector<std::size_t>& start, double link) const;
-  // The same from several starts at once: one network for each.
+  // The same from several starts in parallel: one network for each.
   std::vector<std::vector<std::size_t>> run(std::span<const std::vector<std::size_t>> starts, double link) const;
 
  private:
-  // A chosen candidate, by its place, that another one replaces; and the resulting network.
+  // Replacement of the chosen candidate at a place by another one, and the resulting network.
   struct Swap;
   struct State;
   class BestSwap;

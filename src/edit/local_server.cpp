@@ -53,7 +53,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       self->read_body();
     });
   }
-  // Whether the other side holds it up, so that a newer connection may replace it.
+  // True if the other side delays the connection, so that a newer one may replace it.
   bool waiting() const { return waiting_; }
   void close() { stream_.close(); }
 

@@ -33,8 +33,8 @@ class ScanFolder {
   std::map<std::filesystem::path, Look> looks_;
 };
 
-// Reads scans of a folder as they come in, fits them to the site's model, and gives them to the session. What cannot be
-// read is told there, and read again if it changes.
+// Reads scans of a folder as they arrive, fits them to the site's model, and gives them to the session. Reports
+// unreadable files there, and reads them again after a change.
 class ScanWatcher {
  public:
   ScanWatcher(EditSession& session, Site& site, const std::filesystem::path& folder, double tolerance_m,

@@ -59,7 +59,7 @@ bool flag_of(const json& request, const char* key) {
   return at != request.end() && at->is_boolean() && at->get<bool>();
 }
 
-// Adds to each link by a sample its standard error, and the number of voxels of the smaller scan, which it is a share
+// Adds the standard error to each sampled link, and the number of voxels of the smaller scan that the link is a share
 // of.
 void add_errors(ordered_json& links, const NetworkCounts& around) {
   for (ordered_json& link : links) {
@@ -467,8 +467,8 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<st
   message_ = std::move(told);
 }
 
-// Moves one station at a time so that the network falls into fewer parts, until no move of one does. Does not remember.
-// Returns whether any was moved. Links are those of the sample, from places spread evenly over the ground.
+// Moves single stations to evenly spread places until no move lowers the number of components. It records no undo step.
+// Returns true if it moved any. Links are those of the sample.
 bool EditSession::mend(const Progress& progress) {
   const auto parts_now = [&] { return connectivity(evaluation_.scan_overlap_matrix, options_.link).parts; };
   // Keeps the setup, and returns where it stood.
@@ -478,7 +478,7 @@ bool EditSession::mend(const Progress& progress) {
     return before;
   };
   bool moved = false;
-  // A station that is left out is a part of its own.
+  // A station that is left out is a component of its own.
   while (stations_.size() > 1 && parts_now() > 1 && !progress.stopped()) {
     constexpr std::size_t kPlaces = 256;
     if (places_.empty()) places_ = candidate_positions(site_, kPlaces);
@@ -507,7 +507,7 @@ bool EditSession::mend(const Progress& progress) {
       }
     }
     if (progress.stopped()) break;
-    // The fewest parts first, then the shortest move; one move of each station.
+    // Prefers the fewest components, then the shortest move; each station has one move.
     std::ranges::sort(moves, [](const Move& a, const Move& b) {
       return std::tuple(a.parts, a.away_m, a.station, a.place) < std::tuple(b.parts, b.away_m, b.station, b.place);
     });

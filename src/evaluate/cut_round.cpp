@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dynamic programmes over the ends of pieces: the numbers of pieces and of missing links add up, and among the cuts
-// with the least of them the longest piece, and then the walking, are least along pieces that such cuts consist of.
+// Dynamic programmes over the ends of pieces. The numbers of pieces and of missing links add up. Among the cuts with
+// the fewest, the longest piece, and then the walking, are least along pieces that such cuts consist of.
 #include "evaluate/cut_round.hpp"
 
 #include <algorithm>

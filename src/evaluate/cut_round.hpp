@@ -25,9 +25,9 @@ struct RoundPiece {
   bool linked = true;     // to a stop outside of it, if there is one
 };
 
-// The whole round in pieces of at most `most_min`: as few as possible, then with the fewest parts, then with the fewest
-// pieces that are not linked, then with the shortest longest piece, then with the least walking. Empty if some stop
-// alone takes longer.
+// Cuts the whole round into pieces of at most `most_min`: as few as possible, then with the fewest parts, then with the
+// fewest unlinked pieces, then with the shortest longest piece, then with the least walking. Empty if some stop alone
+// takes longer.
 std::vector<RoundPiece> cut_round(const RoundTimes& times, double most_min = std::numeric_limits<double>::infinity());
 
 }  // namespace vantage

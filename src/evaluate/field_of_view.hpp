@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// Whether an upright scanner has rays in the direction of `line`, which is `range` long.
+// True if an upright scanner has rays in the direction of `line`, which is `range` metres long.
 bool in_field_of_view(const Scanner& scanner, const Vec3& line, double range);
 
 }  // namespace vantage

@@ -16,11 +16,11 @@ struct KnownPoints {
   std::optional<std::size_t> under = std::nullopt;  // its tripod
 };
 
-// Two known points fix a levelled station, over one of them one more; a third one checks them.
+// Two known points fix a levelled station, or one if it stands over another; a third one checks them.
 inline constexpr std::size_t kFixing = 2, kChecking = 3;
 bool may_be_set_up(const KnownPoints& known);
 
-// For each station; empty if there is no control point.
+// Returns the known points of each station; empty if there is no control point.
 std::vector<KnownPoints> known_points(const Evaluation& evaluation);
 
 // "resection from 3", "resection from 2, unchecked", "over P1, sights 2", "1 seen, too few", "none seen".

@@ -109,7 +109,7 @@ class Walk {
   }
 
  private:
-  // Whether a change gains more than rounding: else the search would not end.
+  // True if a change gains more than rounding: else the search would not end.
   static bool shorter(double then, double now) {
     constexpr double kGain_m = 1e-9, kGain = 1e-12;
     return then + kGain_m + kGain * now < now;
@@ -184,7 +184,7 @@ std::size_t unlinked_in(const std::vector<std::size_t>& order, const Matrix& lin
 std::vector<std::size_t> shortest_with(const Stops& round, const Matrix& link, std::size_t unlinked) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const std::size_t n = round.stations(), sets = std::size_t{1} << n, states = sets * n, all = sets - 1;
-  // The least way to `last` over the stations of `set`, with so many steps without a link, and the stop before.
+  // Shortest path to `last` over the stations of `set` with so many unlinked steps, and the stop before.
   std::vector<double> least((unlinked + 1) * states, kNever);
   std::vector<std::uint8_t> before(least.size());
   const auto at = [&](std::size_t steps, std::size_t set, std::size_t last) { return steps * states + set * n + last; };
@@ -227,9 +227,9 @@ std::vector<std::size_t> shortest_with(const Stops& round, const Matrix& link, s
   return order;
 }
 
-// Field software registers each scan to the one before, so that a step to a station without a link to the last one
-// costs as much as a long way. How long is tried: the order with the fewest such steps is taken that is not much longer
-// than the shortest. `link`: strengths of the stations' links. `most_m`: no longer walk is taken for links.
+// Field software registers each scan to the one before, so a step between unlinked stations costs like a long path. The
+// search tries several such lengths, and returns the order with the fewest unlinked steps that is not much longer than
+// the shortest. `link`: strengths of the stations' links. `most_m`: longest walk that is accepted for links.
 std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::size_t> shortest, const Matrix& link,
                                            double most_m) {
   constexpr double kMostLonger = 1.3;         // of the shortest walk that is found
@@ -270,7 +270,7 @@ std::vector<std::size_t> order_along_links(const Stops& round, std::vector<std::
   return best;
 }
 
-// Whether both are of batteries that fit one instrument.
+// True if both use batteries that fit the same instrument.
 bool shared(const BatteryUse& a, const BatteryUse& b) {
   return std::tie(a.instrument, a.battery_min, a.battery_scans) ==
          std::tie(b.instrument, b.battery_min, b.battery_scans);
@@ -288,7 +288,7 @@ struct OnSite::Impl {
     std::vector<Vec3> path = {};
   };
 
-  // What counts of a scanner.
+  // Data of a scanner that matter on site.
   struct Instrument {
     double scan_min = 0;
     BatteryUse battery = {};  // what is known before a round
@@ -587,7 +587,7 @@ void OnSite::Impl::wait(Session& session, const Part& part, const std::vector<do
   session.minutes += session.waiting_min;
 }
 
-// Sessions that keep the access windows, then the others' as without.
+// Returns sessions that keep the access windows, then those of the other stations, cut as without windows.
 std::vector<OnSite::Impl::Part> OnSite::Impl::parts_within(const TimedStops& stops) const {
   const FilledSessions filled = fill_sessions(stops, day());
   std::vector<Part> parts;

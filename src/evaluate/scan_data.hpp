@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-// What the scans of a network hold, besides those of existing stations: their points as every ray counted them, or by
-// the share of the surroundings' rays that meet something. Empty if neither was counted.
+// Returns the data in a network's scans, without existing stations: points as every ray counted them, or estimated from
+// the share of the surroundings' rays that hit. Empty if neither was counted.
 std::optional<ScanData> scan_data(const CountedNetwork& network, const Simulator& simulator,
                                   const Simulator* surroundings);
 

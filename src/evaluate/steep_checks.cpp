@@ -17,13 +17,13 @@ constexpr std::uint64_t kLookedAt = 20'000;  // voxels
 constexpr double kLeastCosine = 0.5;         // of the incidence: a target on the surface shows its face up to 60°
 constexpr double kOffSurface_m = 0.02;       // rays end before the surface that they are to meet
 
-// A station that may sight a place, as far as angles and lengths tell.
+// A station that may sight a place, by angles and lengths alone.
 struct SteepSight {
   std::size_t station = 0;
   double height_m = 0, range_m = 0;  // above or below the head
 };
 
-// An error of the index moves a sight sideways by itself times the height: by that, to a decimetre, then by the range.
+// Order: height to a decimetre, as an index error moves a sight sideways by itself times the height; then range.
 std::tuple<double, double> rank_of(const SteepSight& sight) {
   return {-std::round(10 * sight.height_m), sight.range_m};
 }
@@ -91,7 +91,7 @@ Target best_place(const std::vector<VoxelPatch>& patches, const Evaluation& eval
 }  // namespace
 
 bool wants_steep_check(const Evaluation& evaluation) {
-  constexpr double kMuchRandom = 1.2;  // times the random error, from which on the rest is told to be checked
+  constexpr double kMuchRandom = 1.2;  // ratio to the random error above which a check is wanted
   return std::ranges::count_if(evaluation.stations, active) > 1 && evaluation.registration &&
          evaluation.registration->rms_m > kMuchRandom * evaluation.registration->random_m;
 }

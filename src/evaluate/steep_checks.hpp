@@ -21,11 +21,11 @@ inline constexpr double kLeastElevation_deg = 30, kLongestSight_m = 30;
 // Angle of a point above or below the level of a head, in degrees.
 double elevation_deg(const Vec3& head, const Vec3& point);
 
-// Adds to the targets one for each instrument (`Target::check`), where its check is wanted and two of its stations see
-// a surveyed surface from one side, steeply enough and not from farther away: where the second of them is farthest
-// below or above it, since an error of the index moves a sight sideways by itself times that, to a decimetre, and among
-// these the nearest. Tells the instruments that have no such place in `Evaluation::no_steep_check`. It looks at a
-// sample of the surveyed voxels.
+// Adds a target (`Target::check`) for each instrument that needs a check, on a surveyed surface that two of its
+// stations see from one side, steeply and near enough. Among such places the best has the second station farthest
+// below or above it, to a decimetre, then nearest: an error of the index moves a sight sideways by itself times that
+// height. `Evaluation::no_steep_check` lists the instruments without a place. It searches a sample of the surveyed
+// voxels.
 void add_steep_checks(Evaluation& evaluation, const Simulator& simulator, const ClashChecker& clash);
 
 }  // namespace vantage

@@ -34,14 +34,14 @@ struct TimedSession {
 // Least begin of a stay that is not before `from_min`; empty: it is longer than the hours.
 std::optional<double> earliest_begin(std::span<const DayHours> hours, double from_min, double stay_min);
 
-// A session over the stops in this order, which is back as early as it can be and, for that, starts as late as it can.
-// `day`: minutes after midnight, its end after its start. Empty: the order takes longer, or its hours are not kept.
+// A session over the stops in this order that returns as early as possible and, for that, starts as late as possible.
+// `day`: minutes after midnight, its end after its start. Empty: the order takes longer, or hours are not kept.
 std::optional<TimedSession> timed_session(const TimedStops& stops, const std::vector<std::size_t>& order,
                                           const DayHours& day);
 
-// Sessions within a day that keep the hours of all stops which a session of their own could: first those with hours, as
-// many as fit, then stops without, so that as few minutes as possible are waited. The second list holds the stops
-// without hours that no session needs to fill its day; those whose hours cannot be kept are in neither.
+// Returns sessions within a day that keep the hours of all stops which a session of their own could keep. Each takes
+// stops with hours first, as many as fit, then others, to reduce waiting. The second list holds the stops without hours
+// that no session needs to fill its day; those whose hours cannot be kept are in neither.
 struct FilledSessions {
   std::vector<TimedSession> sessions;
   std::vector<std::size_t> rest;  // ascending

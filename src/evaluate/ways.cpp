@@ -32,7 +32,7 @@ std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
 
 double plan_distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-// Whether a person gets from one place to a neighbouring one as their heights go.
+// True if a person can step or climb from one place to a neighbouring one.
 bool climbs(const Vec3& a, const Vec3& b) {
   return std::abs(a.z - b.z) <= person::kWayStep_m + person::kWaySlope * plan_distance(a, b);
 }

@@ -27,7 +27,7 @@ void E57Points::write_packet() {
   for (const std::string& stream : streams_) bytes += stream.size();
   const std::size_t aligned = (bytes + 3) / 4 * 4;
 
-  // Where there are more packets than entries, an entry stands for two, four, … of them.
+  // An entry stands for two, four, … packets if there are more of them than entries.
   if (packets_ % stride_ == 0) {
     if (index_.size() == index_entries_) {
       for (std::size_t k = 0; k < index_.size() / 2; ++k) index_[k] = index_[2 * k];

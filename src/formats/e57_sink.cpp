@@ -64,7 +64,7 @@ class IntoScanner {
   double c_ = 1, s_ = 0;
 };
 
-// Of Rz(heading) · Ry(tilt) · Rz(own heading): w, x, y, z.
+// Quaternion (w, x, y, z) of Rz(heading) · Ry(tilt) · Rz(own heading).
 std::array<double, 4> quaternion_of(const StationSetup& setup, Angle own_heading) {
   const double heading = setup.heading.in_radians(), own = own_heading.in_radians();
   const double sum = (heading + own) / 2, difference = (own - heading) / 2, half = setup.tilt.in_radians() / 2;
@@ -162,7 +162,7 @@ class E57Sink final : public PointSink {
     E57Scan& scan = scans_.back();
     scan.records = points_->records(), scan.section = points_->section();
     const std::uint64_t content = points_->fingerprint();
-    // By its place too: two stations may stand, and see, alike.
+    // The hash includes the scan's number, since two stations may stand, and see, alike.
     scan.guid = e57_guid(hash_of(scan, content, 2 * scans_.size()), hash_of(scan, content, 2 * scans_.size() + 1));
     points_.reset();
   }

@@ -27,7 +27,7 @@ constexpr const char* kLocalSystem =
 
 constexpr std::uint8_t kNoise = 7;  // class of ghosts; all other points are never classified
 
-// What a record of format 7 has a place for.
+// Outputs that a record of format 7 can hold.
 constexpr std::uint32_t kHeldByLas = scan_position | scan_reflectivity | scan_colour | scan_ghost | scan_returns;
 
 std::string names_of(std::uint32_t outputs) {

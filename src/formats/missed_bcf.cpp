@@ -54,7 +54,7 @@ std::string element(const char* name, const std::string& content) {
 
 constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
-// Where a point of the survey frame is in the coordinates of the model's file; none if that is not known.
+// Converts points of the survey frame to the coordinates of the model's file, if these are known.
 class ModelFrame {
  public:
   explicit ModelFrame(const Scene& scene) {
@@ -129,7 +129,7 @@ struct Camera {
   Vec3 eye, direction, up;
 };
 
-// From where most points of the element are in free sight; the first place of all if none is from anywhere.
+// Returns the place that sees most points of the element; the first place of all if none sees any.
 Camera camera_at(const Body& body, const ClashChecker& clash) {
   Vec3 best{};
   std::ptrdiff_t most = -1;

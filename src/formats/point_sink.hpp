@@ -39,8 +39,8 @@ void append(std::string& record, T value) {
   record.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Whether ray k of the chunk hit, by the first array that the chunk has: range, ids, else the position, finite for hits
-// only.
+// True if ray k of the chunk hit. The first array that the chunk has decides: range, ids, or the position, which is
+// finite for hits only.
 inline bool hit(const ScanChunk& chunk, std::size_t k) {
   const auto finite = [](float value) { return value - value == 0; };
   if (!chunk.range_m.empty()) return finite(chunk.range_m[k]);

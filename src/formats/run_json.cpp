@@ -49,7 +49,7 @@ ordered_json plan_json(const PlanResult& result) {
   return json;
 }
 
-// What registration will hang by. Stations are numbered from 1, as in the tables and pictures.
+// Returns the links that registration depends on. Stations are numbered from 1, as in the tables and pictures.
 ordered_json links_json(const PairMatrix& overlap, double min_overlap) {
   const Connectivity graph = connectivity(overlap, min_overlap);
   ordered_json bridges = ordered_json::array();

@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// Whether the station has a place to go to.
+// True if the station has a place to go to.
 inline bool has_ground(const PlacedStation& station) { return station.status != StationStatus::hole; }
 
 // Grounds of the stations that have one, in order. Throws Error invalid_argument if names are missing.

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// What minizip writes to, in place of a file.
+// Memory that minizip writes to, in place of a file.
 struct Memory {
   std::string bytes;
   std::size_t at = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr dvec3 kEast{1, 0, 0}, kSouth{0, -1, 0};
 
-// How far a branch must reach into a cylinder so that its whole rim lies inside.
+// Depth to which a branch must reach into a cylinder so that its whole rim lies inside.
 double burial(double vessel_radius, double branch_radius) {
   return vessel_radius - std::sqrt(vessel_radius * vessel_radius - branch_radius * branch_radius) + 0.01;
 }

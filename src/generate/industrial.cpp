@@ -161,8 +161,8 @@ void Plant::rack() {
   }
 }
 
-// How far below a pipe's axis an open block of this half width may end without showing its inside, for any detail of
-// the pipe.
+// Depth below a pipe's axis at which an open block of this half width may end without showing its inside, for any
+// detail of the pipe.
 double hidden_in(double pipe_radius, double half_width) {
   return 0.8 * std::sqrt(pipe_radius * pipe_radius - half_width * half_width);
 }

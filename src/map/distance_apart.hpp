@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// How far points are from their nearest neighbours in plan, but for one in `but_one_in` of them; infinity for less than
-// two.
+// Returns a distance in plan that all points keep from their nearest neighbours, except one in `but_one_in`; infinity
+// for fewer than two points.
 template <class Point>
 double distance_apart(const std::vector<Point>& spots, std::size_t but_one_in) {
   std::vector<double> apart;

@@ -23,7 +23,7 @@ namespace vantage {
 namespace {
 
 constexpr double kPanel = 224, kTop = 68, kBottom = 64, kGap = 26;
-// Stations on a map up to which it keeps its size, and how many times as wide it gets at most.
+// Largest number of stations on a map of usual size, and largest factor of its width.
 constexpr double kStationsAtFirst = 60, kMostGrowth = 3;
 
 // A bar of a round length, at most `widest` wide.
@@ -44,7 +44,7 @@ std::string link_words(const StationLinks& links) {
   return links.measure == LinkMeasure::scan_overlap ? "Scan overlap of two stations" : "Overlap of two stations";
 }
 
-// The part of links. Returns where it ends, as the whole legend does.
+// Draws the legend of links. Returns its end, as the function for the whole legend does.
 double draw_link_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
   constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
   const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };

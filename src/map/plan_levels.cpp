@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kCells = 200;   // along the longer side
 constexpr double kAbove = 0.05;       // share of the ground that must lie over other ground
-constexpr double kOfLargest = 0.2;    // a floor has at least so much ground over others as the largest
+constexpr double kOfLargest = 0.2;    // least ground of a floor over others, as a share of the largest's
 constexpr double kStep = 0.25;        // metres between heights that are told apart
-constexpr double kReach = 2 * kStep;  // a floor's ground may lie so much lower than its middle
+constexpr double kReach = 2 * kStep;  // depth of a floor's ground below its middle, at most
 constexpr double kLanding_m = 2.2;    // a landing half way up a storey's stairs is no higher, and no floor of its own
 
 constexpr double kCutHeight = 1.2, kCutShare = 1.2 / 1.85;
-constexpr double kRoofed = 0.1;  // share of stations under a roof, in no building, from which on a site is cut
+constexpr double kRoofed = 0.1;  // share of stations under a roof, outside buildings, from which a site is cut
 
 // Heights of the ground under the centre of each cell of a map, lowest first.
 struct GroundHeights {

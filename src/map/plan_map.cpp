@@ -158,7 +158,7 @@ class Stations {
   }
 
  private:
-  static constexpr double kFar = 26;             // of a label that has no line to its station
+  static constexpr double kFar = 26;             // farthest place of a label without a line to its station
   static constexpr std::size_t kAllFloors = 60;  // stations of a site that are shown on every floor
   const PlacedStation& station(std::size_t k) const { return view_.stations[shown_[k]]; }
   const std::string& name(std::size_t k) const { return view_.names[shown_[k]]; }
@@ -195,7 +195,7 @@ class Stations {
                 on_level(link.a) != on_level(link.b));
   }
 
-  // A station at a stair has links to many others of each floor.
+  // Keeps only the strongest of a station's links to other floors: at a stair it has many.
   void keep_strongest_to_other_floors(std::vector<ShownLink>& links) const {
     std::vector<double> strongest(shown_.size(), 0);
     const auto between = [&](const ShownLink& link) { return on_level(link.a) != on_level(link.b); };
@@ -358,8 +358,8 @@ static void tint_meshes(std::vector<std::uint32_t>& pixels, const SceneData& dat
   }
 }
 
-// Returns places that nothing fills at the height of the cut: those of stations, and ground that was found by the free
-// space over it.
+// Returns places that nothing fills at the height of the cut: stations, and ground that the search area has because of
+// the free space over it.
 static std::vector<Vec3> free_places(const SearchArea& area, const SearchMesh& ground, double cut,
                                      std::span<const PlacedStation> stations) {
   std::vector<Vec3> places;
@@ -410,7 +410,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
   PlanMapContent content;
   content.cut = level.cut.has_value();
   if (brief) {
-    // The picture of the level alone tells its height.
+    // Only the picture of a level states the height of its cut.
   } else if (level.cut) {
     subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(*level.cut, 2) + " m";
   } else if (subtitle.empty()) {

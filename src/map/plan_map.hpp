@@ -27,7 +27,7 @@ struct PlanView {
   std::span<const StationError> errors = {};  // one for each station, or none; drawn as standard ellipses
   std::span<const Target> targets = {};
 
-  // Canvas units per metre of such an ellipse; 0 if there is none. The widest is as wide as kWidestEllipse.
+  // Canvas units per metre of an ellipse, so that the widest is kWidestEllipse wide; 0 without ellipses.
   double ellipse_scale() const;
 };
 inline constexpr double kWidestEllipse = 30;  // semi-axis, canvas units
@@ -52,10 +52,10 @@ struct PlanMapContent {
 // off. Throws Error invalid_argument if there is nothing.
 Box plan_window(const PlanView& view);
 
-// What a map shows of a site under its marks.
+// A site's picture in a map, under the marks.
 struct SiteMap {
   std::vector<std::uint32_t> pixels;  // of the window, as `shade()` makes them
-  bool left_out = false;              // whether ground that is no part of the search area shows
+  bool left_out = false;              // true if ground outside the search area shows
 };
 // Draws the site in shaded relief with its search area, cut at the level's height. Solids that the cut passes through
 // are filled, and outlined by `line` pixels. A surface around a station, or around ground that a person reaches, is not
@@ -76,7 +76,7 @@ inline constexpr double kDisc = 10.5;  // radius of a station's mark
 // Marks of the legend, as on the map.
 void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station,
                   double radius = kDisc);
-// Whether a name is short enough to stand in a station's mark.
+// True if a name is short enough to stand in a station's mark.
 bool fits_disc(const std::string& name);
 void draw_elsewhere(Canvas& canvas, Point at, const std::string& text, double radius = kDisc);
 // A checkered disc; a triangle around that of a control point.

@@ -21,9 +21,9 @@ struct Section {
 std::vector<std::uint32_t> surfaces_of(const SceneData& scene);
 
 // Cuts the scene at height `z` (survey frame). A pixel is solid if outward closed surfaces wind around it more often
-// than inward ones: walls as boxes, and the space between an outer and an inner skin. A surface that is not closed
-// along a row of pixels, such as a wall without thickness, is only an outline. So is one around a place that is known
-// to be `free` (x, y), but for what other surfaces leave out of it: the lining of a tunnel in one sheet.
+// than inward ones: walls as boxes, and the space between an outer and an inner skin. Surfaces that are not closed
+// along a row of pixels, such as walls without thickness, are outlines only. Surfaces around a known `free` place (x,
+// y), such as a tunnel's lining in one sheet, are too, except for solids inside.
 Section section_at(const SceneData& scene, const MapWindow& window, double z, std::span<const Vec3> free = {});
 // The same for several windows of a scene. `surfaces`: `surfaces_of()` it.
 Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z,

@@ -79,7 +79,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
     std::vector<std::uint32_t> pixels(columns * rows);
     const double top =
         level.cut ? level.floor + kBelowCeiling * (*level.cut - level.floor) : std::numeric_limits<double>::infinity();
-    // Of what lies below a floor that is cut above, the upper over the lower; the rest as it comes.
+    // Voxels below a floor that is cut above are drawn from the lowest up, all others in their order.
     std::vector<std::pair<long, const ColouredVoxel*>> shown;
     for (const ColouredVoxel& voxel : voxels) {
       const double z = simulator.voxel_centre(voxel.rank).z;

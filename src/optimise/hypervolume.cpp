@@ -289,7 +289,7 @@ struct ListFront {
   void insert(std::span<const double> p) { members.push_back(p); }
 };
 
-// Whether each point is dominated, or equal to an earlier one. Such points contribute nothing.
+// Marks points that are dominated, or equal to an earlier one. They contribute no volume.
 std::vector<char> is_redundant(const PointSet& points) {
   const auto rank = ranks(points);
   std::vector<char> result(points.size());

@@ -17,9 +17,9 @@ struct PointSet {
   std::span<const double> operator[](std::size_t i) const { return values.subspan(i * objectives, objectives); }
 };
 
-// Whether a is nowhere worse than b and somewhere better.
+// True if a is nowhere worse than b and somewhere better.
 bool dominates(std::span<const double> a, std::span<const double> b);
-// Whether the point is strictly better than the reference in every objective, so that it spans a volume.
+// True if the point is strictly better than the reference in every objective, so that it spans a volume.
 bool inside(std::span<const double> point, std::span<const double> reference);
 
 double volume(const PointSet& points, std::span<const double> reference);

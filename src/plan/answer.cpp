@@ -24,7 +24,7 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
   return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
-// Whether what is attainable was never looked at in full, though a requirement is a share of it.
+// True if the count of what is attainable was cut short, though a requirement is a share of it.
 bool look_cut_short(const PlanResult& result) {
   return result.candidates && result.candidates->ended() == "cancelled" &&
          std::ranges::any_of(result.problem.requirements,
@@ -40,7 +40,7 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   return std::sqrt(sum);
 }
 
-// Whether sessions keep all access windows, as far as rounds are known.
+// True if sessions keep all access windows, as far as rounds are known.
 bool keeps_windows(const PlanEntry& entry) { return closed_stations(entry) == 0; }
 
 bool all_placed(const PlanResult& result) {

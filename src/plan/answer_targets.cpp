@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1000;
 
-// What the requirements of a problem allow besides the class of accuracy.
+// Options for targets by a problem's requirements, in addition to its accuracy class.
 TargetOptions options_of(const SurveyProblem& problem) {
   TargetOptions options = problem.target;
   options.exact = true;

@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-// The front of more entries than this has its rounds worked out for the answer alone.
+// Largest front whose entries all have their rounds computed; on a larger one, only the answer has.
 constexpr std::size_t kMostRounds = 16;
 
 // A station of a confirmed network may see more of a voxel than any candidate did.
@@ -54,7 +54,7 @@ void work_out_rounds(PlanResult& result, PlanContext& context, const Progress& p
     if (!entry.visit && !progress.stopped()) add_round(entry, context.on_site(), most_min);
 }
 
-// The answer takes its place in the trade-off, as it was confirmed: alone, if the time was over before others were
+// The confirmed answer takes its place in the trade-off. It is the only point if the time was over before others were
 // estimated.
 void put_answer_in_trade_off(PlanResult& result) {
   const PlanEntry& entry = result.front[answer(result)];

@@ -33,7 +33,7 @@ void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyPro
   }
 }
 
-// Takes what positions alone decide, which no stop leaves unknown.
+// Takes the values that follow from positions alone, which no stop leaves unknown.
 void take_by_positions(PlanEntry& entry, const SurveyProblem& problem, const Measures& measures) {
   const NetworkCounts none;
   for (const Objective& measure : measures.all) {
@@ -77,7 +77,7 @@ std::vector<double> scaled_rows(std::span<const PlanEntry> entries, const Survey
   return scaled;
 }
 
-// Entries for which another is better in all objectives beyond doubt.
+// Marks entries that another one beats in all objectives beyond doubt.
 std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem& problem, const Measures& measures) {
   const std::size_t m = problem.objectives.size();
   const std::vector<double> scaled = scaled_rows(entries, problem, measures);
@@ -153,7 +153,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
         }
         entries[k].values = entries[k].searched;
       }
-      // One voxel that only every ray sees may decide whether a requirement is violated.
+      // A single voxel that only every ray sees may decide whether a requirement is violated.
       if (problem.requirements.empty()) {
         const std::vector<bool> need_not = beaten(entries, problem, measures);
         erase_said(entries, need_not);

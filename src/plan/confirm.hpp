@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// How the networks of a plan are evaluated, but for their registration.
+// Options with which a plan evaluates its networks, except for registration.
 EvaluationOptions evaluation_options(const SurveyProblem& problem);
 
 struct ConfirmedFront {

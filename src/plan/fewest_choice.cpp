@@ -23,27 +23,27 @@
 namespace vantage {
 namespace {
 
-// Candidates that are traced even after the time is over, and more for so long: a connected network is worth more than
-// one chosen from many, and those of a large site are many.
+// Candidates that are traced even after the time is over, and time for more of them. A connected network is worth more
+// than one chosen from many candidates, and a large site needs many for one.
 constexpr std::size_t kLateCandidates = 96;
 constexpr double kLate_s = 2;
-// Further candidates around each chosen station; of many stations fewer, so that a round adds no more than so many.
+// Candidates added around each chosen station, at most and at least, and about how many a round adds in all.
 constexpr std::size_t kAround = 8, kLeastAround = 2, kAroundAll = 1400;
 
-// Rounds of looking along ways, parts that each looks for, and chosen stations to which it looks for the shortest way.
+// Rounds of `look_along_ways`, candidates that each tries to link, and chosen stations that paths are sought to.
 constexpr std::size_t kLooks = 4, kPartsAtOnce = 8, kNearest = 12;
-// Further candidates at each end where no way is known, within such a share of the distance.
+// Candidates added at each end if no path is known, and their radius as a share of the distance.
 constexpr std::size_t kAtEnds = 24;
 constexpr double kEndsRadius = 0.25;
 
-// Distance within which another place is looked for where a station is in the way, and further candidates there.
+// Radius within which a station that is in the way gets another place, and candidates added within it.
 constexpr double kAside_m = 3;
 constexpr std::size_t kAsideAround = 12;
 
-// Least number of further stations by which what is out of reach is looked for; of many stations half as many.
+// Least number of stations that `grow_into_reach` may add; a large network may grow by half.
 constexpr std::size_t kFurther = 4;
 
-// Rounds of adding stations to units of floor.
+// Most rounds of adding stations to units of floor, or for meshes.
 constexpr std::size_t kVisits = 4;
 // Further stations, at both ends of a stair, for each tie past it.
 constexpr std::size_t kForStair = 2;
@@ -70,7 +70,7 @@ bool has_what_is_asked(const FewestChoice& choice, std::span<const std::size_t> 
   });
 }
 
-// What a station would add to a share, up to a factor.
+// Gain that a station adds to a share, up to a factor.
 double gain_of(std::span<const CoverageMatrix::Entry> column, const AskedOfMeshes& asked,
                std::span<const double> attainable, std::span<const double> points) {
   double gain = 0;
@@ -82,8 +82,8 @@ double gain_of(std::span<const CoverageMatrix::Entry> column, const AskedOfMeshe
   return gain;
 }
 
-// Stations by which the network has what is asked of some meshes: each the one that adds most to the share that lacks
-// most, and linked to those before it if one of such is.
+// Stations with which the network meets the limits of `of_meshes`. Each adds most to the share that lacks most; linked
+// ones go first.
 std::vector<std::size_t> for_meshes(const FewestChoice& choice) {
   const CoverageMatrix& matrix = choice.table.matrix();
   const StationGraph& graph = choice.table.graph();
@@ -156,8 +156,8 @@ double length_m(std::span<const Vec3> way) {
   return sum;
 }
 
-// The chosen stations that links of any candidates connect, of several such groups the largest, and the candidates that
-// would help them most, each on its own after those before, if links reached them.
+// The chosen stations of the component that has most of them; components are those of all candidates. `help`:
+// candidates of other components with the largest gains, each after those before it.
 struct Unlinked {
   std::vector<std::size_t> network, help;
 };
@@ -183,8 +183,8 @@ Unlinked unlinked_help(const FewestChoice& choice) {
   return found;
 }
 
-// Allowed positions along the shortest way from a candidate to those of `ends` that are nearest to it; where none leads
-// there, around it and the one that sees most of what it sees.
+// Allowed positions along the shortest path from a candidate to one of the nearest `ends`. If no path is known: around
+// the candidate, and around the end that has the largest overlap with it.
 std::vector<PlacedStation> on_the_way(const FewestChoice& choice, std::size_t from, std::vector<std::size_t> ends,
                                       const PlacementOracle& oracle) {
   const std::vector<PlacedStation>& stations = choice.table.stations();
@@ -207,7 +207,7 @@ std::vector<PlacedStation> on_the_way(const FewestChoice& choice, std::size_t fr
   return positions_around(oracle, both, kAtEnds, kEndsRadius * away_m(nearest));
 }
 
-// True if as many stations are connected and capture no less than without an average one of them.
+// True if the network is connected, and captures at least what the former one did without an average station.
 bool holds_as_much(const FewestChoice& choice, const CoverSolution& before) {
   const auto placed = static_cast<double>(choice.placed());
   return choice.network.link >= choice.asked.link && choice.network.coverage >= (1 - 1 / placed) * before.coverage;
@@ -315,7 +315,7 @@ void choose_anew(FewestChoice& choice, double least_help, const std::stop_token&
 }
 
 void strengthen(FewestChoice& choice, const std::stop_token& stop) {
-  if (choice.asked.most_coverage) return;  // all links are for coverage
+  if (choice.asked.most_coverage) return;  // coverage alone decides
   const double errors = std::max(kMostLinkErrors - choice.link_errors, 0.0);
   const double enough =
       choice.asked.link + errors * choice.table.overlap_error(choice.network.chosen, choice.asked.link);
@@ -374,7 +374,7 @@ bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const 
 
 namespace {
 
-// Has these stations stay, and chooses again with them.
+// Adds stations that stay, and chooses again with them.
 void visit(FewestChoice& choice, std::span<const std::size_t> own, const std::stop_token& stop) {
   const CoverProblem before = cover_problem(choice);
   std::vector<std::size_t> network = choice.network.chosen;
@@ -394,7 +394,7 @@ bool visit_units(FewestChoice& choice, const std::stop_token& stop) {
   const auto& [units, least_m2, element_m2] = *choice.to_visit;
   const std::vector<std::vector<std::size_t>> candidates = units.stations_in(choice.table.stations());
   bool any = false;
-  // A station that goes elsewhere for it may leave another unit.
+  // A station that moves for one unit may leave another one without.
   for (std::size_t k = 0; k < kVisits && !stop.stop_requested(); ++k) {
     std::vector<std::size_t> own = for_empty_units(choice.table.matrix(), &choice.table.graph(), choice.network.chosen,
                                                    candidates, element_m2, least_m2);
@@ -408,7 +408,7 @@ bool visit_units(FewestChoice& choice, const std::stop_token& stop) {
 
 bool capture_meshes(FewestChoice& choice, const std::stop_token& stop) {
   std::vector<std::size_t> added;
-  // The choice may give up others that captured some of them, too.
+  // The new choice may drop others that captured some of these meshes.
   for (std::size_t k = 0; k < kVisits && !choice.of_meshes.empty() && !stop.stop_requested(); ++k) {
     std::vector<std::size_t> own = for_meshes(choice);
     own.resize(std::min(own.size(), choice.asked.most - choice.visiting.size()));
@@ -442,8 +442,8 @@ CoverSolution with_other(const FewestChoice& choice, std::size_t at, std::size_t
   return evaluate_cover(problem, std::move(network));
 }
 
-// The network with a candidate that is not in the way in place of the station at `at`: of those that serve as well, the
-// one that adds most to the others, whose points are `others`.
+// The network with the station at `at` replaced by a candidate nearby that is not in the way. Among those without more
+// violation it takes the one with the largest gain over `others`, the cover of the other stations.
 std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::size_t at, const PartialCover& others,
                                             const PlacementOracle& oracle) {
   const std::vector<PlacedStation>& stations = choice.table.stations();
@@ -547,7 +547,7 @@ void leave_stairs(FewestChoice& choice, const std::stop_token& stop) {
   choice.table.count_all_links();
   choice.past_stairs = nullptr;
   const CoverProblem problem = cover_problem(choice);
-  std::vector<std::size_t> network = problem.existing;  // some of which may be there for their units since
+  std::vector<std::size_t> network = problem.existing;  // with stations that units were given since
   for (const std::size_t k : choice.along_stairs->before.chosen)
     if (std::ranges::find(network, k) == network.end()) network.push_back(k);
   choice.along_stairs.reset();

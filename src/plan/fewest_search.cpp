@@ -11,9 +11,9 @@ namespace {
 // Stations that the search may trace for each traced candidate.
 constexpr double kSearchShare = 2;
 constexpr std::size_t kMostIterations = 100;
-// Networks tried for each coordinate, below which CMA-ES has not even learnt a direction, and keeps what it began with.
+// Least number of networks per coordinate. With fewer, CMA-ES learns no direction and keeps the initial network.
 constexpr std::size_t kLeastTries = 10;
-// First steps: about the distance between candidates, not the size of the site.
+// Initial step size: about the distance between candidates, not the size of the site.
 constexpr double kRefiningSigma = 0.03;
 
 }  // namespace

@@ -12,17 +12,17 @@ namespace vantage {
 // Rounds of refinement around the chosen stations.
 inline constexpr std::size_t kRounds = 3;
 
-// Requirements moved further from their limits by what is known of the sample of the search: by how much it overstates
-// the coverage of the network it begins at.
+// Raises limits by the known errors of the search's sample. `overstated`: excess of the sampled coverage of the initial
+// network.
 SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, double overstated, double link_margin);
 
-// Small first steps. If no number of iterations is given, it limits the stations that the search traces for each traced
-// candidate.
+// Returns a configuration with small first steps. If it has no number of iterations, it gets one that bounds the traced
+// stations by those of the candidates.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
-// True if the search tries some networks for each coordinate, and has something to trade. With fewer it cannot tell
-// directions apart, and the network it begins at stays the best. Where all that so many stations can capture is
-// required, it can only give up capture, within the margins of that limit.
+// True if the search evaluates enough networks for each coordinate, and has something to trade. With fewer it learns no
+// direction, and the initial network stays the best. If the number of stations is the one that pays, its capture is
+// required too: the search could only give up capture, within the margins of that limit.
 bool worth_searching(const SurveyProblem& problem, const PlanConfig& config);
 
 }  // namespace vantage

@@ -18,14 +18,14 @@ namespace {
 
 // Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
-// Standard errors of a sampled overlap by which each repair takes links for weaker than they seem.
+// Further standard errors that each repair subtracts from sampled overlaps.
 constexpr double kRepairErrors = 1;
-// Most rounds of links checked on another sample.
+// Largest number of rounds in which links are checked on another sample.
 constexpr std::size_t kChecks = 8;
-// Further candidates around each end of a link that is too weak.
+// Candidates added around each end of a link that is too weak.
 constexpr std::size_t kBetween = 24;
 
-// What an entry is short of the least values that are required of it.
+// Returns how far an entry falls short of its lower limits.
 Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<const Requirement> requirements) {
   Margins margins;
   for (const Requirement& requirement : requirements) {
@@ -39,14 +39,14 @@ Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<co
   return margins;
 }
 
-// Links that the network lacks to be one, of which each is at least `least`.
+// Number of links of at least `least` that the network lacks to be connected.
 std::size_t missing_links(const PlanEntry& entry, double least) {
   if (!entry.exact || entry.scan_overlap_matrix.size() == 0) return 0;
   return std::max<std::size_t>(station_links(entry.scan_overlap_matrix, least, entry.stations).parts.size(), 1) - 1;
 }
 
-// The violation by the values alone: what holds within its standard error only is still repaired. Each missing link
-// counts for itself: by the weakest alone, one that nothing can mend would hide all others.
+// The violation without tolerance: a limit that is met only within its standard error is still repaired. Each missing
+// link counts: with the weakest alone, one that cannot be mended would hide all others.
 double strict_violation(const PlanEntry& entry, std::span<const Requirement> requirements) {
   double violation = 0;
   for (const Requirement& requirement : requirements) {
@@ -66,14 +66,14 @@ std::vector<double> in_order(const DecisionSpace& space, const std::vector<doubl
   const std::vector<PlacedStation> stations = space.decode(x);
   const std::vector<std::size_t> order = visit_order(std::span(stations).subspan(space.existing()));
   const auto blocks = space.blocks();
-  if (order.size() != blocks.size()) return x;  // one that cannot be visited
+  if (order.size() != blocks.size()) return x;  // some station cannot be visited
   std::vector<double> ordered = x;
   for (std::size_t k = 0; k < order.size(); ++k)
     for (std::size_t c = 0; c < blocks[k].size(); ++c) ordered[blocks[k][c]] = x[blocks[order[k]][c]];
   return ordered;
 }
 
-// The chosen candidates in the order of an evaluation's stations, which are the same in the order of visiting.
+// The chosen candidates in the order of an evaluation's stations, which are the same, in the order of visiting.
 std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, const FewestChoice& choice) {
   std::vector<std::size_t> left = choice.network.chosen, ordered;
   for (const PlacedStation& station : stations) {
@@ -87,8 +87,8 @@ std::vector<std::size_t> in_order_of(std::span<const PlacedStation> stations, co
   return ordered;
 }
 
-// Looks at further candidates around both ends of the best link of each part of a network, as far as these are apart,
-// and along the way between them, and chooses again. That serves where no known candidate links a part to the rest.
+// Adds candidates around both ends of the best link of each component, within the ends' distance, and along the path
+// between them. Chooses again. This helps if no known candidate links a component to the rest.
 void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span<const PlacedStation> stations,
                   const StationLinks& links, const std::stop_token& stop) {
   std::vector<PlacedStation> between;
@@ -105,7 +105,7 @@ void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span
   choose_again(choice, stop);
 }
 
-// Chosen stations with a link of which only the sample tells that it holds, and which known links do not replace.
+// Chosen stations with a link that only the sample shows, and that links known exactly do not replace.
 std::vector<std::size_t> with_unknown_links(const FewestChoice& choice) {
   const std::vector<std::size_t>& chosen = choice.network.chosen;
   const auto linked = [&](std::size_t i, std::size_t j) {
@@ -121,8 +121,8 @@ std::vector<std::size_t> with_unknown_links(const FewestChoice& choice) {
   return {found.begin(), found.end()};
 }
 
-// The ends of the best link of each part of the chosen network, and the candidates that the sample shows to be linked
-// best to both. Links that it admits to be too weak are among them: a larger one may show them to hold.
+// The ends of the best link of each component of the chosen network, and the candidates with the best sampled links to
+// both. Links that are too weak on this sample are included, as they may hold on a larger one.
 std::vector<std::size_t> around_gaps(const FewestChoice& choice, const StationLinks& links) {
   const StationGraph& graph = choice.table.graph();
   std::set<std::size_t> found;
@@ -141,7 +141,7 @@ std::vector<std::size_t> around_gaps(const FewestChoice& choice, const StationLi
   return {found.begin(), found.end()};
 }
 
-// As the table knows them, of the chosen stations in their order.
+// Links of the chosen stations, in their order, by the overlaps of the table.
 StationLinks links_of(const FewestChoice& choice) {
   const std::vector<std::size_t>& chosen = choice.network.chosen;
   ScanOverlapMatrix overlap(chosen.size());
@@ -188,7 +188,7 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   const DecisionSpace space(oracle_, narrowed);
   SearchOutcome ordered = found;
   for (ParetoPoint& point : ordered.front) point.x = in_order(space, point.x, visit_order_);
-  // A search may keep the network that it began with.
+  // A search may return the network that it started from.
   const auto known = [&](const ParetoPoint& point) {
     return std::ranges::any_of(entries_, [&](const PlanEntry& entry) { return entry.exact && entry.x == point.x; });
   };
@@ -200,7 +200,7 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
     entry.violation = violation_of(entry);
     entries_.push_back(std::move(entry));
   }
-  // Every voxel's points take some 12 bytes a voxel; only what may be the answer keeps them.
+  // Counts of every voxel take about 12 bytes each; only the entry that may be the answer keeps them.
   const auto answer = std::ranges::min_element(entries_, {}, [](const PlanEntry& entry) {
     return std::tuple(!entry.exact, entry.violation, entry.stations.size());
   });
@@ -269,7 +269,7 @@ double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
 
 void choose_again(FewestChoice& choice, const std::stop_token& stop) {
   choice.one_fewer.reset();
-  // From the present network, at this number, or else with one more.
+  // Starts from the present network with as many stations, and else adds more.
   const CoverProblem asked = cover_problem(choice);
   CoverSolution same =
       improve_weakest_link(asked, evaluate_cover(asked, choice.network.chosen), choice.asked.link, stop);
@@ -329,7 +329,7 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const Placem
   const std::size_t ties = verified.ties_past_stairs(*best);
   const bool unlinked = missing.link > 0 || ties > 0;
   if (missing.coverage == 0 && !unlinked) return false;
-  // The last one verified is the chosen one.
+  // The last verified network is the chosen one.
   const double known = choice.network.violation;
   if (last.exact && unlinked && last.scan_overlap_matrix.size() == choice.network.chosen.size()) {
     choice.link_errors = std::min(choice.link_errors + kRepairErrors, kMostLinkErrors);

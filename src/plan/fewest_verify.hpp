@@ -26,33 +26,33 @@ class VerifiedNetworks {
   using VisitOrder = std::function<std::vector<std::size_t>(std::span<const PlacedStation>)>;
   // Returns the number of links past the stair that alone tie storeys of a network, and that others could replace.
   using TiesPastStairs = std::function<std::size_t(const Evaluation&)>;
-  // Borrows all but the functions. `sample_voxels`: sample of the search, for the entries' searched values; 0: every
-  // ray.
+  // Borrows all but the functions. `sample_voxels`: size of the search's sample, for the entries' searched values; 0:
+  // every ray.
   VerifiedNetworks(const SurveyProblem& problem, const Measures& measures, const PlacementOracle& oracle,
                    NetworkEvaluator& evaluator, std::uint64_t sample_voxels, const PlanWatch& watch,
                    VisitOrder visit_order = {}, TiesPastStairs ties_past_stairs = {});
 
-  // Evaluates a network of these stations besides the existing ones, or the front of a search for as many stations. Its
-  // stations are numbered in the order of visiting.
+  // Evaluates a network of these stations and the existing ones, or the front of a search for as many stations.
+  // Stations are numbered in the order of visiting.
   void add(std::span<const PlacedStation> placed);
   void add(const SearchOutcome& found, std::size_t placed);
 
-  // Judges all networks anew: other ties count than before.
+  // Computes all violations again, after a change of the ties that count.
   void judge_again();
-  // Gives the last network a value that its choice knows, if the time was over before it was evaluated.
+  // Gives the last network a value known from its choice, if the time was over before it was evaluated.
   void fill_in(const std::string& measure, double value);
 
   const SurveyProblem& problem() const { return problem_; }
   const std::vector<PlanEntry>& entries() const { return entries_; }
   // The network with the least violation among those evaluated in full; null if there is none.
   const PlanEntry* best() const;
-  // Such a tie counts as a missing link.
+  // Number of ties past the stair that count as missing links; 0 if the entry was not evaluated with every ray.
   std::size_t ties_past_stairs(const PlanEntry& entry) const {
     return entry.exact && ties_past_stairs_ ? ties_past_stairs_(entry) : 0;
   }
 
-  // Among the networks evaluated in full, or all if none was: those of fewest stations that meet the requirements, else
-  // those with the least violation; of these, the non-dominated ones.
+  // Returns the networks with fewest stations that meet the requirements, else those with the least violation; of
+  // these, the non-dominated ones. Only networks evaluated in full count, if there are any.
   std::vector<PlanEntry> front() const;
 
  private:
@@ -76,32 +76,32 @@ SurveyProblem with_stations(SurveyProblem problem, std::size_t placed);
 // margin if that is not known.
 double verify(const FewestChoice& choice, VerifiedNetworks& verified);
 
-// Keeps to stairs (fewest_choice.hpp) where only every ray shows that the last verified network, the chosen one, has
-// ties past them. Returns true if another network is chosen.
+// Keeps to stairs (fewest_choice.hpp) if the last verified network, the chosen one, shows ties past them only with
+// every ray. Returns true if another network is chosen.
 bool keep_to_stairs(FewestChoice& choice, VerifiedNetworks& verified, const std::stop_token& stop);
 
-// Chooses again from the present network, of as many stations or else of one more.
+// Chooses again, starting from the present network: with as many stations, else with more.
 void choose_again(FewestChoice& choice, const std::stop_token& stop);
 
-// The same with margins raised, by somewhat more than what is missing.
+// Raises the margins by somewhat more than `missing`, and chooses again.
 void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop);
 
-// Chooses again with further stations for what the last verified network, the chosen one, lacks of some meshes. False
-// if it lacks nothing of them.
+// Raises the margins of meshes whose limits the last verified network, the chosen one, misses. Adds stations for them
+// and chooses again; returns false if it adds none.
 bool repair_meshes(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
-// Chooses again by what the best verified network is short of. If links are too weak, the table takes in the overlaps
-// that every ray showed of the chosen stations, and others for the least that their sample admits: links that hold
-// stay, and only the others are mended, by candidates on the way between stations where no known one does. False where
-// that cannot help.
+// Chooses again with margins for what the best verified network lacks. If links are too weak, the table takes the
+// exact overlaps of the chosen stations, and lower bounds of all other ones. Links that hold stay; the others are
+// mended, by new candidates along the path between stations if no known one does. Returns false if that cannot
+// help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const PlacementOracle& oracle,
             const std::stop_token& stop);
 
-// Scan overlaps of stations, at least, as a sample shows them that did not choose them; none if stopped.
+// Returns lower bounds of scan overlaps, from a sample that did not choose the stations; empty if stopped.
 using LeastOverlaps = std::function<std::optional<ScanOverlapMatrix>(std::span<const PlacedStation>)>;
 
-// Checks the links of the chosen network, long before every ray does: those that are chosen among millions of pairs are
-// those that their sample flatters. Links that do not hold are mended, as in a repair.
+// Checks the links of the chosen network on another sample, long before every ray is traced. Links chosen among
+// millions of pairs are those that their sample overestimates. Mends links that do not hold, as `repair` does.
 void check_links(FewestChoice& choice, const PlacementOracle& oracle, const LeastOverlaps& least_overlaps,
                  const std::stop_token& stop);
 

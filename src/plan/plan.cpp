@@ -28,7 +28,7 @@
 namespace vantage {
 namespace {
 
-// What a problem says, with the scale of the number of stations as it is, and `capture` of what is attainable.
+// Returns the problem with its actual scale of stations, and with `capture` relative to what is attainable.
 SurveyProblem with_scales(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
@@ -43,25 +43,25 @@ SurveyProblem with_scales(SurveyProblem problem) {
   return problem;
 }
 
-// The scanner that sees most: what it cannot capture, none can.
+// Index of the scanner with most rays: what it cannot capture, none can.
 std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> scanners) {
   if (scanners.empty()) return 0;
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
-// Shares of it for finding candidates, and until these are counted on the second sample: links take time, too.
+// Shares of the time: until candidates are found, and until their other sample is counted. Links take time, too.
 constexpr double kCandidatesTimeShare = 0.25, kCountedTimeShare = 0.5;
-// More are tried where it pays: around the stations that are chosen.
+// Most candidates of a site without much ground. Later stages add more around the chosen stations.
 constexpr std::size_t kMostCandidates = 4096;
-// Of a larger site one for so much ground, so that none of it is farther than some metres from a candidate.
+// Ground for each candidate of a larger site, so that every place is within some metres of one.
 constexpr double kGroundPerCandidate_m2 = 16;
-// How many times as many voxels as a search has a number of stations is chosen by, and for how much ground that does:
-// a larger site has as many voxels a square metre, up to so many times as many, since each candidate looks at all.
+// The choice of a number of stations has `kLargerSample` times as many voxels as a search, up to this much ground. On
+// more ground it has proportionally more, up to `kMostSamples` times, since each candidate is traced on all.
 constexpr std::uint64_t kLargerSample = 5;
 constexpr double kGroundOfSample_m2 = 8000, kMostSamples = 4;
 
-// Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
-// with no more than twice as many all of them, since as many others are taken to confirm it.
+// Size of the sample that the number of stations is chosen on. It is larger than a search's, since thousands compete. A
+// site with at most twice as many voxels uses all, since as many others have to confirm the network.
 std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, Site& site) {
   const Simulator& simulator = site.simulator();
   std::uint64_t sample = config.sample_voxels;
@@ -72,8 +72,8 @@ std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& c
   return config.exact || 2 * sample >= simulator.voxel_count() ? every_voxel : sample;
 }
 
-// Attainable counts by the candidates and the existing stations: on the voxels that networks are chosen by, and on as
-// many others, by which they are confirmed. Of a site of few voxels both are of all.
+// Counts what candidates and existing stations can attain, on the voxels that networks are chosen on, and on as many
+// others that confirm them. On a site of few voxels, both use all of them.
 void count_attainable(PlanContext& context, Simulator& simulator, const SurveyProblem& problem,
                       const Candidates& candidates, std::uint64_t searched, const Progress& progress) {
   const Network existing = to_network(existing_stations(context.oracle(), problem.existing, problem.existing_setups));
@@ -91,7 +91,7 @@ void count_attainable(PlanContext& context, Simulator& simulator, const SurveyPr
   for (const std::string& some : meshes) context.confirmed.tell_of(simulator, some);
   Network all = to_network(candidates.stations());
   all.insert(all.end(), existing.begin(), existing.end());
-  // Without the time for it, networks are confirmed on the voxels that they were chosen by.
+  // If there is no time for it, networks are confirmed on the voxels that they were chosen on.
   if (!raise_attainable(context.confirmed, simulator, all, progress)) context.confirmed = context.chosen;
 }
 
@@ -100,10 +100,10 @@ std::size_t most_candidates(Site& site) {
   return std::max(kMostCandidates, static_cast<std::size_t>(by_ground));
 }
 
-// Floor of a room, or another part, that takes a station of its own.
+// Least floor of a room, or of another part, that gets a station of its own.
 constexpr double kLeastFloorOfUnit_m2 = 2;
 
-// Finds candidates, and if a measure needs it what is attainable: the problem learns it.
+// Finds candidates. If a measure needs it, counts what is attainable, and sets it in the problem.
 std::shared_ptr<const Candidates> look_for_candidates(PlanContext& context, Site& site, SurveyProblem& problem,
                                                       const PlanConfig& config, double max_seconds,
                                                       const PlanWatch& watch) {
@@ -148,7 +148,7 @@ CoverageMatrix columns_with(std::span<const PlacedStation> stations, const PlanC
   return matrix;
 }
 
-// Requires what the stations that pay can capture, or what the problem does if that is more.
+// Raises the required capture to what the stations that pay can capture.
 void require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site, const Candidates& candidates,
                        const Progress& progress) {
   if (!problem.pays_m2 || candidates.coverage().size() == 0) return;
@@ -175,12 +175,12 @@ void require_what_pays(SurveyProblem& problem, PlanContext& context, Site& site,
   context.pays = pays;
 }
 
-// Share of what is attainable that pays and is left out without a question, where nothing links it.
+// Share of what is attainable that pays, but may be left out without a message if no link reaches it.
 constexpr double kLittleUnlinked = 0.02;
 
-// A limit on the stations or on the time on site ended the plan before all stations that pay were placed, or links
-// leave little of what pays out: nothing more than what the answer captures is then required, unless the problem asked
-// for it.
+// Lowers the required capture to that of the answer, but not below the problem's own. It does so if a limit on stations
+// or on time on site ended the plan before all stations that pay were placed, or if missing links leave out only little
+// that pays.
 void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked) {
   if (!result.pays || result.front.empty()) return;
   const PlanEntry& entry = result.front[answer(result)];
@@ -197,7 +197,7 @@ void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked)
   for (PlanEntry& one : result.front) one.violation = violation_of(one, result.problem.requirements);
 }
 
-// Counts one station with every ray, by which the watch learns how long that takes.
+// Counts one station with every ray, so that the watch knows how long that takes.
 void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   const std::vector<PlacedStation> one =
       spread_positions(context.oracle(), context.area().mesh(), context.oracle().height_m, 1).stations;

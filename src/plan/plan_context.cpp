@@ -10,16 +10,16 @@
 namespace vantage {
 namespace {
 
-// Scan overlap is a share of a scan, some thousand voxels of this number: known to 0.01.
+// Scan overlap is a share of a scan, which has some thousand of these voxels: known to 0.01.
 constexpr std::uint64_t kSurroundingsVoxels = 10'000;
-// So much ground is that of which a scan is such a share. On a larger site links are chosen by as many voxels a square
-// metre.
+// Ground of a site on which a scan has that many of them. On a larger site the sample for links has as many voxels per
+// square metre.
 constexpr double kGroundOfSample_m2 = 4000;
 
 }  // namespace
 
-// Each further one departs from the textbook's one at a time, so there are no more than keep the engine busy. A whole
-// network with every ray keeps any engine busy, a sampled one only a CPU.
+// The textbook's steady state has one offspring at a time, so the batch is no larger than keeps the engine busy. A
+// whole network with every ray keeps any engine busy, a sampled one only a CPU.
 std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   if (config.batch > 0) return config.batch;
   if (config.sample_voxels == 0) return 1;

@@ -18,15 +18,15 @@ class PlanContext {
   // Borrows site and configuration. `scanners`: those of the site to choose from.
   PlanContext(Site& site, const PlanConfig& config, std::vector<std::uint32_t> scanners);
 
-  // What captured shares are told by, where a measure needs it: of choices among candidates, of searches, on part of
-  // their voxels, and of confirmed networks, on others. To be filled in before ask().
+  // Attainable counts that captured shares refer to: of choices among candidates, of searches on part of their voxels,
+  // and of confirmed networks on other voxels. If a measure needs them, the caller sets them before ask().
   AttainableCounts chosen, searched, confirmed;
-  // Empty unless the number of stations is that of those that pay.
+  // Both are set if the plan places the stations that pay.
   std::optional<UnitsToVisit> to_visit;
   std::optional<StationsThatPay> pays;
   double asked_capture = 0;  // by the problem, whatever pays
 
-  // Networks are judged by this problem's measures from now on. It is settled: its `capture` knows what is attainable.
+  // Uses this problem's measures from now on. REQUIRES: its `capture` is relative to what is attainable.
   void ask(const SurveyProblem& problem);
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }
@@ -35,14 +35,14 @@ class PlanContext {
   SimulatorEvaluator& evaluator() { return *evaluator_; }
   Simulator& surroundings() { return site_.surroundings(); }
   const OnSite& on_site();                    // made at first use
-  std::uint64_t surroundings_voxels() const;  // of all surfaces, that networks are evaluated by
-  std::uint64_t link_voxels() const;          // that links between candidates are known by
+  std::uint64_t surroundings_voxels() const;  // sample of all surfaces that evaluates networks
+  std::uint64_t link_voxels() const;          // sample that decides links between candidates
 
   // Searches the present problem, perhaps narrowed to a number of stations or with other limits.
   SearchOutcome search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
                        const PlanWatch& watch);
   ConfirmedFront confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
-  // The result except its front.
+  // Returns the result without its front.
   PlanResult result(const SearchOutcome& found);
 
  private:

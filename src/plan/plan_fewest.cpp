@@ -31,23 +31,23 @@ constexpr std::size_t kRepairs = 6, kNewChoices = 3;
 // Stations that may be traced with every ray to repair a choice, and to try fewer stations.
 constexpr std::size_t kRepairStations = 6000, kFewerStations = 500;
 
-// Time of the stages after the first round of refinement, in times of those until then: a guess from one plan of the
-// office. Timing the stages themselves would take longer than some of them.
+// Ratio of the time after the first round of refinement to the time until then, a guess from one plan of the office.
+// Timing the stages themselves would take longer than some of them.
 constexpr double kRestOfPlan = 3;
 
 // Largest networks of a trade-off that are measured together.
 constexpr std::size_t kTogether = 128;
 
-// A site with more ground has hundreds of links, of which a sample flatters some. There they are taken for weaker than
-// they seem, by so many standard errors, before every ray shows it. On smaller sites that would cost stations for links
-// that hold.
+// A site with more ground has hundreds of links, some of which a sample overestimates. The choice subtracts
+// `kLinkErrors` standard errors from them, before every ray is traced. On smaller sites that would cost stations for
+// links that hold.
 constexpr double kGroundOfHundreds_m2 = 8000, kLinkErrors = 2;
-// Voxels by which its links are checked, in samples by which they were chosen, and standard errors by which they must
-// hold there.
+// Size of the sample that checks its links, as a multiple of the one that chose them, and standard errors by which
+// links must hold on it.
 constexpr std::uint64_t kCheckedVoxels = 3;
 constexpr double kCheckErrors = 1;
 
-// Makes tables of stations, with a column for each on a sample of this many voxels.
+// Makes tables of stations, with a column for each station on a sample of the voxels.
 class TableMaker {
  public:
   TableMaker(PlanContext& context, Simulator& simulator, const SampledCoverage& known) : simulator_(simulator) {
@@ -77,7 +77,7 @@ class TableMaker {
   CandidateTable operator()(std::uint64_t sample_voxels) const {
     return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_, unsampled_};
   }
-  // Of columns that are known already.
+  // Returns known columns with the goals of the table.
   CoverageMatrix by_goals(CoverageMatrix known) const {
     if (!goals_.empty()) known.set_goals(goals_);
     return known;
@@ -86,7 +86,7 @@ class TableMaker {
  private:
   Simulator& simulator_;
   TraceColumns surroundings_;
-  std::vector<double> goals_;  // attainable counts, where the choice goes by them
+  std::vector<double> goals_;  // attainable counts, if the choice limits `capture`
   StationSpacing spacing_;
   double unsampled_ = 1;
 };
@@ -125,8 +125,8 @@ bool has_hundreds_of_links(const FewestChoice& choice, PlanContext& context) {
   return choice.asked.link > 0 && ground_area_m2(context.area().mesh()) > kGroundOfHundreds_m2;
 }
 
-// What is chosen among thousands by a sample is what the sample flatters. Other voxels tell by how much, long before
-// every ray does: chooses anew, with margins, until they show enough.
+// Chooses again with larger margins until the network has enough coverage on other voxels. The sample overestimates a
+// network chosen among thousands; other voxels show by how much, long before every ray does.
 void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!choice.asked.captured || choice.asked.most_coverage) return;
   for (std::size_t k = 0; k < kNewChoices && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
@@ -138,7 +138,7 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   }
 }
 
-// Requires no more than the chosen network captures by other voxels, within their error, or than the problem asks for.
+// Lowers the required capture to that of the network on other voxels, less its error, within the problem's limits.
 void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   const Network network = to_network(choice.stations_of(choice.network));
   const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
@@ -151,7 +151,7 @@ void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simu
   context.ask(problem);
 }
 
-// Mends the links that other voxels tell not to hold, on sites that have hundreds.
+// Mends links that do not hold on other voxels, on sites with hundreds of links.
 void mend_links(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   if (!has_hundreds_of_links(choice, context)) return;
   Simulator& surroundings = context.surroundings();
@@ -175,12 +175,12 @@ void mend_links(FewestChoice& choice, PlanContext& context, Simulator& simulator
     return overlap;
   };
   check_links(choice, context.oracle(), least_overlaps, watch.stop);
-  // The stations that mend links may capture less than they seem to.
+  // Stations that mend links may capture less than the sample shows.
   calibrate(choice, context, simulator, watch);
   check_links(choice, context.oracle(), least_overlaps, watch.stop);
 }
 
-// Stations are numbered in the order of visiting, which goes along links, long before every ray tells them.
+// Order of visiting, by which stations are numbered. It follows sampled links, long before every ray is traced.
 VerifiedNetworks::VisitOrder visit_order(PlanContext& context, const PlanWatch& watch) {
   return [&context, &watch, link = fewest_asked(context.problem()).link](std::span<const PlacedStation> placed) {
     Evaluation known{.stations = {placed.begin(), placed.end()}, .link = link};
@@ -195,7 +195,7 @@ VerifiedNetworks::VisitOrder visit_order(PlanContext& context, const PlanWatch& 
   };
 }
 
-// Looks, chooses and refines. Without stations to place where the time was over first.
+// Traces candidates, chooses and refines. Places no station if the time was over before that.
 FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
                            const PlanWatch& watch, FewestReport& report) {
   const SurveyProblem& problem = context.problem();
@@ -210,7 +210,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
       return past_stairs(stations, pairs, context.on_site());
     };
   choice.way = [&context](const Vec3& from, const Vec3& to) { return context.on_site().way(from, to); };
-  // Where nothing else tells by how much the sample flatters, a standard error of it.
+  // No other voxels correct the sample then: the margin is a standard error of it.
   if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
 
   if (has_hundreds_of_links(choice, context)) {
@@ -241,7 +241,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   };
   refine();
   if (look_along_ways(choice, context.oracle(), watch.stop)) refine();
-  // A share that is asked for is reached whatever it takes; if it is out of reach then too, each station has to help.
+  // Reaches a required share with any number of stations. If it stays out of reach, each station has to help.
   if (out_of_reach(choice) && !problem.pays_m2 && !report.stopped()) {
     choose_anew(choice, 0, watch.stop);
     refine();
@@ -266,7 +266,7 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   return choice;
 }
 
-// Counts ties of evaluated networks, unless the choice found that they have to be.
+// Counts ties past the stair in evaluated networks, without those that the choice found unavoidable.
 VerifiedNetworks::TiesPastStairs count_ties(const FewestChoice& choice) {
   return [&choice](const Evaluation& evaluation) -> std::size_t {
     const ScanOverlapMatrix& overlap = evaluation.scan_overlap_matrix;
@@ -332,7 +332,7 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
     found.stop_reason = StopReason::max_iterations;
   else if (!report.stopped())
     found = context.search(asked, refining, start, watch);
-  // Registration draws stations together; those that do the same do not need each other, and a room needs its own.
+  // Registration draws stations together: networks with stations too close, or with an emptied unit, are dropped.
   const DecisionSpace space(context.oracle(), asked);
   for (std::size_t k = found.front.size(); k-- > 0;)
     if (const std::vector<PlacedStation> stations = space.decode(found.front[k].x);
@@ -343,8 +343,8 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   return found;
 }
 
-// The trade-off around the chosen network, measured on the voxels of confirmation. Once the search is to end its
-// networks are not improved any more; an abort leaves points out.
+// The trade-off around the chosen network, estimated on the voxels that confirm networks. A stop ends the improvement
+// of its networks; an abort leaves points out.
 std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
   if (!choice.asked.captured) return {};
   const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop, watch.abort);
@@ -397,7 +397,7 @@ std::optional<FurtherStation> further_station(const PlanResult& result, const Fe
   return further;
 }
 
-// Time ran out before anything was traced: an allowed position, of which nothing is known.
+// Returns one allowed position as an entry, since the time ran out before anything was traced.
 std::vector<PlanEntry> any_position(PlanContext& context, const Candidates& candidates, VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();
   if (one.empty())
@@ -413,7 +413,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
                        const PlanConfig& config, const PlanWatch& watch) {
   FewestReport report(watch);
   FewestChoice choice = choose_number(context, simulator, *candidates, watch, report);
-  const SurveyProblem problem = context.problem();  // which the choice may have narrowed
+  const SurveyProblem problem = context.problem();  // the choice may have narrowed it
   VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
                             watch, visit_order(context, watch), count_ties(choice));
   SearchOutcome found;
@@ -424,7 +424,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result.front = any_position(context, *candidates, verified);
   } else {
     const double overstated = verify_and_repair(choice, verified, context, simulator, watch, report);
-    // Before the search, which takes whatever time there is.
+    // This comes before the search, which takes whatever time there is.
     std::vector<TradeOffPoint> points = trade_off(choice, context, watch);
     found = search_from(choice, context, overstated, candidates->stations().size(), config, watch, report);
     verified.add(found, choice.placed());

@@ -8,11 +8,11 @@
 namespace vantage {
 namespace {
 
-// Share of the time for looking, choosing and searching, until it is known what tracing every ray of the results takes.
+// Share of the time until the search ends, before it is known how long every ray of the results takes.
 constexpr double kSearchTimeShare = 0.8;
-// The answer may be counted twice after the search, as a network and with its targets, and half as slowly as before.
+// After the search the answer may be counted twice, as a network and with its targets, 1.5 times as slowly each.
 constexpr double kCountsAfterSearch = 3;
-// The search and its results have so much of the time at least, however long the caller says it takes.
+// Least share of the time for the search and its results, however long the caller's own work takes.
 constexpr double kLeastTimeShare = 0.5;
 constexpr double kMoment_s = 1e-9;  // 0 would be no limit
 

@@ -9,18 +9,18 @@
 
 namespace vantage {
 
-// The time limit of a plan. Its search ends early enough for what has to follow, which is known better once stations
-// were counted with every ray.
+// The time limit of a plan. Its search ends early enough for the stages after it, whose time is estimated better once
+// stations were counted with every ray.
 class PlanTime {
  public:
   PlanTime(double max_seconds, const PlanWatch& given);
 
-  // Stops at the limits too, and reports no longer times than they leave. Its `seconds_after` is told the time of
-  // stations, and always there. Borrows this.
+  // Returns a watch that also stops at the limits, and reports no longer times than they leave. Its `seconds_after` is
+  // always set, and also learns the time of stations. Borrows this.
   PlanWatch watch();
   bool limited() const { return max_seconds_ > 0; }
   double seconds() const;  // without the caller's; 0: no limit
-  // Whether the clock ended the search.
+  // True if the clock ended the search.
   bool search_ended() const { return search_by_.passed(); }
 
  private:

@@ -61,18 +61,18 @@ SurveyProblem of_objectives(const SurveyQuestion& question, std::array<std::size
   return named("objectives", [&] { return survey_problem(question.objectives, stations[0], stations[1], least); });
 }
 
-// True if it asks for as much as one number of stations can capture.
+// True if it asks for the most coverage of a fixed number of stations.
 bool asks_for_most(const SurveyQuestion& question) {
   return question.stations && (*question.stations)[0] == (*question.stations)[1] && !question.capture &&
          !question.pays_m2 && question.objectives.empty();
 }
 
-// True if a requirement in words is a least share of what is attainable.
+// True if a requirement in words is a lower limit on the captured share.
 bool requires_share(const std::string& text) {
   return requires_capture(named("require", [&] { return make_requirement(text, {}); }));
 }
 
-// True if the number of stations is that of those that pay: always, unless another number or a share is asked for.
+// True if the plan places the stations that pay: always, unless the question has a number or a share.
 bool asks_what_pays(const SurveyQuestion& question) {
   if (question.pays_m2) return true;
   return question.asks_for_fewest() && !question.capture && !asks_for_most(question) &&
@@ -148,7 +148,7 @@ constexpr std::uint64_t kSampleForCoverage = 20'000, kSampleForOverlap = 100'000
 // sample; every ray then judges the archive (docs/evidence/cases.md).
 constexpr std::uint64_t kSampleRedrawn = 5'000;
 constexpr std::size_t kIterationsOfASample = 20;
-// A search for the best of so many stations; the number is chosen by a larger sample.
+// Sample size of a search at a fixed number of stations; a larger sample chooses the number.
 constexpr std::uint64_t kSampleForFewest = 5'000;
 // A quarter of the voxels is enough on small sites, but at least some thousands.
 constexpr std::uint64_t kLeastSample = 5'000;

@@ -21,12 +21,12 @@ namespace {
 // many stations, a quarter if there are hundreds: each takes seconds of swaps and of registration.
 constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4, kManyStations = 100, kHundreds = 300;
 constexpr double kBeyondShare = 0.5;
-// Networks that are looked at for whether they pay, and the share of what a station has to capture below which one that
-// is there goes: by a sample, and after some swaps, the last ones of many networks capture a little less or more.
+// Most networks tested for whether they pay, and the share of `pays.least_m2` below which a chosen station goes. A
+// sample and swaps change the gains of the last stations of large networks a little.
 constexpr std::size_t kPointsThatPay = 32;
 constexpr double kClearly = 0.8;
 
-// Without the station that is missed least, of those without which the rest is connected as before.
+// Removes the station with the least loss, of those without which the others are connected as before.
 bool drop_one(const CoverProblem& problem, std::vector<std::size_t>& network) {
   const PartialCover cover(problem.matrix, network);
   const NetworkLinks links(problem, network, problem.link);
@@ -109,7 +109,7 @@ bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double as
   problem.coverage = 1;  // as much as there is
   const ColumnIndex columns(problem.matrix);
   const std::size_t beyond = choice.placed() - pays.stations, each = 1 + (beyond - 1) / kPointsThatPay;
-  // Networks of falling numbers, each of which captures most.
+  // Adds the best network for each of several falling numbers of stations.
   std::vector<std::vector<std::size_t>> networks{improve_by_swaps(problem, columns, choice.network.chosen, stop)};
   for (std::size_t left = beyond; left > 0 && !stop.stop_requested();) {
     std::vector<std::size_t> now = networks.back();

@@ -9,24 +9,24 @@
 
 namespace vantage {
 
-// The best network found of each of some numbers of stations, from one to a few beyond the chosen, by rising number:
-// from the chosen one down, always without the station that is missed least, and up along links; swaps improve each,
-// until `unimproved` is requested. A stopped call returns what it has.
+// Returns the best network found for each of several numbers of stations, by rising number. From the chosen number down
+// it drops the station with the least loss; up to a few more it adds linked ones; swaps improve each until `unimproved`
+// is requested. A stopped call returns what it has.
 std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& unimproved,
                                               const std::stop_token& stop);
 
-// Leaves stations out that links need and that do not pay. `pays`: the stations that do by themselves; of those beyond
-// that number those go that clearly capture less than `pays.least_m2` each. Asks for no more than the rest captures
-// then, and at least for `asked_capture`. True if that leaves some out.
+// Drops stations that only links need and that do not pay. `pays`: the stations that pay without links. Stations beyond
+// their number go if they clearly capture less than `pays.least_m2` each. Lowers the required capture to that of the
+// rest, but not below `asked_capture`. Returns true if it dropped any.
 bool keep_what_pays(FewestChoice& choice, const StationsThatPay& pays, double asked_capture,
                     const std::stop_token& stop);
 
-// Adds linked stations as long as a further one captures `pays.least_m2`, with swaps for coverage after each: fewer
-// stations than a greedy choice takes may capture the same and leave more. Asks for what all of them capture then. True
-// if there was one to add.
+// Adds linked stations, with swaps for coverage after each, as long as a further one captures `pays.least_m2`. Swaps
+// may capture the same with fewer stations than a greedy choice, and leave more to gain. Raises the required capture to
+// that of all. Returns true if it added any.
 bool add_what_pays(FewestChoice& choice, const StationsThatPay& pays, const std::stop_token& stop);
 
-// Numbers of stations to tell a trade-off by, around the chosen one: all of few, else so many evenly spread.
+// Numbers of stations in a trade-off, around the chosen one: all if they are few, else some evenly spread.
 std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most);
 
 // Marks the knee: the point farthest above the line from the first to the last, both scaled to 1 (Satopaa, Albrecht,

@@ -15,7 +15,7 @@
 
 namespace vantage {
 
-// A part of the floor (floor_units.hpp) takes a station if that captures so much of what one has to.
+// Least new surface of a station in a part of the floor (floor_units.hpp), as a share of what any station must add.
 inline constexpr double kLeastOfUnit = 0.2;
 
 // Surface that a candidate captures and a network does not, in square metres of all surfaces alike, whatever their
@@ -33,8 +33,8 @@ std::vector<std::size_t> for_empty_units(const CoverageMatrix& matrix, const Sta
                                          std::span<const std::vector<std::size_t>> units, double element_m2,
                                          double least_m2);
 
-// What a further station has to capture: so many m², and such a share of what the stations before it capture on
-// average, or of a tenth of all that they do if these are fewer than ten.
+// Least new surface of a further station: in m², and as a share of the average of the stations before it. If those are
+// fewer than ten, a tenth of their total stands for the average.
 struct LeastGain {
   double m2 = 0, share = 0;
 };
@@ -50,8 +50,8 @@ StationsThatPay stations_that_pay(const CoverProblem& problem, double element_m2
 // weigh.
 CoverageMatrix with_even_weights(const CoverageMatrix& matrix);
 
-// What further stations add to those that exist, a fifth of `stations` together and at least one: new surface of each
-// on average, and the candidates. They are linked where the problem asks for links. REQUIRES: even weights.
+// Further stations that a greedy choice adds, a fifth of `stations` and at least one: the candidates, and their new
+// surface on average. They are linked if the problem asks for links. REQUIRES: even weights.
 struct FurtherStations {
   std::vector<std::size_t> candidates = {};
   double each_m2 = 0;

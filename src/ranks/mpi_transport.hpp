@@ -14,7 +14,7 @@ class MpiTransport : public Transport {
   virtual void leave(int exit_code) = 0;
 };
 
-// Whether a launcher started this process as one of a job.
+// True if a launcher started this process as one of a job.
 bool started_as_job();
 // Joins the job. The destructor leaves it, and waits until every rank does. Once per process.
 std::unique_ptr<MpiTransport> join_job();

@@ -23,7 +23,7 @@ struct Accuracy {
   std::vector<PlaceAccuracy> places = {};  // the worst first
 };
 
-// By the voxels that a station sees. Empty without a registration error, or a field with its station masks.
+// Counts the voxels that a station sees. Empty without a registration error, or a field with its station masks.
 std::optional<Accuracy> accuracy_of(const Evaluation& network, const VoxelField* field, const Simulator& simulator);
 
 }  // namespace vantage

@@ -13,7 +13,7 @@ namespace {
 
 using Place = std::array<std::uint32_t, 3>;  // of a voxel, in voxels from the lowest
 
-// Smallest side of a cell, in voxels, with which `most` cells hold all places.
+// Smallest side of a cell, in voxels, at which `most` cells hold all places.
 std::uint32_t fitting_side(const std::vector<Place>& places, std::size_t most) {
   Place last{};
   for (const Place& p : places)
@@ -30,7 +30,7 @@ std::uint32_t fitting_side(const std::vector<Place>& places, std::size_t most) {
   };
   std::uint32_t high = 1;
   while (!fits(high)) high *= 2;
-  std::uint32_t low = high / 2;  // does not fit, or is 0
+  std::uint32_t low = high / 2;  // too small, or 0
   while (high - low > 1) (fits((low + high) / 2) ? high : low) = (low + high) / 2;
   return high;
 }

@@ -43,13 +43,13 @@ struct CellColours {
   std::vector<std::uint8_t>
       only;  // 0: no station has a point in it; k: the k-th alone does, up to 254; 255: several, or another
 };
-// Colours from `ranks`, voxels of the sample, with their points and the stations that left them. Cells without such a
-// voxel copy the nearest one that has some.
+// Returns colours by `ranks`, voxels of the sample, with their points and the stations that left them. Cells without
+// such a voxel copy the nearest one that has some.
 CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
                          std::span<const std::uint32_t> counts, std::span<const Seer> seen_by,
                          const Simulator& simulator);
 
-// The most common reason around each cell, by `WhyMissed`, in the same way. REQUIRES: ranks is not empty.
+// Returns the most common reason around each cell, by `WhyMissed`, likewise. REQUIRES: ranks is not empty.
 std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
                                        std::span<const VoxelStatus> status);
 

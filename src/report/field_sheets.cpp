@@ -21,9 +21,9 @@ namespace vantage {
 namespace {
 
 constexpr double kPanelWidth = 196, kMark = 9, kTargetMark = 4.5;  // radii of the marks of stations and targets
-constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;       // ratios at which walls and marks still tell apart
-constexpr std::size_t kPixels = 2;  // a point that a map is painted with; twice as many, halved, on A4
-constexpr double kFaded = 0.5;      // of a map's colours, so that pencil shows
+constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;       // ratios at which walls, or marks, are still legible
+constexpr std::size_t kPixels = 2;  // pixels for each point of a map; doubled, and averaged, on A4
+constexpr double kFaded = 0.5;      // strength of a map's colours, so that pencil shows
 constexpr Colour kRoute{0.84, 0.37, 0.05}, kTape{0.10, 0.42, 0.36}, kRoomInk{0.42, 0.42, 0.46};
 
 Box grown(Box box, double metres) {
@@ -35,15 +35,15 @@ bool stands_on(const PlacedStation& s, const PlanLevel& level) {
   return s.status != StationStatus::hole && level.holds(s.ground.z);
 }
 
-// The stations that sheets of a round are of: all of them if there is one round, else those of the session.
+// Marks the stations that a round's sheets list: all if there is one round, else those of the session.
 std::vector<bool> own_stations(const SheetRound& round, bool several, std::size_t stations) {
   std::vector<bool> own(stations, !several);
   for (const std::size_t k : round.stations) own[k] = true;
   return own;
 }
 
-// All ground of the storey where that is not much more than what lies around its stations, else the latter, with the
-// corners near them that distances are taken to.
+// Lays out all ground of the storey if that takes hardly more paper than the surroundings of its stations; else these,
+// with the corners nearby that distances are taken to.
 SheetLayout layout_of(const PlanLevel& level, const SearchMesh& ground, const std::vector<Vec3>& spots,
                       const std::vector<WallCorner>& corners) {
   constexpr double kAround_m = 4, kRim_m = 1;
@@ -97,10 +97,10 @@ class MapOnSheet {
       sheet_.canvas->image(map, painted.pixels, pixels.columns);
   }
 
-  // Walls 1.2 m over the ground, from which distances are taken, where the map shows roofs.
+  // Draws walls 1.2 m over the ground, from which distances are taken, on a map that shows roofs.
   void walls(const SceneData& scene) {
     constexpr double kWall_m = 1.2;
-    constexpr std::size_t kMost = 20'000;  // lines that still are walls, and not a heap of stones
+    constexpr std::size_t kMost = 20'000;  // more lines are a heap of stones, no walls
     std::vector<std::array<Point, 2>> lines;
     for (const auto& [a, b] : section_lines(scene, level_.floor + kWall_m))
       if (holds(a) || holds(b)) lines.push_back({at(a), at(b)});
@@ -108,7 +108,7 @@ class MapOnSheet {
     for (const auto& [a, b] : lines) sheet_.canvas->line(a, b, {.colour = style::ink, .width = 0.5, .opacity = 0.7});
   }
 
-  // Crosses at round coordinates, which stand at the frame.
+  // Draws crosses at round coordinates, with their values at the frame.
   void grid() {
     const Rect& map = map_;
     constexpr double kApart = 85;  // points
@@ -137,9 +137,9 @@ class MapOnSheet {
     for (std::size_t leg = 0; leg < visit.paths.size(); ++leg) {
       const std::vector<Vec3>& path = visit.paths[leg];
       if (path.size() < 2) continue;
-      // The way back, and straight lines where no way is known, are dotted.
+      // The path back, and straight lines for unknown paths, are dotted.
       const Vec3 straight = path.back() - path.front();
-      constexpr double kRoundabout = 1.25;  // a known straight way is a few per cent longer on the grid of places
+      constexpr double kRoundabout = 1.25;  // a known straight path is a few per cent longer on the grid of places
       const bool unknown = path.size() == 2 && visit.legs_m[leg] > kRoundabout * std::sqrt(dot(straight, straight));
       const bool back = leg + 1 == visit.paths.size() || unknown;
       double length = 0;
@@ -156,7 +156,7 @@ class MapOnSheet {
                       .opacity = back ? 0.7 : 0.9,
                       .dashes = back ? std::vector<double>{1.5, 3} : std::vector<double>{5, 2.5}};
         sheet_.canvas->line(at(a), at(b), pen);
-        // The way is shown where half of it is gone.
+        // An arrow shows the direction half way along the path.
         if (gone >= length / 2 && gone - step < length / 2 && length * layout_.points_per_metre() > 3 * kMark &&
             step > 0)
           arrow(at(a), at(b), 1 - (gone - length / 2) / step);
@@ -235,7 +235,7 @@ class MapOnSheet {
     }
   }
 
-  // Where other sheets are.
+  // Outlines the other sheets.
   void tiles(const std::vector<MapTile>& tiles) {
     for (const MapTile& tile : tiles) {
       const Point a = at(tile.window.min.x, tile.window.max.y), b = at(tile.window.max.x, tile.window.min.y);
@@ -269,7 +269,7 @@ class MapOnSheet {
     sheet_.canvas->polygon(corners, kRoute);
   }
 
-  // Text beside a point where it is free; `must`: even where it is not.
+  // Writes text beside a point where it is free; `must`: even where it is not.
   void label(Point p, double gap, const std::string& text, const TextStyle& style, bool must = false) {
     const double width = sheet_.canvas->text_width(text, style) + 3, height = style.size + 2;
     const Rect inside{map_.x + 1, map_.y + 1, map_.width - 2, map_.height - 2};
@@ -287,7 +287,7 @@ class MapOnSheet {
     if (place) sheet_.canvas->text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
   }
 
-  // A distance beside its line, at its middle or near one of its ends; nowhere if all of that is taken.
+  // Writes a distance beside its line, at its middle or near one end; nowhere if all of these are taken.
   void tape(Point from, Point to, double metres) {
     const TextStyle style{.size = 6.5, .colour = kTape, .across = Align::middle, .halo = 1.4};
     const std::string text = fixed(metres, 2);
@@ -429,8 +429,8 @@ class SheetPanel {
       return canvas.text_width(coordinates(k), figures) <= end - after_name &&
              canvas.text_width(facts[k].name, name) <= after_name - x_ - 20;
     });
-    // Lines below a station's coordinates: one each for what it is registered to, for what it is measured in
-    // by, and for what it sees, as far as all stations have room for them.
+    // Lines below a station's coordinates: one each for its registration, for its distances, and for the surface that
+    // it alone sees, as far as all stations have room for them.
     enum class Lines { one, two, three };
     const auto lines_of = [&](const StationFacts& f, Lines wanted) {
       std::vector<std::string> lines{f.note};
@@ -497,30 +497,30 @@ struct Drawing {
   const Scene& scene;
   const SearchArea& area;
   std::vector<std::size_t> order;       // of visiting
-  std::vector<std::uint32_t> surfaces;  // that a section cuts; none where no level has one
+  std::vector<std::uint32_t> surfaces;  // that a section cuts; empty if no level is cut
 
   const Evaluation& network() const { return report.shown(); }
   const std::vector<PlacedStation>& stations() const { return network().stations; }
 };
 
-// The stations that sheets are of, and those that they only mark.
+// The stations that sheets list, and those that they only mark.
 struct ShownRound {
   const Round* walked = nullptr;
   std::vector<bool> own, others;
 };
 
-// A sheet of a layout that is to be drawn.
+// A sheet of a layout, to be drawn.
 struct PlannedSheet {
   std::shared_ptr<const SheetLayout> layout;
   std::size_t number;
   const PlanLevel& level;
   std::shared_ptr<const ShownRound> round;
   std::string name;
-  std::shared_ptr<const SheetLayout> sheets = {};  // an overview of these, where it is one
+  std::shared_ptr<const SheetLayout> sheets = {};  // set in an overview: of these
 };
 
 struct DrawnSheet {
-  std::optional<Sheet> sheet;                              // none once it was stopped
+  std::optional<Sheet> sheet;                              // empty if stopped
   std::vector<std::pair<std::size_t, double>> off_middle;  // its stations, in metres from the middle of a map
 };
 
@@ -579,7 +579,7 @@ DrawnSheet draw_sheet(const Drawing& of, const PlannedSheet& planned) {
   return drawn;
 }
 
-// The sheets of a level, with an overview before them if they are several. `name`: the level's.
+// Plans the sheets of a level, with an overview first if they are several. `name`: the level's.
 void plan_level(std::vector<PlannedSheet>& sheets, const Drawing& of, const PlanLevel& level, std::string name,
                 const std::shared_ptr<const ShownRound>& round) {
   const std::vector<PlacedStation>& stations = of.stations();

@@ -18,8 +18,8 @@ struct FieldSheets {
   std::vector<std::size_t> of_station = {};  // the sheet that shows it best, from 1; 0: none does
 };
 
-// Each level with a station, from the lowest; an overview before those that take several sheets. A stop leaves out the
-// sheets that are not begun.
+// Draws each level that has a station, from the lowest, with an overview before several sheets of one level. A stop
+// leaves out sheets not yet begun.
 FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts,
                          const std::vector<TargetFacts>& of_targets, Site& site, const std::stop_token& stop);
 

@@ -52,7 +52,7 @@ std::string make_page(const PageText& html, std::span<const PageText> styles, st
       {"title", within_html(title)}, {"policy", page_policy(styles, scripts)}, {"data", within_script(data)}};
   for (const PageText& part : styles) parts["styles"] += std::string("<style>") + part.text + "</style>\n";
   for (const PageText& part : scripts) parts["scripts"] += std::string("<script>") + part.text + "</script>\n";
-  // Replaces marks of the markup only: inserted parts may contain some, too.
+  // Replaces marks of the markup only, since inserted parts may contain some, too.
   std::string page;
   for (std::string_view rest = html.text; !rest.empty();) {
     const std::size_t begin = std::min(rest.find("{{"), rest.size()), end = rest.find("}}", begin);

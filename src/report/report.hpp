@@ -61,8 +61,8 @@ Report report_of(const PlanResult& result, Site& site, const ReportOptions& opti
 // Report of given stations.
 Report report_of(const Evaluation& evaluation, Site& site, const ReportOptions& options);
 
-// What a reader asks first besides what is captured: scanner, stations, time, what "captured" stands for. Heading and
-// sentence each.
+// Returns pairs of heading and sentence that a reader asks first besides coverage: scanner, stations, time, what
+// "captured" stands for.
 std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator);
 
 // False, and no file, if stopped before the page or the sheets were made.

@@ -54,7 +54,7 @@ std::string time_text(const Visit& visit) {
          (waiting > 0 ? ", waiting " + minutes_text(waiting) : "") + ": " + minutes_text(all.minutes) + " in all";
 }
 
-// Of each scanner that stations have.
+// Returns the time of each scanner in use for one station.
 std::string each_text(const Evaluation& network, std::span<const Scanner> scanners) {
   const Visit& visit = *network.visit;
   const auto stops = static_cast<double>(std::max<std::size_t>(1, visit.order.size()));

@@ -48,7 +48,7 @@ ordered_json stations_json(const Evaluation& network) {
   return stations;
 }
 
-// With many links, returns those that the survey depends on and the strongest of each station: as many as can be read.
+// Links per station up to which a page has all. With more it has the strongest of each station, tree and bridges.
 constexpr std::size_t kLinksOfEach = 8;
 
 std::vector<ShownLink> told_links(const StationLinks& network) {
@@ -77,14 +77,14 @@ ordered_json links_json(const StationLinks& network) {
   return json;
 }
 
-// Of each station how many others it is linked to.
+// Number of other stations that each station is linked to.
 std::vector<std::size_t> link_counts(const StationLinks& network) {
   std::vector<std::size_t> counts(network.values.size(), 0);
   for (const ShownLink& link : links_of(network)) ++counts[link.a], ++counts[link.b];
   return counts;
 }
 
-// A round, by the places of stations in the network, with the ground that it leads over, to the centimetre.
+// A round with its stations' indices in the network, and its paths over the ground, to the centimetre.
 ordered_json round_json(const Round& round, std::size_t kept) {
   ordered_json order = ordered_json::array(), ways = order;
   for (const std::size_t station : round.order) order.push_back(kept + station);
@@ -103,7 +103,7 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
   const Visit& visit = *network.visit;
   ordered_json json = round_json(visit, kept);
   if (visit.sessions.empty()) return json;
-  // The whole round is not walked.
+  // No crew walks the whole round.
   json["ways"] = ordered_json::array();
   for (const Session& session : visit.sessions) {
     ordered_json one = {{"day", session.day}, {"crew", session.crew}, {"links", session_links(session, network)}};
@@ -117,7 +117,7 @@ ordered_json visit_json(const Evaluation& network, std::size_t kept) {
   return json;
 }
 
-// Stations by their places in the network.
+// Targets, with the indices of stations in the network.
 ordered_json targets_json(const std::vector<Target>& targets) {
   ordered_json json = ordered_json::array();
   for (const Target& target : targets)
@@ -231,7 +231,7 @@ ordered_json rooms_json(const std::vector<RoomFacts>& rooms) {
   return rows;
 }
 
-// What is missed of each first; those with most of it are kept.
+// Elements by missed area, largest first; the page has only the first ones.
 ordered_json elements_json(std::span<const ElementShare> elements) {
   constexpr std::size_t kMost = 1000;
   std::vector<const ElementShare*> judged;
@@ -255,7 +255,7 @@ ordered_json elements_json(std::span<const ElementShare> elements) {
   return {{"all", judged.size()}, {"rows", std::move(rows)}};
 }
 
-// As the address of a picture in a page; empty: none.
+// Returns a picture as a data URL; empty if there is none.
 std::string logo_json(const std::filesystem::path& file) {
   if (file.empty()) return "";
   read_image(file);  // refuses what is no picture

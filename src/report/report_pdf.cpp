@@ -23,7 +23,7 @@
 namespace vantage {
 namespace {
 
-// At the right of the head, no wider and higher than that.
+// Draws the logo at the right of the head, no wider and higher than kWidth and kHeight.
 void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
   constexpr double kWidth = 130, kHeight = 52;
   const Image logo = read_image(file);
@@ -39,7 +39,7 @@ void draw_logo(Sheet& sheet, const std::filesystem::path& file) {
                       logo.width);
 }
 
-// The plan view; of several storeys those with most stations, below each other as far as there is room.
+// Draws the plan view. If there are several storeys, those with most stations, as far as there is room.
 void front_plans(Sheet& sheet, const Report& report, Site& site, const std::stop_token& stop) {
   const Evaluation& network = report.shown();
   std::vector<PlanPage> drawn;
@@ -106,7 +106,7 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
     sheet.words(margin + 72, text, {.size = 9.5});
     sheet.y += 1;
   };
-  // Advice as far as it leaves room for what follows.
+  // Leaves this much room, in points, below the advice.
   constexpr double kLeastLeft = 300;
   std::size_t more = 0;
   std::vector<SummaryLine> lines = summary_lines(network, report.requirements);
@@ -129,8 +129,8 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   return sheet;
 }
 
-// Begins a section of so many lines below what stands on the last sheet, if that is A4 and has room for all of it; else
-// on a new one.
+// Begins a section of `lines` lines: below the last content if the last sheet is A4 and has room for all of it, else on
+// a new sheet.
 void begin_section(std::vector<Sheet>& sheets, std::size_t lines) {
   constexpr double kHead = 110;
   const Sheet& last = sheets.back();
@@ -142,7 +142,7 @@ void begin_section(std::vector<Sheet>& sheets, std::size_t lines) {
     sheets.emplace_back(a4());
 }
 
-// Session by session: who takes which stations, and how long that is.
+// Tables the sessions: who takes which stations, and how long that is.
 void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<std::string>& names) {
   const std::vector<Session>& sessions = network.visit->sessions;
   const std::vector<SheetRound> rounds = sheet_rounds(network);
@@ -188,13 +188,13 @@ void sessions_table(std::vector<Sheet>& sheets, const Evaluation& network, const
       });
 }
 
-// All of them, in the order of visiting. `first_map`: the number of the first map's sheet.
+// Tables all stations, in the order of visiting. `first_map`: number of the first map's sheet.
 void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<StationFacts>& facts,
                     const std::vector<std::size_t>& sheet_of, std::size_t first_map) {
   const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
   const Paper paper = lying(a4());
   const bool sessions = network.visit && !network.visit->sessions.empty();
-  // A tunnel has no corners.
+  // A tunnel has no corners, so the column may be empty.
   const bool corners = std::ranges::any_of(facts, [](const StationFacts& f) { return !f.corners.empty(); });
   constexpr std::size_t kCorners = 7;  // their column
   std::vector<SheetColumn> columns{{"No."},    {"Station", Align::start},
@@ -267,7 +267,7 @@ void stations_table(std::vector<Sheet>& sheets, const Evaluation& network, const
   if (!order.empty()) part("In no session", order);
 }
 
-// Where each target stands, and then which of them each station must see.
+// Tables the place of each target, and then the targets that each station must see.
 void targets_tables(std::vector<Sheet>& sheets, const Evaluation& network, const std::vector<StationFacts>& facts,
                     const std::vector<TargetFacts>& of_targets) {
   sheets.emplace_back(a4());
@@ -347,7 +347,7 @@ void links_table(std::vector<Sheet>& sheets, const StationLinks& network, const 
               });
 }
 
-// Places that miss the class; all others are told by their number and the worst of them.
+// Tables the places that miss the class. The others appear as a number, with the worst of them.
 void accuracy_table(std::vector<Sheet>& sheets, const Accuracy& accuracy, AccuracyClass wanted) {
   begin_section(sheets, static_cast<std::size_t>(std::ranges::count_if(
                             accuracy.places, [](const PlaceAccuracy& place) { return place.beyond > 0; })));

@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-// In lines no wider than that, broken at spaces; a longer word is a line of its own.
+// Breaks text at spaces into lines no wider than `width`; a longer word is a line of its own.
 std::vector<std::string> wrapped(const Canvas& canvas, const std::string& text, double width, const TextStyle& style) {
   std::vector<std::string> lines;
   std::string line;
@@ -27,7 +27,7 @@ std::vector<std::string> wrapped(const Canvas& canvas, const std::string& text, 
 constexpr double kBetween = 12, kLeastWords = 40, kSmallestText = 5.5, kFurtherLine = 11;  // points
 constexpr TextStyle kCell{.size = 9}, kTitle{.size = 8.5, .bold = true, .colour = kFaintInk};
 
-// Widths of a table's columns, and how large its letters are of their usual size.
+// Widths of a table's columns, and the size of its letters relative to the usual one.
 struct TableWidths {
   std::vector<double> columns;
   double letters = 1;
@@ -45,7 +45,7 @@ TableWidths widths_of(const Canvas& canvas, double room, const std::vector<Sheet
     else
       words += widths.columns.back(), least_words += std::min(widths.columns.back(), kLeastWords);
   }
-  // Numbers stay whole: letters get smaller if those alone take more than there is.
+  // Numbers are never broken: letters get smaller if numbers alone are too wide.
   if (numbers + least_words > room) {
     widths.letters = std::max(kSmallestText / kCell.size, room / (numbers + least_words));
     for (double& width : widths.columns) width *= widths.letters;

@@ -21,9 +21,9 @@ struct Sheet {
 
   explicit Sheet(const Paper& paper) : canvas(std::make_unique<Canvas>(paper.width, paper.height)) {}
   double right() const { return canvas->width() - kMargin; }
-  double left() const { return canvas->height() - kMargin - y; }  // of its height
+  double left() const { return canvas->height() - kMargin - y; }  // of its height, in points
   void heading(const std::string& text);
-  // In lines that end before `end`; 0: at the margin.
+  // Writes text in lines that end before `end`; 0: at the margin.
   void words(double x, const std::string& text, const TextStyle& style, double end = 0);
   void rule();
 };
@@ -31,17 +31,17 @@ struct Sheet {
 // Text shortened to a width, with an ellipsis.
 std::string fitted(const Canvas& canvas, std::string text, double width, const TextStyle& style);
 
-// The size of letters at which a text that is not to be shortened fits into a width, at most that of the style.
+// Returns the size of letters, at most that of the style, at which a text fits into a width without being shortened.
 double fitting_size(const Canvas& canvas, const std::string& text, double width, const TextStyle& style);
 
-// Numbers end at the right of their column and are never cut; words begin at its left, in several lines if need be.
+// Numbers end at the right of their column and are never cut; words begin at its left, on several lines if needed.
 struct SheetColumn {
   std::string title;
   Align across = Align::end;
 };
 
-// A table from where the last sheet is written to, over as many sheets of its paper as it takes, with its head on each.
-// Columns are as wide as their texts; columns of words share what room is left. `most`: rows that are shown; a line
+// Writes a table below the last sheet's content, over as many sheets of its paper as it takes, with its head on each.
+// Columns are as wide as their texts; columns of words share the remaining room. `most`: largest number of rows; a line
 // says how many more there are, and where.
 void write_table(std::vector<Sheet>& sheets, const Paper& paper, const std::vector<SheetColumn>& columns,
                  std::size_t rows, std::size_t most, const std::string& where,

@@ -21,14 +21,14 @@ Rect map_on(const Paper& paper, double panel) {
   return {kBorder, kHead, std::floor(paper.width - 2 * kBorder - panel), std::floor(paper.height - kHead - kFoot)};
 }
 
-// The finest ratio at which a box fits; the coarsest there is if none does.
+// Returns the finest ratio at which a box fits, or the coarsest one if none does.
 int ratio_for(const Vec3& size, const Rect& map) {
   for (const int ratio : kRatios)
     if (size.x * kPointsPerMetre / ratio <= map.width && size.y * kPointsPerMetre / ratio <= map.height) return ratio;
   return std::end(kRatios)[-1];
 }
 
-// The way a sheet lies on which the box is drawn largest.
+// Returns the orientation of a sheet that draws the box largest.
 SheetLayout best_way(const Paper& paper, const Vec3& size, double panel) {
   const Paper ways[] = {lying(paper), paper};
   SheetLayout best;
@@ -51,7 +51,7 @@ bool holds(const MapTile& tile, const Vec3& p) {
   return p.x >= window.min.x && p.x <= window.max.x && p.y >= window.min.y && p.y <= window.max.y;
 }
 
-// Leaves out tiles whose stations others show, those with fewest stations first.
+// Drops tiles whose stations all appear on others, those with fewest stations first.
 void drop_repeating(std::vector<MapTile>& tiles, const std::vector<Vec3>& spots) {
   const auto count = [&](const MapTile& tile) {
     return std::ranges::count_if(spots, [&](const Vec3& p) { return holds(tile, p); });
@@ -71,13 +71,13 @@ void drop_repeating(std::vector<MapTile>& tiles, const std::vector<Vec3>& spots)
   std::erase_if(tiles, [&](const MapTile&) { return static_cast<bool>(dropped[k++]); });
 }
 
-// How a length is cut into equal parts that overlap, each no longer than `one`.
+// Equal parts of a length that overlap, each no longer than `one`.
 struct OverlappingParts {
   OverlappingParts(double low, double high, double one) : low_(low), high_(high), one_(one) {
-    const double ones = (high - low) / one;  // two parts have one end each that does not overlap
+    const double ones = (high - low) / one;  // each end part overlaps on one side only
     if (ones > 1) count = ones <= 2 - kOverlap ? 2 : static_cast<int>(std::ceil(ones / (1 - kOverlap)));
   }
-  // All of `one` around the middle if there is one part.
+  // A single part has length `one`, around the middle.
   std::pair<double, double> part(int k) const {
     if (count == 1) return {(low_ + high_ - one_) / 2, (low_ + high_ + one_) / 2};
     const double step = (high_ - low_) / count, more = kOverlap * one_ / 2;
@@ -109,8 +109,8 @@ void add_tiles(SheetLayout& layout, const Box& storey, const std::vector<Vec3>& 
   for (std::size_t k = 0; k < layout.tiles.size(); ++k) layout.tiles[k].sheet = k;
 }
 
-// A storey that is long in x or in y, cut into strips across its length, of which two or more fit on a sheet of this
-// paper; no tiles if they do not, or are on more than one sheet and may not be.
+// Cuts a storey that is long in x or in y into strips across its length. It has no tiles if fewer than two fit on a
+// sheet of this paper, or if they take several sheets although `on_several` is false.
 SheetLayout strips_on(const Paper& paper, const Box& storey, int ratio, double panel, bool on_several) {
   constexpr double kBetween = 26;  // points, for the coordinates of a strip
   SheetLayout layout{.paper = paper, .map = map_on(paper, panel), .ratio = ratio, .strips = true};
@@ -141,7 +141,7 @@ SheetLayout strips_on(const Paper& paper, const Box& storey, int ratio, double p
   return layout;
 }
 
-// Strips at the finest ratio up to `coarsest` at which one sheet holds them; no tiles if none does.
+// Returns strips at the finest ratio up to `coarsest` at which one sheet holds them; no tiles if none does.
 SheetLayout best_strips(const Paper& paper, const Box& storey, int coarsest, double panel) {
   for (const int ratio : kRatios)
     for (const Paper& way : {lying(paper), paper})

@@ -16,11 +16,11 @@
 namespace vantage {
 namespace {
 
-// Walls are looked at so high over the ground, at heights this far apart, and so are stations of nearly one ground.
+// Height of walls over the ground, and step of heights at which they are searched: stations within one share a search.
 constexpr double kWall_m = 1.2, kHeights_m = 0.5;
-// What reaches so much higher, over the ground and over a target, stays where it is: cars and most furniture are lower.
+// Walls that reach this much higher, over ground or target, are fixed: cars and most furniture are lower.
 constexpr double kOverWall_m = 0.8, kOverTarget_m = 0.4;
-constexpr std::uint64_t kSeen = 400'000;  // voxels that shares are taken of
+constexpr std::uint64_t kSeen = 400'000;  // voxels in the sample for shares
 
 void add_round(std::vector<StationFacts>& facts, const Evaluation& network) {
   std::size_t visited = 0;
@@ -35,7 +35,7 @@ void add_round(std::vector<StationFacts>& facts, const Evaluation& network) {
   }
 }
 
-// Field software registers a scan to the one before, unless it is told another. A session begins without one before.
+// Field software registers a scan to the one before by default. The first scan of a session has none before it.
 void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network) {
   const std::optional<StationLinks> links = network.links();
   if (!links) return;
@@ -58,7 +58,7 @@ void add_register_to(std::vector<StationFacts>& facts, const Evaluation& network
   }
 }
 
-// Of each spot, in plan, by walls at nearly its height; none where it is not a number.
+// Finds the corners of each spot in plan, among walls at nearly its height; none for a spot that is not a number.
 std::vector<std::vector<WallCorner>> corners_of(std::span<const Vec3> spots, double stays_m, const SceneData& scene) {
   std::map<long, std::vector<std::size_t>> by_height;
   for (std::size_t k = 0; k < spots.size(); ++k)

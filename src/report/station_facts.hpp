@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a crew wants to know of each station.
+// Facts about each station and target that a crew needs.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ struct StationFacts {
   std::size_t visit = 0;                 // its place in the round, from 1; 0: it is not visited
   std::size_t stop = 0;                  // the same in its session; in the round if there are no sessions
   double walk_m = 0, done_min = 0;       // the way to it, and the time since the start once it is scanned
-  std::string done_at = {};              // in a session the time of the day at that; else ""
-  std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
+  std::string done_at = {};              // time of day then, in a session; else ""
+  std::vector<WallCorner> corners = {};  // two that locate its spot, by `WallCorners::nearest`
   double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
   std::string alone_where = {};          // the rooms, or meshes, with most of that
-  // What its scan is to be registered to, if it has no link to the one before it: "register to S3", which it has the
-  // strongest link to.
+  // Scan that its own is to be registered to, if it has no link to the one before: "register to S3". It has the
+  // strongest link to that.
   std::string register_to = {};
   std::string targets = {};  // that it measures: "T1, T3"
   std::string set_up = {};   // by known points, "resection from 3", if they allow it
@@ -30,14 +30,14 @@ struct StationFacts {
 };
 
 struct TargetFacts {
-  std::vector<WallCorner> corners = {};  // to find its spot by
+  std::vector<WallCorner> corners = {};  // that locate its spot
   std::string kind = {};                 // "proposed", "there before", "check of …"; of a control point "± 2 mm"
   std::string stations = {};             // that measure it, and how far they are in plan: "S1 6.61, S4 7.02"
 };
-// Of all targets of the answer, in their order.
+// Returns the facts of all targets of the answer, in their order.
 std::vector<TargetFacts> target_facts(const Report& report, const Simulator& simulator);
 
-// Of all stations of the answer, in their order.
+// Returns the facts of all stations of the answer, in their order.
 std::vector<StationFacts> station_facts(const Report& report, const Simulator& simulator);
 
 // A round that a crew takes on its own sheets: all of it, or a session.
@@ -50,10 +50,10 @@ struct SheetRound {
 // The sessions of a network, else its round, else one without any.
 std::vector<SheetRound> sheet_rounds(const Evaluation& network);
 
-// "within, and to others", "in 2 parts; to no other session".
+// The text on a session's links: "within, and to others", "in 2 parts; to no other session".
 std::string session_links(const Session& session, const Evaluation& network);
 
-// "2", of several instruments "2 of Leica RTC360, 1 of Trimble X7"; nothing if it is not known how long they last.
+// "2"; for several instruments "2 of Leica RTC360, 1 of Trimble X7"; empty if battery life is not known.
 std::string batteries_text(const Round& round);
 
 // Stations by their place in the round, the others behind them.

@@ -28,8 +28,8 @@ double largest_scale(const MeshPlace& place) {
   return std::sqrt(std::max({dot(place.x, place.x), dot(place.y, place.y), dot(place.z, place.z)}));
 }
 
-// The scene with its shared meshes simplified to one share each, so that all their places together have about
-// `triangles`.
+// Returns the scene with each shared mesh simplified to its share of the triangles, so that all its instances have
+// about `triangles` in total.
 SceneData thinned(const SceneData& scene, std::size_t triangles, double& error_m) {
   const double share = static_cast<double>(triangles) / scene.triangle_count();
   SceneData thin;
@@ -92,7 +92,7 @@ Welded weld(const SceneData& scene) {
   std::vector<Corner> corners;
   corners.reserve(3 * std::size_t{scene.triangle_count()});
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
-    if (scene.meshes[m].glass) continue;  // it would hide what is behind it
+    if (scene.meshes[m].glass) continue;  // glass would hide the surfaces behind it
     const MeshRange& range = scene.ranges[m];
     const std::uint8_t kind = scene.meshes[m].role == Role::surveyed ? kSurveyedVertex : 0;
     for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
@@ -112,8 +112,8 @@ Welded weld(const SceneData& scene) {
   return welded;
 }
 
-// Marks the vertices of closed surfaces: connected triangles that pass every edge as often in one direction as in the
-// other.
+// Marks the vertices of closed surfaces: connected triangles that pass every edge equally often in both
+// directions.
 void mark_solids(Welded& mesh) {
   DisjointSets surfaces(mesh.positions.size());
   std::vector<std::pair<std::uint64_t, int>> edges;  // both ends, lower first; whether passed upward
@@ -136,7 +136,7 @@ void mark_solids(Welded& mesh) {
     if (!open[surfaces.find(v)]) mesh.kinds[v] |= kSolidVertex;
 }
 
-// Meshoptimizer knows no kinds: each is simplified separately, to its share of the triangles.
+// Simplifies each kind separately, to its share of the triangles, since Meshoptimizer knows no kinds.
 std::vector<std::uint32_t> simplified(const Welded& mesh, std::size_t triangles, double& error_m) {
   const std::size_t all = mesh.indices.size() / 3;
   if (all <= triangles) return mesh.indices;

@@ -119,7 +119,7 @@ ordered_json colours_json(const Report& report, Simulator& simulator, const Cove
   return colours;
 }
 
-// Storeys of a covered site, each a slice with its walls and heads and without ceilings. Empty: an open site.
+// Returns the storeys of a covered site, slices with walls and heads but no ceilings. Empty for an open site.
 ordered_json levels_json(Site& site, std::span<const PlacedStation> stations) {
   const std::vector<PlanLevel> levels = cut_levels(site.scene(), site.area().mesh(), stations);
   if (levels.size() == 1 && !levels.front().cut) return ordered_json::array();

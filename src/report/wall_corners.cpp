@@ -12,8 +12,8 @@ namespace vantage {
 namespace {
 
 constexpr double kCell_m = 1, kTouch_m = 2e-3, kLeastRun_m = 0.15, kSame_m = 5e-3;
-constexpr double kUnder_m = 2e-2;  // a line over a corner may be off by that
-constexpr double kShort_m = 1e-2;  // of what ends at a corner, before it
+constexpr double kUnder_m = 2e-2;  // tolerance of a line over a corner
+constexpr double kShort_m = 1e-2;  // part of a line before a corner that may end there
 const double kStraight = std::cos(Angle::degrees(3).in_radians());
 const double kTurn = std::cos(Angle::degrees(30).in_radians());
 
@@ -24,7 +24,7 @@ std::uint64_t square_key(double x, double y, double side) {
   return std::uint64_t{cell(x)} << 32 | cell(y);
 }
 
-// Whether two directions tell a spot well.
+// True if the angle between two directions locates a spot well.
 bool good_angle(double ax, double ay, double bx, double by) {
   const double cosine = (ax * bx + ay * by) / (std::hypot(ax, ay) * std::hypot(bx, by));
   return cosine <= std::cos(WallCorners::kLeast.in_radians()) && cosine >= std::cos(WallCorners::kMost.in_radians());
@@ -49,7 +49,7 @@ void WallCorners::for_each_near(const Line& line, Found&& found) const {
   }
 }
 
-// Of each line the length of the straight stretch that it is a part of: lines that go on where others end.
+// Returns for each line the length of its straight stretch, which consists of lines that continue each other.
 std::vector<double> WallCorners::straight_runs() const {
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> ends;  // lines by their ends, to a millimetre
   for (std::uint32_t k = 0; k < lines_.size(); ++k) {
@@ -75,7 +75,7 @@ std::vector<double> WallCorners::straight_runs() const {
   return runs;
 }
 
-// Whether a line above passes over a point.
+// True if a line above passes over a point.
 bool WallCorners::stays(double x, double y) const {
   if (!above_) return true;
   bool found = false;
@@ -111,7 +111,7 @@ WallCorners::WallCorners(std::span<const std::array<Vec3, 2>> lines,
       if (here.empty() || here.back() != k) here.push_back(k);
     });
   runs_ = straight_runs();
-  // By their places to 5 mm; of several at one the first by its coordinates, whatever the cells' order.
+  // Corners by place, to 5 mm. Several at one place count as the lowest by coordinates, in any order of cells.
   std::map<std::pair<std::int64_t, std::int64_t>, std::array<double, 2>> known;
   std::vector<std::uint32_t> long_ones;
   for (const auto& [cell, here] : cells_) {

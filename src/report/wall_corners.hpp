@@ -22,33 +22,33 @@ struct WallCorner {
 
 class WallCorners {
  public:
-  static constexpr double kReach_m = 30;  // of a tape
-  // Between what directions to two corners a spot is found well by its distances to them.
+  static constexpr double kReach_m = 30;  // length of a tape
+  // Angles between the directions to two corners within which distances to both locate a spot well.
   static constexpr Angle kLeast = Angle::degrees(30), kMost = Angle::degrees(150);
 
-  // `lines`: where surfaces cross the height of the walls, as `section_lines()` has them. A corner is where two
-  // straight stretches of 15 cm or more meet or cross at 30 degrees or more. `above`: the same lines over the heads of
-  // cars and most furniture; corners and walls with none of these over them may be gone when the crew comes, and do not
+  // `lines`: curves in which surfaces cross the height of the walls, by `section_lines()`. A corner is a place where
+  // two straight stretches of 15 cm or more meet or cross at 30 degrees or more. `above`: the same over the heads of
+  // cars and most furniture. Corners and walls below none of these lines may be gone when the crew comes, and do not
   // count. Empty: all count.
   explicit WallCorners(std::span<const std::array<Vec3, 2>> lines,
                        std::optional<std::span<const std::array<Vec3, 2>>> above = std::nullopt);
 
-  // Of the pairs of corners in free sight of a spot, within reach, whose directions make a good angle, the one with the
-  // least sum of distances, the nearer corner first. Where there is no such pair, the nearest corner, and the nearest
-  // point of a wall if that makes a good angle with it; none where there is no corner.
+  // Returns the pair of corners with the least sum of distances, the nearer corner first. Both are within reach and in
+  // free sight of the spot, in directions at a good angle. If there is no such pair: the nearest corner, and the
+  // nearest point of a wall if its angle is good. Empty without a corner.
   std::vector<WallCorner> nearest(double x, double y) const;
-  // Whether nothing stands on the straight line from one point to another, seen from above. A line that ends within
-  // 1 cm of the second point does not stand in its way.
+  // True if nothing stands on the straight line from one point to another, seen from above. A line that ends within 1
+  // cm of the second point does not count.
   bool sees(double x, double y, double to_x, double to_y) const;
   const std::vector<std::array<double, 2>>& corners() const { return corners_; }
 
  private:
-  // Of the walls in free sight; further than a tape reaches where there is none.
+  // Returns the nearest point of a wall in free sight; farther away than a tape reaches if there is none.
   WallCorner nearest_wall(double x, double y) const;
   struct Line {
     double ax, ay, bx, by;
   };
-  // Calls found(number of a line) for lines near a straight line, some of them several times.
+  // Calls found(index of a line) for lines near a straight line, for some of them several times.
   template <class Found>
   void for_each_near(const Line& line, Found&& found) const;
   std::vector<double> straight_runs() const;

@@ -28,7 +28,7 @@ namespace {
 
 std::string title_of(const PlanEntry& entry) {
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
-  // A plan whose time was over may know neither.
+  // If the time was over, a plan may know neither value.
   const double coverage = entry.value("coverage");
   if (const auto capture = entry.values.find("capture"); capture != entry.values.end()) {
     std::string shares;
@@ -39,13 +39,13 @@ std::string title_of(const PlanEntry& entry) {
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 
-// Once the time is over, a part that is done within so long is still done.
+// After the end of the time, parts of the work that take no longer than this are still finished.
 constexpr double kMoment_s = 2;
 
-// Voxels by which it is known how long judging takes, and how many times as many are judged.
+// Voxels that time the judging, and largest number of judged voxels as a multiple of them.
 constexpr std::uint64_t kTimedVoxels = 2500;
 constexpr double kJudgedPerTimed = 20;
-// How many times as long as the maps all drawings and the reports take, and as counting the answer its map and clouds.
+// Time of all drawings and reports relative to the maps, and of its map and clouds relative to counting the answer.
 constexpr double kDrawings = 6, kCounts = 2;
 
 // Parts of the work, in their order, and about which share of it is done before each.
@@ -55,7 +55,7 @@ struct Part {
 };
 constexpr Part kMap{"map", 0, 0.2}, kDraw{"draw", 0.2, 0.5}, kMissed{"missed", 0.5, 0.7}, kReport{"report", 0.7, 1};
 
-// Removes the files of an earlier plan that this one need not have.
+// Removes files of an earlier plan that this one may not write again.
 void remove_earlier_plan(const std::filesystem::path& folder) {
   remove_earlier(folder, {"overlap.csv", "coverage.ply", "registration.ply", "registration.png", "registration.svg",
                           "history.png", "history.svg",  "targets.csv",      "stations.geojson", "stations.kml",
@@ -85,12 +85,12 @@ class FolderWriter {
         links_(links_to_draw(entry_)) {}
 
   WrittenFolder write() {
-    // The evaluation that counted the answer mostly kept its points.
+    // Mostly the evaluation that counted the answer kept its points.
     const VoxelField counted = entry_.field.count.empty() ? count() : VoxelField();
     const VoxelField& field = entry_.field.count.empty() ? counted : entry_.field;
     remove_earlier_plan(folder_);
     const VoxelField* const known = field.count.empty() ? nullptr : &field;
-    // Progress is told on the calling thread, by those that take longest.
+    // The slowest writers report progress, on the calling thread.
     const Deadline drawn_by(seconds(), watch_.stop);
     progress(kDraw, 0, 1, drawn_by)(0);
     parallel::beside([&] { parallel::beside([&] { draw(known, drawn_by.stop()); }, [&] { write_tables(); }); },
@@ -120,7 +120,7 @@ class FolderWriter {
                 },
             .stop = due.stop()};
   }
-  // Time for a part that begins now.
+  // Time, in seconds, for a part that begins now.
   double seconds() const { return std::max(time_.seconds_left(), kMoment_s); }
   void leave_out(const std::string& name) {
     const std::lock_guard lock(adding_);
@@ -278,7 +278,7 @@ std::function<double(std::size_t, double)> seconds_to_write(Site& site) {
   const auto begun = std::chrono::steady_clock::now();
   plan_view_pictures({.scene = site.scene(), .area = site.area(), .stations = {}, .names = {}, .title = ""});
   const double drawn = seconds_since(begun);
-  // None of some voxels is captured: as slow as it gets.
+  // A network that captures nothing is the slowest to judge.
   const std::vector<PlacedStation> candidates = candidate_positions(site, MissedOptions().candidates);
   const std::vector<std::uint32_t> some = simulator.sampled_voxels(std::min(kTimedVoxels, simulator.voxel_count()));
   const std::vector<std::uint32_t> none(some.size(), 0);

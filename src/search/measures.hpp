@@ -26,9 +26,9 @@ Measures measures_of(const SurveyProblem& problem);
 
 // True if an objective or a requirement needs this input.
 bool asks_for(const SurveyProblem& problem, bool RequiredInputs::*input);
-// True if one is a share of what is attainable.
+// True if an objective or a requirement is a share of what is attainable.
 bool needs_attainable(const SurveyProblem& problem);
-// Patterns of meshes of which one is.
+// Patterns of the meshes that such shares are of.
 std::vector<std::string> meshes_asked_for(const SurveyProblem& problem);
 
 // Sum of violations; 0 if all requirements are met. `values`: of the measures.

@@ -106,7 +106,7 @@ class Search {
     return f;
   }
 
-  // Whether an iteration has ended.
+  // Records an iteration if one has ended, and returns true then.
   bool record() {
     const std::uint64_t iteration = optimiser_->iterations();
     const std::uint64_t last = history_.empty() ? 0 : history_.back().iteration;

@@ -34,7 +34,7 @@ class SampledEvaluator : public SearchEvaluator {
 class ExactEvaluator final : public SampledEvaluator {
  public:
   explicit ExactEvaluator(NetworkEvaluator& evaluator) : SampledEvaluator(evaluator, {}) {}
-  // So few that a search can be stopped, and saved, often.
+  // A small chunk, so that a search can often be stopped and saved.
   std::size_t chunk() const override { return evaluator_.chunk(); }
 };
 

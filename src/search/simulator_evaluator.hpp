@@ -10,8 +10,8 @@ namespace vantage {
 
 class SimulatorEvaluator final : public NetworkEvaluator {
  public:
-  // Share of what is attainable, by which searches and confirmed networks are told what they capture; needed where a
-  // measure needs it. On different voxels, or a network would be confirmed on those that it was chosen by.
+  // Attainable counts that captured shares of searches and of confirmed networks refer to, if a measure needs them.
+  // They are of different voxels, so that no network is confirmed on those that chose it.
   struct Attainable {
     const AttainableCounts *searched = nullptr, *confirmed = nullptr;
   };

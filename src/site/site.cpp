@@ -342,7 +342,7 @@ Site::Site(Simulator simulator, SearchArea area, ClashChecker clash, std::string
   impl_->scanners.assign(simulator.scanners().begin(), simulator.scanners().end());
   impl_->config = simulator.config();
   impl_->options.seed = simulator.config().seed;
-  // Whoever makes the scanners says what they detect.
+  // The simulator's scanners state what they detect.
   impl_->options.detection = {impl_->scanners.front().detection_range_m,
                               impl_->scanners.front().detection_reflectivity};
   impl_->security = clash.volume();

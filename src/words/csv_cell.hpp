@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-// Whether a spreadsheet would run it without its leading apostrophes.
+// True if a spreadsheet would run the text as a formula once its leading apostrophes are gone.
 inline bool is_formula(const std::string& text) {
   const std::size_t at = text.find_first_not_of('\'');
   return at != std::string::npos && std::string("=+-@\t\r").find(text[at]) != std::string::npos;

@@ -18,7 +18,7 @@ inline constexpr const char* kStationColumns[] = {"name", "x", "y", "z", "ground
 // Columns of a station's setup, in tables that need them.
 inline constexpr const char* kSetupColumns[] = {"heading", "tilt", "scanner", "step"};
 
-// Whether a table needs them: some station is turned, or has another scanner than the first.
+// True if a table needs them: some station is turned, or has another scanner than the first.
 inline bool tells_setups(std::span<const PlacedStation> stations) {
   return std::ranges::any_of(stations, [](const PlacedStation& s) { return s.setup != StationSetup(); });
 }

@@ -39,9 +39,9 @@ struct SiteOptions {
   Scanner scanner() const;
   SimulatorConfig config() const;
   TracedSite traced(const Scene& site, const Network& network) const;
-  // The usable ones among those named.
+  // Those of the named engines that can run here.
   std::vector<EngineInfo> engines_here() const;
-  // With the first engine; on the given ones of the devices that have it, or else on the best one.
+  // Makes the first engine on the given devices that have it, or else on the best one.
   Simulator simulator(const Scene& site, std::span<const std::size_t> devices = {}) const;
 };
 

@@ -13,8 +13,8 @@
 namespace vantage::bench {
 namespace {
 
-// A square floor of one voxel a cell, with candidates all over it. Of the cells within reach each sees those that
-// nothing hides at random, the nearer the denser: a station at the goal out to a third of its reach.
+// A square floor of one voxel a cell, with candidates all over it. Each sees cells within reach at random unless
+// something hides them, the nearer the denser: a station at the goal out to a third of its reach.
 CoverageMatrix floor_matrix(const ChooseOptions& options) {
   RandomStream random(options.seed);
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.voxels))));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long it takes to choose stations on a site that is too large for one network: arrays alone, no ray.
+// Time to choose stations on a site that is too large for one network: on arrays alone, without a ray.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -76,7 +76,7 @@ void take_scan(Site& real, const Vec3& head, const DayOptions& options, std::uin
   writer.close();
 }
 
-// The place where a crew stands that was sent to `head`: there, or as near as things allow.
+// Place where a crew stands that was sent to `head`: there, or as near as things allow.
 Vec3 stood_at(Site& real, const Vec3& head) {
   if (real.place_head(head).station.status == StationStatus::ok) return head;
   Vec3 best = head;
@@ -87,7 +87,7 @@ Vec3 stood_at(Site& real, const Vec3& head) {
   return best;
 }
 
-// The fewest connected stations among candidates. Next is always the one that adds most of those linked to earlier
+// The fewest connected stations among candidates. Each is the one that adds most, among those linked to earlier
 // ones.
 std::vector<PlacedStation> planned_stations(Site& site, const DayOptions& options) {
   const Candidates candidates = find_candidates(site);
@@ -144,7 +144,7 @@ void DayOptions::add(CLI::App& command) {
 void run_day(const DayOptions& options) {
   const std::filesystem::path folder = options.folder;
   std::filesystem::create_directories(folder);
-  // Of an earlier run: two digits and the ending.
+  // Removes files of an earlier run: two digits and the ending.
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".e57" && entry.path().stem().string().size() == 2)
       std::filesystem::remove(entry.path());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A day on a site that differs from its model: the plan that is made anew after each scan, beside the one that is kept.
+// A day on a site that differs from its model: a plan that is renewed after each scan, beside one that is not.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the editor takes from a station that moves to new numbers and colours.
+// Time of the editor from the move of a station to new numbers and colours.
 #pragma once
 
 #include <cstdint>

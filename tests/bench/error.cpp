@@ -27,7 +27,7 @@ struct Objectives {
   double coverage = 0, overlap = 0, coverage_se = 0, overlap_se = 0;
 };
 
-// One line of the table: a way, what it was told, what it cost and what it said.
+// A line of the table: a method, its setting, its cost and its result.
 struct Trial {
   Way way = Way::exact;
   double amount = 1;    // size of the sample, or how many times coarser
@@ -161,7 +161,7 @@ class EngineRun {
         if (trial.way == Way::sampled) {
           time_together(trial, population_, compared_);
         } else {
-          // The device gets what it needs.
+          // Warms up: the device makes its buffers.
           if (round == 0) trial.simulator->evaluate({population_[0].front()}, {.overlap = trial.overlap});
           time_alone(trial, population_.first(compared_));
         }
@@ -265,8 +265,8 @@ class EngineRun {
     }
   }
 
-  // One sample's errors hang together from network to network, so several samples are drawn. With noise another seed
-  // would be another truth as well.
+  // Errors of one sample are correlated between networks, so several samples are drawn. With noise another seed would
+  // be another truth as well.
   void more_samples() {
     if (options_.site.noise) return;
     for (std::uint32_t seed = 2; seed <= options_.seeds; ++seed) {

@@ -14,7 +14,7 @@ struct ErrorOptions {
   std::uint32_t seeds = 4;       // samples drawn, each of which errs in its own way
   double spread_m = 2;
   bool cpu_time = false;   // compare and draw the time of all cores, not that of the clock
-  double patience_s = 20;  // what took longer is not timed again
+  double patience_s = 20;  // a method slower than this is timed once
   std::vector<std::uint64_t> sizes{200, 500, 1'000, 2'000, 5'000, 10'000, 20'000, 50'000, 100'000, 200'000};
   std::vector<double> coarser{2, 4, 8};
 

@@ -74,7 +74,7 @@ void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>&
     const double time = time_of(dots, way);
     if (time == 0) continue;
     const double at = chart.at(time, y.low).x, width = canvas.text_width(words, text);
-    // Beside its line, on the side away from the other exact one.
+    // Writes the name beside its line, on the side away from the other exact one.
     const double side = way == Way::every_ray ? 9 : -9;
     Rect best{};
     std::ptrdiff_t fewest = std::numeric_limits<std::ptrdiff_t>::max();
@@ -105,7 +105,7 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
   const Chart chart(canvas, area, x, y, "");
   std::vector<Rect> taken;
 
-  // How many times faster than exact, along the top.
+  // The axis along the top: speed relative to exact.
   const double exact = time_of(dots, Way::exact);
   canvas.text({area.x + area.width / 2, area.y - 32}, "Times faster than exact",
               {.size = 13.5, .across = Align::middle});

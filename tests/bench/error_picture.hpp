@@ -9,7 +9,7 @@
 
 namespace vantage::bench {
 
-// How a network was evaluated.
+// Methods of evaluating a network.
 enum class Way { every_ray, exact, sampled, coarser_steps, coarser_steps_and_voxels, coarser_voxels };
 
 struct ErrorDot {

@@ -18,7 +18,7 @@ struct FrontOptions {
   std::vector<std::string> samples{"20000", "5000/20"};  // voxels, /iterations between draws
   std::vector<std::uint64_t> seeds{1};
   std::vector<std::size_t> devices;  // empty: the best one
-  double first_s = 1, ratio = 1.5;   // when the front is looked at: the first time, and how much later each time
+  double first_s = 1, ratio = 1.5;   // times at which the front is judged: the first, and the factor to each next
   std::string picture;
   void add(CLI::App& command);
 };

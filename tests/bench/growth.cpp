@@ -129,7 +129,7 @@ std::string measure(const GrowthOptions& options, const Row& row, const std::fil
   const Progress progress{.report = [&](double) { device = std::max(device, device_mib(info)); }, .stop = {}};
   const double goal = simulator.goal_density();
   const SampleOptions sample{.voxels = row.sample};
-  // Uncounted: the device gets what it needs, the sample is drawn, and memory is watched.
+  // Not counted: the device makes its buffers, the sample is drawn, and memory is watched.
   simulator.evaluate({stations.front()}, {}, progress);
   simulator.evaluate_sampled(population, sample, progress);
   device = std::max(device, device_mib(info));

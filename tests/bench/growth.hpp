@@ -8,7 +8,7 @@ namespace vantage::bench {
 struct GrowthOptions {
   std::string folder;  // empty: standard output alone
   std::vector<std::string> engines;
-  // The middle, from which one quantity at a time departs.
+  // The settings in the middle, from which one quantity at a time departs.
   std::uint64_t base_triangles = 300'000, base_sample = 20'000;
   std::uint32_t base_stations = 15;
   double base_user_size_m = 0.04;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often the 95 % intervals of a sampled evaluation hold what tracing every ray gives.
+// Share of the 95 % intervals of a sampled evaluation that hold the value by every ray.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks to measure on: not one lucky set of stations, but many that differ in number and place.
+// Networks to measure on: many that differ in number and place, so that none is a lucky set of stations.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 
 namespace vantage::bench {
 
-// Networks of so many stations anywhere on the search area, clear of every mesh. Throws Error invalid_argument where
-// there is no room for one.
+// Returns networks of so many stations anywhere on the search area, clear of every mesh. Throws Error invalid_argument
+// if there is no room for one.
 std::vector<Network> networks_on_search_area(const Scene& scene, std::size_t count, std::size_t stations,
                                              double height_m, std::uint64_t seed);
 
-// The stations themselves, then networks of at least half of them, drawn, each moved sideways by up to spread_m but
-// kept clear of every mesh.
+// Returns the stations themselves, then networks of at least half of them, drawn. Each station is moved sideways by up
+// to spread_m, but kept clear of every mesh.
 std::vector<Network> networks_like(const Network& stations, const ClashChecker& checker, std::size_t count,
                                    double spread_m, std::uint64_t seed);
 
-// Those of a plan's front.json, of at least so many stations, each where it stands upright. Throws Error io,
+// Returns networks of a plan's front.json with at least so many stations, each at its place, upright. Throws Error io,
 // malformed_file.
 std::vector<Network> networks_of_front(const std::filesystem::path& file, std::size_t least_stations);
 

@@ -117,7 +117,7 @@ void step(const MoProblem& problem, Optimiser& optimiser, std::vector<double>& v
   optimiser.tell(values);
 }
 
-// The hypervolume that an algorithm ends with.
+// Hypervolume at the end of an algorithm's run.
 double run(const MoProblem& problem, const Options& options, Algorithm algorithm, OptimiserConfig config) {
   config.bounds = problem.bounds;
   if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
@@ -148,7 +148,7 @@ Summary front_over_seeds(const std::string& name, std::size_t dimension, const O
 
 const char* yes_no(bool reached) { return reached ? "yes" : "NO"; }
 
-// The last problem's references, until there is another; the better of them counts.
+// References of one problem follow each other; the better of them counts.
 void print_fronts(const std::vector<Reference>& references, const Options& options) {
   bool first = true;
   std::size_t reached = 0, total = 0;
@@ -241,7 +241,7 @@ void print_station(const Options& options) {
   }
 }
 
-// Milliseconds a candidate of the optimiser's own, in the steady state.
+// The optimiser's own milliseconds for each candidate, in the steady state.
 double own_ms(std::size_t stations, const Options& options, std::size_t full_covariance) {
   const std::size_t n = 2 * stations, batch = 50;
   OptimiserConfig config = options.search;

@@ -20,7 +20,7 @@ struct MoProblem {
   std::size_t dimension, objectives;
   Bounds bounds;
   std::function<void(std::span<const double> x, std::span<double> f)> evaluate;
-  // Coordinates of stations in holes, which are to be drawn again; empty where the problem has none.
+  // Coordinates of stations in holes, which are to be drawn again; empty if the problem has none.
   std::function<std::vector<std::size_t>(std::span<const double> x)> misplaced = {};
   std::vector<std::vector<std::size_t>> blocks = {};                         // OptimiserConfig::blocks
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};  // likewise

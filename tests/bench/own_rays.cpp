@@ -26,7 +26,7 @@ constexpr std::array kOrders{std::pair{Order::blocks, "blocks"}, std::pair{Order
 constexpr std::array kQuestions{std::pair{RayQuestion::nearest, "nearest"}, std::pair{RayQuestion::blocked, "blocked"},
                                 std::pair{RayQuestion::count, "count"}};
 
-// Directions of a whole pattern: in the blocks in which counting takes them, row by row, or anyhow.
+// Orders of the directions of a pattern: in blocks, as counting takes them, row by row, or at random.
 std::vector<Vec3> directions_of(const RayPattern& pattern, Order order) {
   std::vector<Vec3> all;
   all.reserve(std::size_t{pattern.rows()} * pattern.columns());

@@ -25,7 +25,7 @@ extern char** environ;
 namespace vantage::bench {
 namespace {
 
-// Wall time and the processor time of all threads, since it was made or since the last lap.
+// Wall time and the processor time of all threads, since the object was made or since the last lap.
 class Laps {
  public:
   struct Lap {

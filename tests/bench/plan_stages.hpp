@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Default plans of sites: what their stages take, and what another build of the program takes for the same.
+// Default plans of sites: times of their stages, and of another build of the program.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -36,7 +36,7 @@ std::vector<Network> networks_around(const Network& given, std::size_t many, dou
   return all;
 }
 
-// Each by itself, and all at once: what a network takes, and what a call does whatever it holds.
+// Times networks one by one and all together: the cost of a network, and of a call whatever its size.
 void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCounts& counts) {
   const Scene scene = Scene::load(options.site.scene);
   Simulator simulator = options.site.simulator(scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a search scales over the ranks of a job: what is measured on one machine, played through for up to 1 024
-// ranks, and drawn. Started by `mpirun`, it holds the model against ranks that take as long without computing.
+// Scaling of a search over the ranks of a job. Figures measured on one machine go into a model of up to 1 024 ranks,
+// and are drawn. Started by `mpirun`, it compares the model with ranks that take as long without computing.
 #pragma once
 
 #include <cstdint>

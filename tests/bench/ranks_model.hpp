@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long ranks take for a population that they pull in pieces, played through event by event.
+// Time that ranks take for a population that they pull in pieces, simulated event by event.
 #pragma once
 
 #include <cstddef>

@@ -215,7 +215,7 @@ def main():
     folder = tempfile.mkdtemp(prefix="vantage-readers-")
     files = {kind: options.laz if kind == "laz" else os.path.join(folder, "site." + kind.replace("ply-", "faces.")) for kind in kinds}
     try:
-        # Another process: what one is started from counts as memory that it held.
+        # A process of its own, since memory of the process that starts one counts as its own.
         writing = multiprocessing.Process(target=write, args=(files, options))
         writing.start()
         writing.join()

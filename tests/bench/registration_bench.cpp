@@ -213,7 +213,7 @@ Pool read_plans(const std::vector<std::string>& files) {
   return pool;
 }
 
-// How far samples are off the prediction from every voxel, network by network.
+// Errors of samples relative to the prediction from every voxel, network by network.
 class Samples {
  public:
   void add(Simulator& simulator, const Network& network, std::uint64_t voxels, std::size_t draws) {
@@ -250,7 +250,7 @@ class Samples {
   std::size_t held_ = 0, drawn_ = 0;
 };
 
-// The prediction of evaluations by every ray, whose sample grows, against that of every voxel.
+// Prediction of evaluations by every ray, whose sample grows, and that of every voxel.
 class Growing {
  public:
   void add(Simulator& simulator, const Network& network) {
@@ -340,7 +340,7 @@ void run(const Options& o) {
     csv << '\n';
   }
   std::vector<double> true_mm, predicted_mm, ratios;
-  std::array<std::vector<double>, 2> halves;  // true errors by every other trial
+  std::array<std::vector<double>, 2> halves;  // true errors, from every other trial
   std::array<std::vector<double>, Figures::names.size()> overlaps;
   const OverlapMatrix of_pairs = overlaps_of(scans);
   std::set<std::vector<std::size_t>> taken;
@@ -426,8 +426,8 @@ void run(const Options& o) {
               quantile(true_mm, 1), quantile(true_mm, 0.9) / quantile(true_mm, 0.1));
   std::printf("true over predicted: median %.2f, half of them %.2f to %.2f\n", quantile(ratios, 0.5),
               quantile(ratios, 0.25), quantile(ratios, 0.75));
-  // Two halves of the trials rank alike by r, so all of them rank as the expected error does by √(2r / (1 + r))
-  // (Spearman and Brown): no prediction can be expected to do better.
+  // If the ranks of two halves of the trials correlate by r, those of all trials correlate with the expected error by
+  // √(2r / (1 + r)) (Spearman and Brown). No prediction can be expected to do better.
   const double alike = std::max(spearman(halves[0], halves[1]), 0.0);
   std::printf("halves of the trials rank by %+.2f; a perfect prediction would rank by %+.2f\n", alike,
               std::sqrt(2 * alike / (1 + alike)));

@@ -14,7 +14,7 @@ namespace {
 
 // Rays to a spot end this much before it, above the rounding of local coordinates.
 constexpr double kBefore_m = 2e-3;
-// Cosine of the steepest incidence at which a surface counts as seen.
+// Cosine of the largest angle of incidence at which a surface counts as seen.
 constexpr double kSteepest = 0.02;
 
 Vec3 wide(const Float3& p) { return {p.x, p.y, p.z}; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stations see of a site by rays of Embree alone: the truth that links are compared with. It knows no voxels.
+// Surfaces that stations see, by rays of Embree alone: the truth that links are compared with. It knows no voxels.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@ class Sight {
   // Spreads `spots` points evenly over the area of all surfaces that stop rays. `spacing_m`: wanted distance of points.
   Sight(const SceneData& scene, const Scanner& scanner, double spacing_m, std::size_t spots, std::uint64_t seed = 1);
 
-  // Whether nothing stands between two points, survey frame.
+  // True if nothing stands between two points, survey frame.
   bool free(const Vec3& a, const Vec3& b) const { return !blocked(a - origin_, b - origin_, 0); }
 
   struct View {
     std::vector<std::int8_t> sides;  // of each spot: 0 unseen, 1 seen from the front, -1 from behind
     std::size_t seen = 0;            // spots
-    double median_m = 0;             // distance to what is captured: points at the wanted distance, or fewer in part
+    double median_m = 0;             // distance to the captured spots: points at the wanted distance, or fewer in part
   };
   View from(const Vec3& head) const;  // survey frame
 
@@ -41,7 +41,7 @@ class Sight {
   std::vector<Spot> spots_;
 };
 
-// The spots that both see from one side, as a share of those that the one with fewer sees.
+// Spots that both see from the same side, as a share of those of the view with fewer.
 double shared(const Sight::View& a, const Sight::View& b);
 
 }  // namespace vantage::bench

@@ -41,8 +41,8 @@ double normal_of(std::uint64_t seed, std::uint64_t place) {
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * EIGEN_PI * v);
 }
 
-// A scan's own error of the surface: smooth, of the same power at every place, and so much alike within a patch that
-// its mean over a large surface has the variance ρ²L²/A.
+// A scan's own error of the surface: smooth, and of the same power at every place. It is so much alike within a patch
+// that its mean over a large surface has the variance ρ²L²/A.
 double modelling_error(std::uint64_t seed, const Vector3d& p, const Vector3d& n, const AdjustmentTruth& truth) {
   Eigen::Index axis = 0;
   n.cwiseAbs().maxCoeff(&axis);
@@ -86,7 +86,7 @@ struct Instrument {
     azimuth += face * (collimation * range + trunnion * v.z()) / level;
     zenith += face * index;
     const double wrong = range * (1 + scale) + offset_m;
-    // Off by as much as from the place that unchanged angles give: that is `point` but for the clamp above it.
+    // The offset from the place that unchanged angles give: that place is `point`, apart from the clamp above.
     const Vector3d to(std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith));
     const double before = std::atan2(level, v.z()), around = std::atan2(v.y(), v.x());
     const Vector3d from(std::sin(before) * std::cos(around), std::sin(before) * std::sin(around), std::cos(before));
@@ -238,7 +238,7 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
     std::uniform_real_distribution<double> any(0, 2 * EIGEN_PI);
     for (double& start : starts) start = any(random);
   }
-  // Error of each scan along a point's normal.
+  // Error of each scan along the normal of a point.
   std::vector<std::vector<float>> wrong(n);
   for (std::size_t i = 0; i < n; ++i) wrong[i].assign(scans[i]->points.size(), std::numeric_limits<float>::quiet_NaN());
   const auto wrong_by = [&](std::size_t i, std::uint32_t k) -> double {
@@ -253,7 +253,7 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
     }
     return w;
   };
-  // A point of scan i in the frame of scan j, as both are thought to stand.
+  // A point of scan i in the frame of scan j, by the poses that both are assumed to have.
   const auto seen_by = [&](std::size_t i, std::size_t j, const Vector3d& p) -> Vector3d {
     const Vector3d world = turn[i] * (p - scans[i]->head) + scans[i]->head + shift[i];
     return turn[j].transpose() * (world - scans[j]->head - shift[j]) + scans[j]->head;
@@ -271,7 +271,7 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
       const auto all = static_cast<double>(link.sample.size());
       std::shuffle(link.sample.begin(), link.sample.end(), random);
       link.sample.resize(std::min(link.sample.size(), truth.samples));
-      // That a sampled point stands for.
+      // area that a sampled point stands for
       const double area = ThinnedScan::cell_m * ThinnedScan::cell_m * all / static_cast<double>(link.sample.size());
       // Two scans' errors; each pair is matched both ways.
       link.variance = 2 * (2 * truth.rho_m * truth.rho_m * truth.patch_m * truth.patch_m / area);
@@ -355,7 +355,7 @@ double surface_error(const std::vector<PoseError>& errors, const std::vector<Vec
                      const std::vector<std::uint64_t>& masks) {
   Vector3d centre = Vector3d::Zero();
   for (const Vector3d& p : points) centre += p / static_cast<double>(points.size());
-  // The motion that fits all displacements best, a point's shared by those who see it.
+  // Motion that fits all displacements best; the stations that see a point share its displacement.
   Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
   const auto each = [&](const auto& visit) {

@@ -42,7 +42,7 @@ ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head);
 class Neighbours {
  public:
   explicit Neighbours(const ThinnedScan& scan);
-  // −1 where there is none near whose normal agrees.
+  // −1 if there is none nearby whose normal agrees.
   int nearest(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
  private:
@@ -56,7 +56,7 @@ struct PoseError {
   Eigen::Vector3d head, turn, shift;
 };
 
-// The planar points of a scan that another has one next to.
+// Planar points of a scan that have one of the other scan next to them.
 std::vector<std::uint32_t> matching_points(const ThinnedScan& scan, const Neighbours& other);
 
 // Scans to be adjusted together.
@@ -69,8 +69,8 @@ struct ScanNetwork {
 // One trial: poses and scans are disturbed by `seed`, then adjusted.
 std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth& truth, std::uint64_t seed);
 
-// Root mean square of the displacement of the covered surface, less the best-fitting motion of the whole. `points` and
-// who sees them.
+// Root mean square of the displacement of the covered surface, without the best-fitting motion of the whole. `points`
+// and `masks`: the surface, and the stations that see it.
 double surface_error(const std::vector<PoseError>& errors, const std::vector<Eigen::Vector3d>& points,
                      const std::vector<std::uint64_t>& masks);
 

@@ -46,7 +46,7 @@ struct Survey {
   double points(double x, double y, const Patch& target) const;  // in the voxel of the patch
 };
 
-// Whether the line from a head to the patch runs through another box, below its top.
+// True if the line from a head to the patch runs through another box, below its top.
 bool Survey::hidden(double x, double y, const Patch& t) const {
   for (std::size_t i = 0; i < prisms.size(); ++i) {
     if (i == t.prism) continue;  // convex: the side of the normal decides

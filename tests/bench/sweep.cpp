@@ -38,7 +38,7 @@ using test::Surface;
 constexpr double kEdge_m = 0.25;
 // A room without a station is left out if less of it is captured than this share of what is captured of the site.
 constexpr double kRoomShare = 0.7;
-// Of the median distance to what a station sees: nearer to it no other may stand that it sees.
+// Least distance of stations that see each other, as a share of the median distance to what the station sees.
 constexpr double kNearest = 0.25;
 // A link is through a wall if scans share less than this part of the wanted overlap by rays.
 constexpr double kTrueLink = 0.5;
@@ -90,7 +90,7 @@ std::vector<SweptSite> swept_sites(const SweepOptions& options, const std::files
   return sites;
 }
 
-// A network and what is said of it.
+// A network and its figures.
 struct Judged {
   std::size_t stations = 0;
   double captured = 0, link = 0;  // weakest link of the tree; 0 if there is none
@@ -101,11 +101,11 @@ struct Score {
   Judged plan;
   double ground_m2 = 0, seconds = 0;
   std::size_t at_least = 0, greedy = 0, by_thumb = 0;
-  std::size_t rooms = 0, visited = 0;  // of the truth, those that a way leads to
+  std::size_t rooms = 0, visited = 0;  // true ones that a path leads to
   std::vector<std::string> left_out;   // rooms, neither visited nor captured from others
   std::size_t off_ground = 0, in_the_way = 0, near_pairs = 0, links = 0, through_walls = 0;
   bool on_plane = false;
-  double closed = 0;  // the largest share of all floor that is closed, not planned and to be decided on
+  double closed = 0;  // the largest share of floor that is closed, not planned, and left to the user to decide
   bool met = false;
 };
 
@@ -133,7 +133,7 @@ std::vector<Place> open_rooms(const SweptSite& site) {
   return rooms;
 }
 
-// `entered`: what no way leads to is planned, too, and told.
+// `entered`: parts without a path to them are planned, too, and the result says so.
 bool stands_off(const SweptSite& site, const Vec3& ground, bool entered) {
   const auto off = [&](const Vec3& p) {
     const test::Standing standing = site.truth->at(p);
@@ -144,9 +144,9 @@ bool stands_off(const SweptSite& site, const Vec3& ground, bool entered) {
   return true;
 }
 
-// The stations that a person would take who has no model. Each gets a square of floor, of 10 m or, if less, the
-// distance at which its points are as dense as wanted. One a room and one for each such square of a larger one; one in
-// a doorway between each two rooms on the way; one for each such square of other ground.
+// Stations that a person without a model would take. Each gets a square of floor, of 10 m or, if less, the distance at
+// which its points are as dense as wanted. One a room and one for each such square of a larger one; one in a doorway
+// between each two rooms on the path; one for each such square of other ground.
 std::size_t rule_of_thumb(const std::vector<Place>& rooms, double ground_m2, const Scanner& scanner, double spacing_m) {
   const double side = std::min(kFloorEach_m, spacing_m / scanner.azimuth_step.in_radians());
   const auto stations_on = [&](double m2) { return static_cast<std::size_t>(std::ceil(m2 / (side * side))); };
@@ -161,7 +161,7 @@ std::size_t rule_of_thumb(const std::vector<Place>& rooms, double ground_m2, con
   return std::max<std::size_t>(1, sum + (ground_m2 > inside ? stations_on(ground_m2 - inside) : 0));
 }
 
-// Rooms that hold no station and are captured badly from others.
+// Rooms without a station that others capture badly.
 std::vector<std::string> rooms_left_out(const SweptSite& swept, Site& site, const PlanEntry& entry,
                                         const std::vector<Place>& unvisited) {
   std::vector<std::string> names;
@@ -221,7 +221,7 @@ void judge_sight(Site& site, const PlanEntry& entry, const StationLinks& links, 
     }
 }
 
-// `capture`: what the number is judged for.
+// `capture`: share that the number of stations is judged for.
 void judge_number(const PlanResult& result, double capture, Score& score) {
   const CoverageMatrix matrix = result.candidates->captured_matrix();
   const StationsBound bound = min_cover({.matrix = matrix, .coverage = capture}, {.max_seconds = kBoundSeconds});
@@ -351,7 +351,7 @@ std::optional<std::size_t> least_unlinked(const StationLinks& links, const std::
   return known;
 }
 
-// The round of a plan against the shortest that is found without regard to links.
+// The round of a plan, and the shortest one found without regard to links.
 std::vector<std::string> round_cells(const SweptSite& swept, Site& site, const PlanEntry& entry,
                                      const StationLinks& links) {
   constexpr double kMostLonger = 1.3;
@@ -376,7 +376,7 @@ std::vector<std::string> round_cells(const SweptSite& swept, Site& site, const P
           least ? number(*least) : "–"};
 }
 
-// What no plan may do, in words.
+// Returns in words the faults that no plan may have.
 std::vector<std::string> faults_of(const SweptSite& site, const Score& score) {
   std::vector<std::string> faults;
   const auto none = [&](std::size_t count, const std::string& what) {
@@ -401,7 +401,7 @@ PlanResult planned(Site& site, const SweepOptions& options, std::optional<double
   return plan(site, question, {.max_seconds = options.max_seconds});
 }
 
-// The plan by hand, and a plan of the question that asks for its figures: the first, if it is as good.
+// The plan by hand, and the plan itself if it is as good, else one for the figures of the plan by hand.
 std::optional<std::array<Judged, 2>> compare(const SweptSite& swept, Site& site, const PlanResult& result,
                                              const SweepOptions& options) {
   const std::filesystem::path file = std::filesystem::path(options.by_hand) / (swept.name + ".csv");
@@ -428,7 +428,7 @@ std::optional<std::array<Judged, 2>> compare(const SweptSite& swept, Site& site,
 // The results so far.
 class Sweep {
  public:
-  // False if the plan does what none may do.
+  // Returns false if the plan has a fault that no plan may have.
   bool add(const SweptSite& swept, const SweepOptions& options);
   void write(const std::filesystem::path& folder) const {
     sites_.write(folder, "sweep");
@@ -519,7 +519,7 @@ bool run_sweep(const SweepOptions& options) {
       good = false;
       std::fprintf(stderr, "%s: %s\n", swept.name.c_str(), failure.what());
     }
-    sweep.write(options.folder);  // what is done stays if it ends early
+    sweep.write(options.folder);  // writes finished sites even if a later one ends early
   }
   return good;
 }

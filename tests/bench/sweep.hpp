@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans of many sites by the default question, scored against what is known of each site.
+// Plans of many sites by the default question, scored against the known truth of each site.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,9 +19,9 @@ struct SweepOptions {
   void add(CLI::App& command);
 };
 
-// Writes sweep.csv, sweep.md and sweep.png to the folder, the rounds on site as rounds.csv and rounds.md, with plans by
-// hand also by_hand.csv and by_hand.md. Returns false if a site cannot be planned, or a plan does what none may do;
-// standard error tells which.
+// Writes sweep.csv, sweep.md and sweep.png to the folder, the rounds on site as rounds.csv and rounds.md, and with
+// plans by hand also by_hand.csv and by_hand.md. Returns false if a site cannot be planned, or a plan has a fault that
+// none may have; standard error tells which.
 bool run_sweep(const SweepOptions& options);
 
 }  // namespace vantage::bench

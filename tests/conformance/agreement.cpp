@@ -32,7 +32,7 @@ void compare_with_reference(const SceneData& scene, const std::vector<ReferenceH
     EXPECT_NEAR(chunk.position[k].x, expected.point.x, 2e-5) << "ray " << k;
     EXPECT_NEAR(chunk.position[k].y, expected.point.y, 2e-5) << "ray " << k;
     EXPECT_NEAR(chunk.position[k].z, expected.point.z, 2e-5) << "ray " << k;
-    // What rounding moves a ray by moves a slanted hit along its surface by as much, over the cosine of incidence.
+    // Rounding that moves a ray moves a slanted hit along its surface, by the same over the cosine of incidence.
     const double diffuse = scene.meshes[scene.mesh_of(expected.triangle)].diffuse;
     const double shading = 1e-5 * std::clamp(diffuse / expected.reflectivity, 1.0, 10.0);
     EXPECT_NEAR(chunk.normal[k].x, expected.normal.x, shading) << "ray " << k;

@@ -61,7 +61,7 @@ TEST_P(LargeNetworksConformance, CountWhatTheirScansAddUpTo) {
       SCOPED_TRACE(std::to_string(count) + (noisy ? " stations, noise" : " stations"));
       const std::vector<TraceStation> stations = many_stations(site, count);
       const PassField expected = field_of_scans(*tracer, site, stations, count);
-      // A goal that some voxels reach and others do not.
+      // Some voxels reach this goal, others do not.
       const double goal_density = 0.5 * *std::ranges::max_element(expected.count) + 0.25;
       tracer->set_goal_density(goal_density);
       const NetworkCounts reference = reference_counts(expected, count, goal_density);

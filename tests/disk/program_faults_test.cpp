@@ -27,7 +27,7 @@ std::size_t tries(std::size_t usual) {
   return asked ? std::strtoul(asked, nullptr, 10) : usual;
 }
 
-// What a run cost, which one that goes on does not repeat.
+// Drops the costs of a run, which a resumed run does not repeat.
 void drop_costs(nlohmann::json& object) {
   for (auto it = object.begin(); it != object.end();)
     if (it.key().find("seconds") != std::string::npos || it.key().find("resumed") != std::string::npos ||

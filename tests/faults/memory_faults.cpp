@@ -37,7 +37,7 @@ struct Stack {
   int depth;
   Stack() : depth(backtrace(frames, most_frames)) {}
 
-  // Whether the project allocates, directly or through the standard library.
+  // True if the project allocates, directly or through the standard library.
   bool own() const { return asked_by_program() && !in_json_destructor(); }
   bool asked_by_program() const {
     for (int k = 1; k < depth; ++k) {

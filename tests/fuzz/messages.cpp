@@ -12,7 +12,7 @@ namespace {
 
 using namespace ranks;
 
-// A message's content: what is read can be written, and is read again as the same.
+// A message's content: a value that was read can be written, and reads back as the same.
 struct Content {
   const char* name;
   std::string (*rewritten)(std::string_view bytes);
@@ -93,7 +93,7 @@ std::vector<std::pair<std::string, std::string>> message_seeds() {
   return seeds;
 }
 
-// The first byte says what the message holds.
+// The first byte tells the type of the message.
 void message(Bytes bytes) {
   if (bytes.empty()) return;
   const Content& content = kContents[bytes[0] % kContents.size()];

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes every target, or those named: tests/fuzz/run.sh SECONDS [TARGET...]
 #
-# Each runs for so many seconds from its seeds and what earlier runs found, and for half as many from nothing. What is found lies in
-# build/fuzz/corpus, what breaks a promise in build/fuzz/findings; then the exit code is 1. VANTAGE_FUZZ_JOBS targets at a time, all cores otherwise.
+# Each runs for so many seconds from its seeds and earlier findings, and for half as many from nothing. The corpus is in build/fuzz/corpus, inputs
+# that break a promise in build/fuzz/findings; then the exit code is 1. VANTAGE_FUZZ_JOBS targets at a time, all cores otherwise.
 # Needs the build of `cmake --preset fuzz && cmake --build --preset fuzz`; VANTAGE_FUZZ_PROGRAM names another.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -101,7 +101,7 @@ void checkpoint(Bytes bytes) {
   });
 }
 
-// The first byte says of which optimiser, and whether the bytes are a whole file or what its seal holds.
+// The first byte chooses the optimiser, and tells if the bytes are a whole file or its sealed content.
 void optimiser_state(Bytes bytes) {
   if (bytes.empty()) return;
   const std::size_t kind = bytes[0] % 2;

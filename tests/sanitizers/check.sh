@@ -37,10 +37,10 @@ elif [ $# = 0 ]; then
 fi
 cmake --build "$build" --target "$@"
 
-# What repeats a few lines a million times for a statistic takes minutes here; other cases run the same lines. The
-# conformance suite's own engine differs from others by a shader, which has no sanitizer, and takes a third of its time.
-# Importers run without the limits and the sandbox that ChildProcessTest and one other case look at, and that of IFC is
-# JavaScript, as what unpacks LAZ is, which has none either.
+# Leaves out cases that repeat a few lines a million times for a statistic and take minutes here; others run the same lines. The conformance
+# suite's own engine differs from others by a shader, which has no sanitizer, and takes a third of its time. Importers run without the limits
+# and the sandbox that ChildProcessTest and one other case look at. The importer of IFC and the unpacker of LAZ are JavaScript, which has no
+# sanitizer either.
 # Memory and time of a program with sanitizers are none of its own.
 export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseStatistics.*:*/brute_force_*:ChildProcessTest.*:ImporterTest.ReadsItsModelAndTheTablesItNamesAlone:IfcTest.*:LazSourceTest.*:Results.MemoryIsAsEstimated:Plan.IsDoneWithinTheTimeGiven}"
 export UBSAN_OPTIONS=print_stacktrace=1

@@ -127,7 +127,7 @@ def check_files(folder):
         assert len(table) == len(written["front"][written["answer"] - 1]["stations"])
         for row in table:
             require(stations, row, f"{name}/stations.csv")
-        # What a schema lets through must not be just anything.
+        # A schema must refuse some documents.
         for broken in ({**written, "more": 1}, {**written, "front": []}, {k: v for k, v in written.items() if k != "seed"}):
             assert not front.is_valid(broken)
         with open(os.path.join(folder, name, "waypoints.json"), encoding="utf-8") as file:

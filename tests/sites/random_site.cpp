@@ -72,14 +72,14 @@ class Maker {
   bool chance(double share) { return uniform(0, 1) < share; }
   std::size_t below(std::size_t n) { return static_cast<std::size_t>(uniform(0, static_cast<double>(n))); }
 
-  // A name in the site's language, or something like a GUID.
+  // Returns a name in the site's language, or something like a GUID.
   std::string name(Word word) {
     const std::string number = std::to_string(++named_);
     if (language_ < kWords.size()) return std::string(kWords[language_][word]) + " " + number;
     return "3vB2YO$MX4xv5uCqZZG0" + number;
   }
 
-  // The same for words of strange sites, of which water has no other sign than its name.
+  // The same for words of strange sites, in which only the name tells water.
   std::string word(const char* english) {
     constexpr std::array<const char*, 5> kWater{"water", "Wasser", "eau", "вода", "水"};
     const std::string number = " " + std::to_string(++named_);
@@ -177,7 +177,7 @@ class Maker {
     }
     if (lawn)
       add_box(add_part(made_.site, "lawn", sites::kGrass, Surface::floor), block(-8, x1 + 6, -8, y1 + 7, -0.5, -slab));
-    // What is entered: by the entrance; else only what is told decides.
+    // The entrance decides which rooms are entered; without one, only the settings do.
     if (entrance || lawn)
       for (std::size_t i = 0; i < rooms * storeys; ++i)
         if (!entrance || root(i) != root(0)) made_.shut.insert("room " + std::to_string(i));

@@ -15,10 +15,10 @@ namespace vantage::test {
 
 struct RandomSite {
   KnownSite site;                          // every room is one of its places
-  Variant variant;                         // how it is written: unit, axis, origin, names
-  std::set<std::string> shut;              // rooms that no way leads to
+  Variant variant;                         // form of the file: unit, axis, origin, names
+  std::set<std::string> shut;              // rooms that no path leads to
   std::vector<Part> leaves;                // of doors, closed in the file and open in truth
-  std::map<std::string, Part> drawn = {};  // by the name of a part: what the file has instead, such as bars
+  std::map<std::string, Part> drawn = {};  // by the name of a part: its replacement in the file, such as bars
   bool named = false;                      // never written without names
   bool turned = false;                     // sheets whose normals point away from the room
   std::string told;                        // in words, for messages

@@ -47,7 +47,7 @@ void stand(const RandomSite& random, const Scene& scene, bool whole) {
     for (const Vec3& aside : {Vec3{kEdge, 0, 0}, {-kEdge, 0, 0}, {0, kEdge, 0}, {0, -kEdge, 0}})
       if (standing.surface != Surface::floor) standing = random.site.at(*p + aside);
     const std::string where = standing.surface != Surface::floor ? to_string(standing.surface) : standing.place;
-    // Parts that no way leads to may be planned, and are told then.
+    // Parts that no path leads to may be planned, and the result then says so.
     const bool shut = random.shut.contains(standing.place);
     if (shut && standing.surface == Surface::floor) entered.insert(standing.place);
     const bool off = standing.surface != Surface::floor || (shut && area.entered().empty());
@@ -58,7 +58,7 @@ void stand(const RandomSite& random, const Scene& scene, bool whole) {
   std::string names;
   for (const test::Place& place : random.site.places)
     if (ground[place.name] == 0) unseen += area_of(place), names += " " + place.name;
-  // A part of some size is planned, or it is none that anybody wants.
+  // A part of some size is planned, unless nobody wants it.
   double known = 0, largest = 0;
   for (const ClosedPart& part : area.not_entered()) {
     told += part.area_m2;

@@ -43,8 +43,8 @@ struct Surveyed {
   Network network;
 };
 
-// A sample's error depends on how many voxels hold the weakest stations; that it agrees with its standard error does
-// not.
+// The error of a sample depends on how many voxels hold the weakest stations. Its agreement with the standard error
+// does not.
 TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   Surveyed plant("plant");
   Site site = test::site_of(plant.simulator(1));
@@ -66,8 +66,8 @@ TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   }
   RecordProperty("percent_off", std::to_string(100 * std::sqrt(squares) / truth));
   EXPECT_LT(std::sqrt(squares), 0.2 * truth);
-  // 19 of twenty should lie within 1.96, and the middle one at 0.67, known to some 0.2. Variances say less: if the
-  // weakest link rests on voxels of one group, one draw's is as large as those of all others together.
+  // 19 of twenty should lie within 1.96, and the middle one at 0.67, known to some 0.2. Variances are less useful: if
+  // the weakest link rests on voxels of one group, one draw's is as large as those of all others together.
   std::ranges::sort(off);
   EXPECT_LT(off[16], 1.96);
   EXPECT_GT(off[10], 0.25);

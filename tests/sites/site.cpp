@@ -37,7 +37,7 @@ namespace {
 
 constexpr Vec3 kUtm{500000, 5400000, 400};
 
-// Whether p lies left of the line through a and b, seen from above. Each edge is tested in one direction only, so that
+// True if p lies left of the line through a and b, seen from above. Each edge is tested in one direction only, so that
 // a point on it is in exactly one of its two triangles.
 bool left_of(const Vec3& a, const Vec3& b, const Vec3& p) {
   if (std::tie(b.x, b.y) < std::tie(a.x, a.y)) return !left_of(b, a, p);

@@ -32,7 +32,7 @@ struct Standing {
   int storey = 0;
 };
 
-// How a site is written, as exporters do with the same model.
+// Ways in which exporters write the same model.
 struct Variant {
   bool millimetres = false;  // every length times 1000
   bool z_up = false;         // coordinates as modelled, not turned to glTF's Y up

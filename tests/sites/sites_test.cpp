@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the truth of each site with its file: what one reaches on foot over the loaded triangles, cell by cell, is
-// what the truth calls a floor.
+// Compares the truth of each site with its file, cell by cell: one reaches on foot, over the loaded triangles, exactly
+// the floors of the truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -32,7 +32,7 @@ void add_leaf(RandomSite& made, const std::string& name, const Box& box) {
   add_box(made.leaves.back(), box);
 }
 
-// A hut of 3 x 2.6 m with an open doorway: what people build tells the unit, and which way is up.
+// A hut of 3 x 2.6 m with an open doorway. Such small buildings tell the unit, and which way is up.
 void add_hut(RandomSite& made, const Draws& draw, double x, double y, double z) {
   carve(add_part(made.site, draw.name("wall"), sites::kPlaster, Surface::wall_top),
         {block(x, x + 3, y, y + 0.2, z, z + 2.4), block(x, x + 3, y + 2.4, y + 2.6, z, z + 2.4),

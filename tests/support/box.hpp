@@ -17,7 +17,7 @@ inline std::vector<Vec3> box_corners(const Vec3& low, const Vec3& high) {
   return corners;
 }
 
-// Of the corners above.
+// Triangles of the corners above.
 inline const std::vector<std::array<std::uint32_t, 3>> box_triangles{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
                                                                      {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
                                                                      {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};

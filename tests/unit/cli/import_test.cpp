@@ -99,7 +99,7 @@ TEST_F(ImportCommandTest, AScanOfARoomIsPlannedAsTheRoom) {
   ASSERT_EQ(all.size(), 4u);
   EXPECT_TRUE(all[2]["existing"].get<bool>() && !all[3]["existing"].get<bool>());
   EXPECT_EQ(all[1]["position"], (nlohmann::json{5.0, 3.0, 1.6}));
-  // With the file's names and steps; what is new goes on from there.
+  // Keeps the file's names and steps; new stations are numbered on from there.
   EXPECT_EQ(all[0]["name"], "S1");
   EXPECT_EQ(all[3]["name"], "S4");
   EXPECT_NEAR(all[1]["step"].get<double>(), 0.4, 1e-9);
@@ -153,7 +153,7 @@ TEST_F(ImportCommandTest, TakesColumnsUnitAndAxisOfPointsInText) {
   expect_room("no,height,north,east\n" +
                   room_text([&](double x, double y, double z) { return with('.', "1,%.2f,%.2f,%.2f")(z, y, x); }),
               {});
-  // What is not clear is asked, and leaves no file.
+  // The import refuses an unclear unit with a question, and leaves no file.
   write("turned.xyz", room_text([&](double x, double y, double z) { return plain(z, y, x); }));
   expect_refused(run_program({"import", path("turned.xyz"), "--columns", "x,y,z", "-o", path("none.glb")}), 1,
                  "turned.xyz: its unit");

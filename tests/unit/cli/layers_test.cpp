@@ -81,7 +81,7 @@ TEST_F(Layers, ResolvedOptionsReproduceTheRun) {
   EXPECT_EQ(first, second);
 }
 
-// A scene comes from anyone; files of the user's are none of its business.
+// Anyone may write a scene, so it must not name files of the user's.
 TEST_F(Layers, ASceneReachesForNoFileUnlessTheUserSaysSo) {
   const TemporaryFolder elsewhere;
   const std::string buffer = elsewhere / "triangle.bin";

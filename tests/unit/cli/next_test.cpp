@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The next stations, by scans that were taken.
+// The next stations, based on scans that were taken.
 #include <filesystem>
 
 #include "program.hpp"

@@ -98,7 +98,7 @@ std::map<std::string, std::vector<std::string>> all_options() {
 // The message where it is refused as it is read.
 std::optional<std::string> refused(const std::string& command, const std::string& option, const std::string& value) {
   Commands commands;
-  std::vector<std::string> words{"--" + option + "=" + value, command};  // last first, as CLI11 takes them
+  std::vector<std::string> words{"--" + option + "=" + value, command};  // last first, for CLI11
   try {
     commands.app.parse(words);
   } catch (const CLI::Error& error) {
@@ -178,7 +178,7 @@ TEST(Numbers, EveryOptionOfAConfigurationReadsOrRefusesThem) {
 
 class NumbersInFiles : public ProgramTest {
  protected:
-  // Reads the file with @ replaced by each number; what is read must be finite.
+  // Reads the file with each number in place of @; values that it accepts must be finite.
   void try_all(const std::string& name, const std::string& text,
                const std::function<std::vector<double>(const std::string&)>& read) {
     std::size_t taken = 0, refused = 0;
@@ -322,7 +322,7 @@ class NumbersThatAreTaken : public ProgramTest {
   }
 };
 
-// Kills what has not ended after a minute.
+// Kills processes that have not ended after a minute.
 void at_most_a_minute(int process) {
   for (int tries = 0; tries < 6000; ++tries) {
     siginfo_t ended{};

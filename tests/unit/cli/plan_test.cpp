@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole plan from the command line: what it writes, that it repeats itself, and that it stops when told to.
+// A whole plan from the command line: its files, its reproducibility, and stops on request.
 #include <signal.h>
 
 #include <algorithm>
@@ -156,7 +156,7 @@ TEST_F(Plan, SplitsARoundThatIsLongerThanADay) {
   EXPECT_EQ(std::ranges::count(table, '\n'), 6);
   EXPECT_EQ(front["parameters"]["plan"]["day"], "8min");
 
-  // Evaluation makes the same of the same stations.
+  // Evaluating the same stations gives the same results.
   const auto again =
       json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--stations",
                path("plan/front.json"), "--day", "8min", "--crews", "2", "--sessions", path("again.csv")});
@@ -183,7 +183,7 @@ TEST_F(Plan, SplitsARoundThatIsLongerThanADay) {
   EXPECT_EQ(powered["stations"], again["stations"]);
   EXPECT_NE(read("powered.csv").find(",begin,end,batteries\n1,1,1,1,"), std::string::npos);
 
-  // Nothing of it without a day, and no file of an earlier plan.
+  // Without a day there are no sessions, and no file of an earlier plan.
   const auto whole = json_of(plan("plan", with({"--force"})));
   EXPECT_FALSE(whole["front"][0]["on_site"].contains("sessions"));
   EXPECT_FALSE(whole["parameters"]["plan"].contains("day"));
@@ -346,7 +346,7 @@ TEST_F(Plan, AsksTheSurveyorsQuestionWhereNoneIsNamed) {
   EXPECT_EQ(read("plan/notes.txt"), "of the run before") << "that is the surveyor's own";
 }
 
-// Its configuration asks the same again: no share, and so much surface of each station.
+// Its configuration repeats the question: no share, but so much surface of each station.
 TEST_F(Plan, AsksForTheStationsThatPayByDefault) {
   const auto front = json_of(plan("plan", {"--link", "0"}));
   EXPECT_EQ(front["pays"]["least_m2"], 25);
@@ -379,8 +379,8 @@ TEST_F(Plan, IsDoneWithinTheTimeGiven) {
       all.insert(file.path().filename().string());
     return all;
   };
-  // A machine that does much else may have no time for all files, and says which. A finished search keeps its state,
-  // and some answers take targets.
+  // Under load there may be no time for all files, and the program says which it left out. A finished search keeps its
+  // state, and some answers take targets.
   const std::set<std::string> written = names("plan");
   for (const std::string& file : names("whole"))
     EXPECT_TRUE(written.contains(file) || file == "checkpoint.bin" || file == "targets.csv" ||

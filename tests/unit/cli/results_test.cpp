@@ -345,7 +345,7 @@ TEST_F(Results, EvaluateWritesItsTablesAndPictures) {
   EXPECT_EQ(read("plan.png").substr(1, 3), "PNG");
 }
 
-// The most that the program ever held, beside what is told beforehand; of children that were waited for, the largest.
+// Peak memory of the program against the estimate made before; among children that were waited for, the largest counts.
 TEST_F(Results, MemoryIsAsEstimated) {
   const double size = 0.004;
   const MemoryEstimate estimate = estimate_memory(Scene::load(scene_), size);

@@ -25,7 +25,7 @@ TEST_F(Usage, HelpAndVersionSucceed) {
   }
 }
 
-// What a command does, examples and its own options come first; those of special cases are on a list of their own.
+// The help of a command begins with its purpose, examples and own options; special cases have a list of their own.
 TEST_F(Usage, HelpBeginsWithWhatAUserLooksFor) {
   const std::string help = run_program({"plan", "--help"}).out, all = run_program({"plan", "--help-all"}).out;
   const auto at = [](const std::string& text, const std::string& what) { return text.find(what); };

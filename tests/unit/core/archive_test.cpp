@@ -48,7 +48,7 @@ TEST(Archive, SmallNumbersAreOneByte) {
   EXPECT_EQ(writer.take().size(), 101u);
 }
 
-// No memory is taken for what cannot be there, and nothing is made up.
+// The reader allocates nothing for content that cannot be there, and invents nothing.
 TEST(Archive, RefusesWhatCannotBe) {
   ArchiveWriter huge;
   huge.whole(std::uint64_t{1} << 62);

@@ -68,7 +68,7 @@ TEST(AtomicFile, LeavesTemporariesOfOthersAtWork) {
   EXPECT_EQ(content(folder / "a.txt"), "x");
 }
 
-// Whoever may write to the folder chooses where a link leads.
+// Anyone with write access to the folder chooses the target of a link.
 TEST(AtomicFile, TakesTheLinksPlaceAndFollowsNone) {
   const test::TemporaryFolder folder;
   const auto file = folder / "front.json", elsewhere = folder / "elsewhere";

@@ -21,7 +21,7 @@ std::vector<std::vector<double>> random_weights(std::size_t n, std::uint64_t see
   return weights;
 }
 
-// Whether a path of edges of at least `least` connects two nodes (Warshall).
+// True for two nodes if a path of edges of at least `least` connects them (Warshall).
 std::vector<std::vector<bool>> reachable(const std::vector<std::vector<double>>& weights, double least) {
   const std::size_t n = weights.size();
   std::vector<std::vector<bool>> reach(n, std::vector<bool>(n, false));

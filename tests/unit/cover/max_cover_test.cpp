@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against all networks there are, on problems small enough to try them.
+// Results against all possible networks, on problems small enough to try them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,8 +102,8 @@ TEST(MaxCover, FindsTheBestConnectedNetwork) {
   }
 }
 
-// Rooms off a hub: what a room's two candidates see, its door sees too. A relaxation that adds up halves of a station
-// in a room and of one in its door has twice as many rooms as there are stations for.
+// Rooms off a hub: a room's door sees whatever its two candidates see. A relaxation that adds up halves of a station in
+// a room and of one in its door has twice as many rooms as there are stations for.
 TEST(MaxCover, AddsUpNoHalvesBehindADoor) {
   constexpr std::size_t kRooms = 5, kEach = 40;
   constexpr std::uint32_t kGoal = 2;
@@ -114,7 +114,7 @@ TEST(MaxCover, AddsUpNoHalvesBehindADoor) {
   for (std::size_t room = 0; room < kRooms; ++room)
     for (std::size_t k = 0; k < 3; ++k) {
       std::ranges::fill(amounts, 0u);
-      // Of the room the door captures a half of 16, each of the others all of its own 20 and a half of the rest.
+      // In its room the door captures a half of 16, and each of the others all of its own 20 and a half of the rest.
       for (std::size_t e = 0; e < kEach; ++e)
         amounts[room * kEach + e] = k == 0 ? (e < 16 ? kGoal / 2 : 0) : ((e < 20) == (k == 1) ? kGoal : kGoal / 2);
       matrix.add(amounts);
@@ -204,8 +204,8 @@ TEST(MaxCover, RefusesWhatMakesNoSense) {
   EXPECT_THROW(min_cover({.matrix = empty, .coverage = 0.5}), Error);
 }
 
-// Along a wall of 10 000 elements, each candidate covers 100 in a row: no more than 80 times 100 for 80 stations, which
-// stations side by side have.
+// Along a wall of 10 000 elements, each candidate covers 100 in a row: 80 stations cover at most 80 times 100, and side
+// by side they do.
 TEST(MaxCover, HasNoLimitOf64Stations) {
   constexpr std::uint32_t elements = 10'000, sight = 100, apart = 25;
   CoverageMatrix matrix(std::vector<std::uint32_t>(elements, 1), 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against all networks there are, on problems small enough to try them.
+// Results against all possible networks, on problems small enough to try them.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -56,7 +56,7 @@ Chosen members(std::uint32_t set) {
   return chosen;
 }
 
-// The number of the smallest of all sets of 13 candidates that do; 100 if none does.
+// Size of the smallest set among 13 candidates with this coverage and these links; 100 if there is none.
 std::size_t fewest_of_all(const RandomSite& site, double coverage, double link) {
   std::size_t fewest = 100;
   for (std::uint32_t set = 1; set < 1u << 13; ++set) {
@@ -69,7 +69,7 @@ std::size_t fewest_of_all(const RandomSite& site, double coverage, double link) 
   return fewest;
 }
 
-// A hall that two linked candidates cover but for crumbs, and a loft that no link reaches.
+// A hall that two linked candidates cover except for small rests, and a loft that no link reaches.
 TEST(MinConnectedCover, TakesWhatNoLinkReachesBeforeCrumbs) {
   constexpr std::size_t kHall = 100, kLoft = 60, kCrumbs = 20;
   CoverageMatrix matrix(std::vector<std::uint32_t>(kHall + kLoft + kCrumbs, 1), 1);

@@ -24,7 +24,7 @@ std::vector<std::size_t> labels(const StationGraph& graph, std::size_t without) 
   return of;
 }
 
-// From forests in which each member cuts off another to networks that nothing cuts.
+// From forests in which each member cuts off another, to networks that no member cuts.
 TEST(NetworkLinks, KnowsWhatFallsApartWithoutAMember) {
   constexpr std::size_t size = 24;
   std::size_t cutting = 0;

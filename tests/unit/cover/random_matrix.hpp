@@ -53,7 +53,7 @@ inline double coverage_by_definition(const CoverageMatrix& matrix, std::span<con
   return sum / weights;
 }
 
-// Whether links of at least `link` lead from the first to all others, by as many rounds of looking for neighbours as
+// True if links of at least `link` lead from the first to all others. It looks for neighbours in as many rounds as
 // there are candidates.
 inline bool connected_by_definition(const StationGraph& graph, std::span<const std::size_t> chosen, double link) {
   std::vector<bool> reached(chosen.size(), false);

@@ -11,7 +11,7 @@ namespace {
 using test::Chosen;
 using test::random_matrix;
 
-// By candidate: its gain without the member at `at`.
+// Gain of each candidate without the member at `at`.
 std::vector<CoverUnits> gains_without(const SwapGains& known, std::size_t at, std::size_t candidates) {
   std::vector<CoverUnits> gains(candidates);
   for (std::size_t k = 0; k < candidates; ++k) gains[k] = known.now()[k];

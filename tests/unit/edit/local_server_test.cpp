@@ -45,7 +45,7 @@ class LocalServerTest : public testing::Test {
     ~Client() {
       if (socket >= 0) ::close(socket);
     }
-    // Whether all of it went.
+    // Returns true if all of the text was sent.
     bool send(const std::string& text) const {
       for (std::size_t sent = 0; sent < text.size();) {
         const ssize_t n = ::send(socket, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);

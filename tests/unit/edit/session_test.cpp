@@ -180,7 +180,7 @@ TEST(EditSession, RefusesWhatCannotBe) {
 
 TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
   Bench bench;
-  // One far off the wall that counts, one locked.
+  // A station far off the wall with triple weight, and a locked one.
   bench.add(9, 9);
   bench.add(2, -1);
   bench.session.change({{"do", "lock"}, {"id", 2}, {"locked", true}});

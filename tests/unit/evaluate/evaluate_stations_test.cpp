@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One evaluation against the functions of its counts, called one by one.
+// One evaluation, compared with the functions of its counts, called one by one.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -77,8 +77,8 @@ TEST(EvaluateStations, HasTheFiguresOfEveryRay) {
   EXPECT_EQ(station_names(found.stations, found.names), (std::vector<std::string>{"K1", "P7", "S2", "S3"}));
 }
 
-// Points as every ray counts them, and as the coarser scans of the surroundings tell them, of stations that are not
-// there yet: on the wall and the floor, and into the open.
+// Points of stations that do not exist yet, by every ray, and estimated from coarser scans of the surroundings: on the
+// wall and the floor, and into the open.
 TEST(EvaluateStations, TellsWhatTheScansHold) {
   Site whole = test::site_of(Simulator(test::wall_and_floor().scene(), test::coarse_scanner(0.1),
                                        {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}));
@@ -249,7 +249,7 @@ TEST(EvaluateStations, VoxelsAreCountedByMesh) {
   const Evaluation whole = evaluate("facade-e*", {});
   ASSERT_EQ(whole.counts.meshes.size(), 3u);
   EXPECT_EQ(whole.counts.meshes[1], MeshVoxels{});
-  // The same by the points of every voxel and the surfaces in them.
+  // The same, computed from the points of every voxel and the surfaces in them.
   std::vector<std::uint32_t> every(walls.simulator.voxel_count());
   for (std::uint32_t v = 0; v < every.size(); ++v) every[v] = v;
   const auto patches = walls.simulator.voxel_patches(every);

@@ -370,7 +370,7 @@ TEST(OnSite, LinksTakeNoRoundThatIsMuchLonger) {
     };
     EXPECT_EQ(along.unlinked, unlinked(along.order));
     EXPECT_LE(unlinked(along.order), unlinked(plain.order)) << trial;
-    // The fewest that any walk allows which is no longer than 1.3 times the shortest.
+    // Fewest steps without a link of any walk that is no longer than 1.3 times the shortest.
     std::size_t fewest = 7;
     rounds.for_each([&](const auto& order) {
       if (rounds.length(order) <= 1.3 * least) fewest = std::min(fewest, unlinked(order));
@@ -565,7 +565,7 @@ TEST(Sessions, ADayThatIsTooShortIsOneError) {
       far.ends_with(" min from the entrance and back, 3.00 of them at the station; a day has 5.00. Give a longer day"))
       << far;
   EXPECT_EQ(refusal(5.5), "");
-  // A plan that was made is not lost by it.
+  // A plan that was made before is not lost by it.
   Evaluation made{.stations = corridor.stations, .values = {{"coverage", {0.5, 0}}}};
   const OnSite short_days =
       Yard().on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Corridor::kEntrance, .day_min = 5});
@@ -659,7 +659,7 @@ TEST(AccessWindows, SessionsScanRoomsWithinTheirHours) {
     EXPECT_EQ(std::ranges::count_if(session.order, [&](std::size_t k) { return halls.in_hall(k); }), 2);
   EXPECT_EQ(twice.visit->sessions[1].day, 2u);
 
-  // Without windows nothing changes but the time that is told.
+  // Without windows only the reported time changes.
   const Evaluation plain = halls.planned(Halls::options(60, 7 * 60, {}));
   ASSERT_EQ(plain.visit->sessions.size(), 1u);
   EXPECT_EQ(plain.visit->sessions[0].order, plain.visit->order);
@@ -797,7 +797,7 @@ TEST(StoreyTies, WaysAreLongerThanALengthWhereTheyAreLonger) {
   EXPECT_THROW(gallery.on_site.longer({{Vec3{1e9, 0, 0}}}, {}), Error);
 }
 
-// Those that nobody walks along are the links that are told, were each the only one between the storeys.
+// Links that nobody walks along are the ones reported if each is the only one between the storeys.
 TEST(StoreyTies, ArePastStairs) {
   const Gallery gallery;
   const std::vector<PlacedStation>& stations = gallery.network.stations;

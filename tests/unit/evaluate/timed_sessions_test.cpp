@@ -43,7 +43,7 @@ Town town_of(std::mt19937& random) {
   return town;
 }
 
-// Whether each minute of a stay is in one and the same of the hours, minute by minute.
+// True if a single one of the hours contains each minute of a stay, tested minute by minute.
 bool open_for(const std::vector<DayHours>& hours, double begin, double stay) {
   return hours.empty() || std::ranges::any_of(hours, [&](const DayHours& one) {
            for (double t = begin; t < begin + stay; ++t)
@@ -142,7 +142,7 @@ TEST(TimedSessions, AreAsShortAsEveryMinuteThatIsTriedInTheirOrder) {
 }
 
 TEST(TimedSessions, KeepTheirHoursAndTakeLittleMoreThanTheBestOfAll) {
-  // Shares of the minutes that the best of all sessions take, waiting among them.
+  // Upper limits on the minutes, relative to the best of all sessions, waiting included.
   constexpr double kMostMinutes = 1.5, kMeanMinutes = 1.02;
   std::mt19937 random(11);
   int bound_trials = 0, more_sessions = 0, alone = 0;
@@ -173,7 +173,7 @@ TEST(TimedSessions, KeepTheirHoursAndTakeLittleMoreThanTheBestOfAll) {
       EXPECT_TRUE(filled.sessions.empty());
       continue;
     }
-    // What is left is cut as a round.
+    // The remaining stops are cut as a round.
     RoundTimes rest;
     std::vector<std::size_t> left = filled.rest;
     std::erase_if(left, [&](std::size_t stop) { return std::ranges::find(free, stop) == free.end(); });

@@ -296,7 +296,7 @@ TEST(E57, ChecksumsCoverEveryByte) {
 TEST(E57, IndexNamesPacketsEvenlyHoweverManyThereAre) {
   const test::TemporaryFolder folder;
   for (const std::size_t packets : {std::size_t{1}, std::size_t{4}, std::size_t{5}, std::size_t{8}, std::size_t{37}}) {
-    // Through the sections themselves: with the 2048 entries of files the least that thins them is 128 MiB.
+    // Writes sections alone: with the 2048 entries of real files the smallest cloud to thin takes 128 MiB.
     E57PagedFile file(folder / "a.e57");
     E57Points points(file, {8, 8, 8, 8, 8, 8, 8, 8}, 4);
     constexpr std::uint64_t a_packet = (65'536 - 22 - 3) / 64;

@@ -122,7 +122,7 @@ TEST(MissedBcf, HasATopicForEachElementThatIsNotCaptured) {
   const std::string below = of(files, kBelow, "markup.bcf");
   EXPECT_NE(below.find("<Title>Not captured: IfcSlab Cellar &amp; &lt;yard&gt;</Title>"), std::string::npos) << below;
   EXPECT_NE(below.find("<Index>0</Index>"), std::string::npos) << "the largest first";
-  // What refers to each other has one name, and all of these differ.
+  // Files that refer to each other share a name, and all of these names differ.
   std::smatch topic, viewpoint;
   const std::string guid = "([0-9A-F]{8}-[0-9A-F]{4}-8[0-9A-F]{3}-[89AB][0-9A-F]{3}-[0-9A-F]{12})";
   ASSERT_TRUE(std::regex_search(markup, topic, std::regex("<Topic Guid=\"" + guid)));

@@ -252,7 +252,7 @@ TEST(PointCloudWriter, RefusesWrongUse) {
   EXPECT_THROW(writer.write(chunk_of(scan_position | scan_normal), 0), Error);
 }
 
-// What an evaluation tells of the files is what they take, by scanners of short and of long range.
+// An evaluation predicts the size of the files, for scanners of short and of long range.
 TEST(PointCloudWriter, FilesAreAsLargeAsAnEvaluationTells) {
   const test::TemporaryFolder folder;
   for (const double range_m : {130.0, 800.0}) {

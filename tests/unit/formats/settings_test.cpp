@@ -20,7 +20,7 @@
 namespace vantage {
 namespace {
 
-// How many members an aggregate has, so that none can be added without a line below.
+// Counts the members of an aggregate, so that none can be added without a line below.
 struct Anything {
   template <class T>
   operator T() const {  // never called: only asked whether it would do
@@ -48,7 +48,7 @@ template <class Struct>
 struct Change {
   std::string member;
   std::function<void(Struct&)> make;
-  bool decides = true;  // whether a run may not be resumed across it
+  bool decides = true;  // true if a run may not be resumed across it
   bool told = true;
 };
 
@@ -271,7 +271,7 @@ SearchMesh ground() {
           .triangles = {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// Identity of a run, and the settings in its results.
+// The identity of a run, and the settings in its results, must show each change.
 struct Told {
   std::string identity, json;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What assimp writes is read as what it was given.
+// Models that assimp writes are read as the models it was given.
 #include <assimp/cexport.h>
 #include <assimp/scene.h>
 

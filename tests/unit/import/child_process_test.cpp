@@ -26,7 +26,7 @@ class ChildProcessTest : public ImportTest {
   Ended shell(const std::string& script, const Limits& limits = {}) const {
     return importers::run_limited({"/bin/bash", "-c", script}, {}, {folder_ / "readable"}, limits);
   }
-  // What these lines of Python, each on its own, are let do: their numbers.
+  // Returns the numbers of the lines of Python that may run, each on its own.
   Ended python(const std::vector<std::string>& lines) const {
     std::string script = "import ctypes, mmap, os, resource, signal, socket, subprocess, sys, threading\n";
     for (std::size_t k = 0; k < lines.size(); ++k)
@@ -83,7 +83,7 @@ TEST_F(ChildProcessTest, KeepsOfErrorsTheirBeginning) {
 TEST_F(ChildProcessTest, EndsWhatTakesTooLong) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_TRUE(shell("sleep 60", {.wall_s = 1}).timed_out);
-  // Also one that has closed what it is listened to by.
+  // The limit also ends a program that has closed its output.
   EXPECT_TRUE(shell("exec >&- 2>&-; exec sleep 60", {.wall_s = 1}).timed_out);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(40));
   EXPECT_EQ(shell("while :; do :; done", {.cpu_s = 1}).signal, SIGXCPU);
@@ -130,7 +130,7 @@ TEST_F(ChildProcessTest, ReachesNoNetwork) {
   close(door);
 }
 
-// Lines of docs/evidence/reliability.md: what an importer is let do.
+// Actions that an importer may and may not do, by the lines of docs/evidence/reliability.md.
 TEST_F(ChildProcessTest, ChangesNothingOfAnyFile) {
   const std::string file = write("readable/model", "model").string(), other = (folder_ / "other").string();
   const auto before = std::filesystem::last_write_time(file);
@@ -154,7 +154,7 @@ TEST_F(ChildProcessTest, StartsNoProcessAndSignalsNone) {
   EXPECT_EQ(text(ended), "\n0 1 ");
 }
 
-// One that starts a program of its own: that one has the same sandbox, and ends with it.
+// A program that an importer starts has the same sandbox, and ends with it.
 TEST_F(ChildProcessTest, SpawnsWhereItMayInTheSameSandbox) {
   const std::string script =
       "import os\n"

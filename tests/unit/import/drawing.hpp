@@ -16,8 +16,8 @@ class DrawingText {
   struct Vertex {
     double x, y, bulge = 0;
   };
-  // What the entities that follow have in common. `below`: seen from below, so that their object coordinates have the
-  // x axis turned; the drawing is the same.
+  // Properties that the following entities share. `below`: seen from below, so that their object coordinates have the x
+  // axis turned; the drawing is the same.
   struct Look {
     bool below = false, invisible = false, on_sheet = false;
   };
@@ -62,7 +62,7 @@ class DrawingText {
               double degrees = 0, const Array& array = {1, 1, 0, 0});
   // An entity of any type, with its groups as text; lengths in units.
   void raw(const std::string& type, const std::string& layer, const std::string& groups = {});
-  // What is drawn from here on belongs to a block, until `end_block`.
+  // Puts all that is drawn from here on into a block, until `end_block`.
   void begin_block(const std::string& name, double base_x = 0, double base_y = 0);
   void end_block();
   std::string str() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One room or two, drawn by each form of entity that DXF has: what is read is what is drawn, or its loss is told.
+// One room or two, drawn by each form of entity that DXF has: the importer reads it all, or reports the loss.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid drawings of a row of rooms: form of each wall, unit, place, blocks, visibility. Their truth is known by
-// construction; what is read equals it, and what is left out is told. VANTAGE_SEEDS=first..last chooses the drawings.
+// Random valid drawings of a row of rooms: form of each wall, unit, place, blocks, visibility. Their truth is known:
+// the result equals it, and the notes list all that is left out. VANTAGE_SEEDS=first..last chooses the drawings.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -167,7 +167,7 @@ class RandomPlan {
     room.area -= area;
   }
 
-  // What does not show, or is not read, across a room.
+  // Draws entities across a room that are invisible, or that the importer does not read.
   void decoys(double wide) {
     const double x = std::min(wide, rooms.front().area / deep_) / 2;
     const auto across = [&](const char* layer) {

@@ -51,7 +51,7 @@ void expect_box(const Box& box, const Vec3& low, const Vec3& high) {
   }
 }
 
-// Whether something stands in the way of a level line, by the triangles of the scene.
+// True if a triangle of the scene crosses a level line.
 bool blocked(const Scene& scene, const Vec3& from, const Vec3& to) {
   const SceneData& data = scene.data();
   const Vec3 origin = data.origin;
@@ -302,7 +302,7 @@ std::filesystem::path two_halls(const std::filesystem::path& folder, int lines, 
   return folder;
 }
 
-// Parts of the floor that no way leads to, planned or not.
+// Parts of the floor that no path leads to, planned or not.
 std::size_t not_entered(const Scene& scene) {
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);

@@ -40,7 +40,7 @@ TEST_F(MeshImportTest, ObjKeepsGroupsAndMaterials) {
   EXPECT_NEAR(mesh_named(scene, "wall").diffuse, 0.25, 1e-6);
   EXPECT_NEAR(mesh_named(scene, "window").diffuse, 0.5, 1e-6);
   EXPECT_EQ(mesh_named(scene, "wall").triangle_count, 2u);
-  EXPECT_EQ(mesh_named(scene, "bare").diffuse, 0.5);  // has no material, and takes what scenes take
+  EXPECT_EQ(mesh_named(scene, "bare").diffuse, 0.5);  // has no material, and takes the default of scenes
   EXPECT_EQ(scene.triangle_count(), 5u);
   expect_bounds(scene, {0, -2, 0}, {4, 0, 3});
 }

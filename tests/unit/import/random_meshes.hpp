@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid files of meshes, and what is in them.
+// Random valid files of meshes, with their known content.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct RandomMeshFile {
 // Writes one to a folder. Prisms with concave outlines, some with a hole, near the origin or at national coordinates.
 RandomMeshFile write_random_mesh(std::uint64_t seed, const std::filesystem::path& folder);
 
-// What a scene holds, by the names of its meshes; `all`: as one, by "".
+// Returns the measures of a scene's meshes, by their names; `all`: of all as one, by "".
 std::map<std::string, Measures> measures_of(const Scene& scene, bool all);
 
 }  // namespace vantage::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid files of meshes are read as what they hold: each solid by its name, where it is, as large as it is, and
-// with its faces outward. VANTAGE_SEEDS=first..last chooses the files.
+// Random valid files of meshes are read in full: each solid with its name, place and size, and with its faces outward.
+// VANTAGE_SEEDS=first..last chooses the files.
 #include "random_meshes.hpp"
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture as a reader of it sees it: what stands on the paper, in which colour.
+// A picture as its reader sees it: the marks on the paper, by colour.
 #pragma once
 
 #include <algorithm>

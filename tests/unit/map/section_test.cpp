@@ -23,7 +23,7 @@ class Builder {
     for (const Vec3& v : {a, b, c, d}) positions.push_back(v + kPlace);
     triangles.insert(triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
   }
-  // Whether (x, y) is solid at height z.
+  // True if (x, y) is solid at height z.
   bool solid(double x, double y, double z) const {
     const Scene scene = Scene::from_triangles(positions, triangles);
     const Section section = section_at(scene.data(), kWindow, z + kPlace.z);

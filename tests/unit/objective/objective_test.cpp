@@ -252,7 +252,7 @@ TEST(Requirement, ReadsWhatIsAsked) {
   const Requirement few = make_requirement("stations<=8", {.stations_min = 4, .stations_max = 12});
   EXPECT_EQ(few.missed_by(10), 0.25);
   EXPECT_EQ(few.missed_by(8), 0);
-  // What is attainable is known to some tenths of a per cent: what is printed as the limit meets it.
+  // Attainable coverage is known to some tenths of a per cent: a share that is printed as the limit meets it.
   const Requirement share = make_requirement("capture>=0.9");
   EXPECT_EQ(share.missed_by(0.89998), 0);
   EXPECT_EQ(share.missed_by(0.8996), 0);

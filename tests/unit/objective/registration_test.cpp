@@ -757,7 +757,7 @@ TEST(RegistrationError, TakesTheTiltOfTheScannersIfAsked) {
   EXPECT_NEAR(load_scanner("rtc360").tilt_accuracy.in_degrees(), 0.05, 1e-12);
 }
 
-// So many stations along a corridor that most pairs see nothing together.
+// Stations stand along a corridor, so many that most pairs see nothing together.
 TEST(RegistrationError, OfManyStationsIsThatOfTheWholeCovariance) {
   for (const double tilt : {0.05, 0.0}) {
     Made made;

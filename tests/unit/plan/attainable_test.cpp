@@ -52,7 +52,7 @@ struct Expected {
   double attainable = 0, captured = 0;
 };
 
-// By the definition, from counts of every candidate, over some voxels.
+// Computes the shares by their definition, from counts of every candidate, over some voxels.
 Expected by_definition(const Simulator& simulator, const std::vector<std::vector<std::uint32_t>>& candidates,
                        const std::vector<std::uint32_t>& network, std::span<const std::uint32_t> voxels) {
   double wanted = 0, attainable = 0, captured = 0;

@@ -101,8 +101,8 @@ TEST(StandAside, SwapsAStationThatIsInTheWay) {
   EXPECT_EQ(choice.network.chosen, before.network.chosen);
 }
 
-// A share of so much, of which samples show more or less: the bound is above it in a share of the samples that the
-// normal distribution gives for as many standard errors.
+// A share that samples overestimate or underestimate. The bound lies above it in as many samples as the normal
+// distribution gives for so many standard errors.
 TEST(LeastShare, IsRarelyAboveTheTruth) {
   std::mt19937 rng(3);
   for (const int size : {20, 100, 1000}) {
@@ -163,7 +163,7 @@ TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(test::apart_m(stations[i].position, stations[j].position), 1);
 }
 
-// What is asked of the cells in one corner, of which the fewest stations capture less.
+// The requirement is on the cells in one corner, of which the fewest stations capture less.
 TEST(CaptureMeshes, AddsTheStationsThatItTakesAndNoneMore) {
   FewestChoice choice = chosen(floor_problem(0.5), 12);
   const std::size_t before = choice.placed();
@@ -249,7 +249,7 @@ TEST(Choose, TakesTheMostCoverageOfSoManyStations) {
   FewestChoice choice = chosen(problem, 10);
   ASSERT_EQ(choice.placed(), 3u);
   EXPECT_GE(choice.network.link, 0.1) << "and linked";
-  // No swap of one station among the linked, apart networks of as many has more.
+  // No swap of one station among the linked, spaced networks of as many stations has more.
   const CoverProblem asked_of = cover_problem(choice);
   for (std::size_t at = 0; at < 3; ++at)
     for (std::size_t k = 0; k < choice.table.stations().size(); ++k) {
@@ -348,7 +348,7 @@ struct Storeys {
       all += captures[k], own += std::ranges::find(some, k) != some.end() ? captures[k] : 0;
     return own / all;
   }
-  // The least number of candidates that capture so much and are connected on foot, among all sets of them.
+  // Least number of candidates that capture so much and are connected on foot, among all sets of them.
   std::size_t fewest_on_foot(double coverage) const {
     std::size_t fewest = z.size() + 1;
     for (std::uint32_t bits = 1; bits < (1u << z.size()); ++bits) {
@@ -453,8 +453,8 @@ TEST(KeepToStairs, AsManyStationsAsAreAskedFor) {
   EXPECT_TRUE(storeys.connected_on_foot(choice.network.chosen));
 }
 
-// Links past the stair between candidates that others connect share nothing; all others share what they did. Overlaps
-// that are taken in, and candidates that come later, change which these are.
+// Links past the stair between candidates that others connect share nothing; all others keep their share. Overlaps that
+// are taken in, and candidates that come later, change which these are.
 TEST(CandidateTable, LeavesOutTiesWhereOtherLinksConnect) {
   std::mt19937 rng(11);
   for (int round = 0; round < 20; ++round) {
@@ -601,7 +601,7 @@ TEST(LookAlongWays, LeavesAChoiceThatHasWhatIsAskedAlone) {
   EXPECT_EQ(choice.network.chosen, chosen);
 }
 
-// The choice without its last stations, of which it has to have at most `most`.
+// The choice without its last stations; it may have at most `most`.
 FewestChoice short_of(FewestChoice choice, std::size_t missing, std::size_t most) {
   choice.asked.most = most;
   choice.network.chosen.resize(choice.network.chosen.size() - missing);

@@ -62,7 +62,7 @@ TEST_F(FewestVerify, RepairsWhatEveryRayShowsToBeShort) {
   EXPECT_NEAR(choice.margins.coverage, 1.25 * short_of, 1e-9);
   EXPECT_EQ(choice.network.violation, 0);
   EXPECT_GE(choice.network.coverage, 0.7 + 1.25 * short_of);
-  // The sample goes on to flatter, so that it may take more than one step.
+  // The sample keeps overestimating, so that it may take more than one step.
   for (int k = 0; k < 10 && verified.best()->violation > 0; ++k) {
     verify(choice, verified);
     repair(choice, verified, oracle, {});
@@ -103,7 +103,7 @@ TEST_F(FewestVerify, MendsLinksThatEveryRayShowsToBeTooWeak) {
   EXPECT_FALSE(repair(choice, verified, oracle, {})) << "nothing is short";
 }
 
-// Every ray shows all links between the candidates to be too weak, so only positions between them link stations.
+// Every ray shows all links between the candidates to be too weak. Only positions between them link stations.
 TEST_F(FewestVerify, LooksBetweenStationsThatNoCandidateLinks) {
   const auto candidates = test::floor_candidates(3);
   const auto is_candidate = [&](const PlacedStation& one) {
@@ -187,7 +187,7 @@ TEST_F(FewestVerify, LeavesAloneWhatEveryRayShowsAsItWasKnown) {
 }
 
 TEST_F(FewestVerify, TakesAStationFewerWhereTheSampleIsKnownToBeRight) {
-  // Chosen with a margin of a tenth, which is a station too many.
+  // The choice has a margin of a tenth, which makes it a station too many.
   const std::size_t enough = choice.placed();
   choice.margins.coverage = 0.1;
   choose(choice, {}, {});

@@ -71,7 +71,7 @@ class FloorEvaluator final : public NetworkEvaluator {
   explicit FloorEvaluator(const Measures& measures) : measures_(measures) {}
 
   double overstated = 0;
-  // What every ray shows of the overlap of two stations, by the sampled one.
+  // Returns the overlap of two stations by every ray, given the sampled one.
   std::function<float(const PlacedStation&, const PlacedStation&, float)> exact_overlap = {};
   std::function<double(const PlacedNetwork&)> penalty = {};  // that only every ray shows, of coverage
 

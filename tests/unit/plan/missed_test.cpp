@@ -90,7 +90,7 @@ TEST(WhyMissed, TellsEachReason) {
     const std::uint32_t most = std::max(field.count[i], other.count[i]);
     EXPECT_EQ(why, expected[patch.mesh]) << i << " of wall " << patch.mesh;
     EXPECT_EQ(status[i].captured, 0);
-    // And rays agree: these are all the stations there are.
+    // Rays agree, since these are all the stations there are.
     if (why == WhyMissed::hidden || why == WhyMissed::far) {
       EXPECT_EQ(most, 0u);
       EXPECT_EQ(status[i].attainable, 0);

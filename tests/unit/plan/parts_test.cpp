@@ -65,7 +65,7 @@ TEST(Parts, AreCapturedByTheFewestStationsThatTheyAreAskedOf) {
   EXPECT_LT(one.value("capture(IfcSlab*)"), 0.9) << "or nothing was to be asked for";
   EXPECT_GE(two.value("capture(IfcSlab*)"), 0.9);
   EXPECT_GE(two.value("capture(!IfcSlab*)"), 0.6);
-  // By what was attainable from the candidates and the stations, on every voxel.
+  // Counts what the candidates and the stations can attain, on every voxel.
   AttainableCounts attainable(site.simulator(), site.simulator().voxel_count());
   attainable.tell_of(site.simulator(), "IfcSlab*");
   raise_attainable(attainable, site.simulator(), to_network(both.candidates->stations()));

@@ -13,7 +13,7 @@ using Values = std::vector<std::vector<double>>;
 TEST(SampleStatistics, MeansOverSamplesAndWhatNewcomersAreToldWith) {
   SampleStatistics statistics(1);
   const std::vector<ParetoPoint> population{{.x = {1}, .f = {0}}, {.x = {2}, .f = {0}}};
-  // The first sample after the one that they were taken in by, which does not count.
+  // The first sample after the one that took them in, which does not count.
   Values seen{{0.5}, {0.7}};
   statistics.average(population, seen);
   EXPECT_EQ(seen, (Values{{0.5}, {0.7}}));
@@ -28,7 +28,7 @@ TEST(SampleStatistics, MeansOverSamplesAndWhatNewcomersAreToldWith) {
   statistics.correct(newcomer);
   EXPECT_DOUBLE_EQ(newcomer[0], 0.3);
   EXPECT_EQ(statistics.state().known.size(), 2u);
-  // A third one, by which the first is known thrice and a newcomer once.
+  // A third sample: the first network is known on three, and a newcomer on one.
   const std::vector<ParetoPoint> next{{.x = {1}, .f = {0}}, {.x = {4}, .f = {0}}};
   seen = {{0.4}, {0.3}};
   statistics.average(next, seen);
@@ -43,10 +43,10 @@ TEST(SampleStatistics, AllSamplesTogetherAtTheLevelOfTheLast) {
     Values seen{{value}};
     statistics.average(known, seen);
   }
-  Values other{{0.5}, {0.9}};  // a fourth, which another one is known by as well
+  Values other{{0.5}, {0.9}};  // a fourth sample, on which another network is known as well
   const std::vector<ParetoPoint> both{known[0], {.x = {3}, .f = {0}}};
   statistics.average(both, other);
-  // Means of 0.5 and 0.9, which the last sample, four times as large, puts at 0.4 and 0.6: they are 0.2 too high.
+  // Means of 0.5 and 0.9 that the last sample, four times as large, estimates at 0.4 and 0.6: they are 0.2 too high.
   const std::vector<ParetoPoint> kept{both[0], both[1], {.x = {2}, .f = {0}}};
   const auto pooled = statistics.pooled(kept, {{{0.4, 0.02}}, {{0.6, 0.02}}, {{0.2, 0.03}}}, 4);
   EXPECT_NEAR(pooled[0][0].value, (4 * 0.3 + 4 * 0.4) / 8, 1e-15);

@@ -157,7 +157,7 @@ TEST_P(EveryProblem, EndsWithVoxelsThatNothingWasChosenBy) {
   }
 }
 
-// A network that stays over many draws is as good by every ray as the search says; a single draw favours the networks
+// A network that stays over many draws is as good by every ray as in the search; a single draw favours the networks
 // that it chose.
 TEST(Search, SamplesDrawnAnewDoNotFlatter) {
   const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");

@@ -41,7 +41,7 @@ TEST_F(SeedNetworks, GreedyTakesWhatAddsMost) {
   ASSERT_EQ(result.stations.size(), 4u);
   ASSERT_EQ(result.coverage.size(), 4u);
   EXPECT_FALSE(result.cancelled);
-  // Every candidate tried again at every step, by every ray.
+  // Reference: every candidate is tried again at every step, by every ray.
   const auto candidates = candidate_positions(site, 40);
   const auto coverage_of = [&](const std::vector<PlacedStation>& network) {
     return coverage(simulator.evaluate(to_network(network)), simulator.goal_density());

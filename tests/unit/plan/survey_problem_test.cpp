@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Problems by name and by list, and what becomes of values in a search.
+// Problems by name and by list, and the fate of values in a search.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -66,7 +66,7 @@ TEST(ScaledObjectives, OfWhatBreaksARequirementLieBehind) {
   const auto worst = f(0, 0, 0), near = f(0, 0, 0.01), far = f(1, 1, 0.2), equal = f(0.5, 0.5, 0.2);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_LT(worst[k], near[k]);  // any that keeps them goes before any that does not
-    EXPECT_LT(near[k], far[k]);    // then who misses a tenth less, whatever else it is worth
+    EXPECT_LT(near[k], far[k]);    // then a network that violates by a tenth less, whatever its other values
     EXPECT_LT(far[k], equal[k]);   // and of equals the better one
   }
 }

@@ -46,7 +46,7 @@ inline PlacementOracle toy_site() {
 }
 
 // Coverage: how near the closest station is to each of 8 targets on a circle. Overlap: how close the stations stand
-// together. Other measures are asked themselves, of counts that say the same.
+// together. Other measures compute their values from counts that agree with these.
 class ToyEvaluator final : public NetworkEvaluator {
  public:
   Measures measures = measures_of(coverage_overlap_fix(4));

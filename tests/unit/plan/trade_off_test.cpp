@@ -83,7 +83,7 @@ struct Corridor {
 };
 
 TEST(KeepWhatPays, LeavesAFarCorner) {
-  // By themselves four stations capture all: three at this end and one at the other.
+  // Without links four stations capture all: three at this end and one at the other.
   const UnitsToVisit square_metres{.units = {}, .least_m2 = 0, .element_m2 = 1};
   FewestChoice choice = Corridor::choice(1);
   choice.to_visit = &square_metres;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as files: what is in them, and what is not.
+// The report as files: content that must be there, and content that must not.
 #include "report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(Report, ThePageNamesNoAddressToLoadFrom) {
     EXPECT_EQ(count(page.substr(0, page.find("<script")), loads), 0u) << loads;
   EXPECT_EQ(count(page, "alert(1)</script>"), 0u);
   EXPECT_EQ(count(page, "<!--.glb"), 0u);
-  // each script ends once: none by what a name holds
+  // names in the content end no script
   EXPECT_EQ(count(page, "<script"), count(page, "</script>"));
 }
 
@@ -336,7 +336,7 @@ TEST(Report, EachSessionHasItsMapAndItsList) {
   EXPECT_GE(told(with, {"charged", "batteries:", "2"}), 1) << "and over each session's stations";
   EXPECT_EQ(report_json(report_of(powered, survey.site, {}))["networks"][0]["visit"]["sessions"][1]["batteries"], "2");
 
-  // Where hours keep stations out of all sessions, times are those of the others.
+  // If hours keep stations out of all sessions, times are those of the others.
   Evaluation fewer = found;
   fewer.visit->sessions.pop_back();
   const Report of_fewer = report_of(fewer, survey.site, {});

@@ -98,7 +98,7 @@ TEST(WallCorners, RoundColumnsAndRailsHaveNone) {
   EXPECT_TRUE(WallCorners(column).corners().empty());
 }
 
-// All that the class says, without its cells.
+// The results of the class, without its cells.
 struct BruteForce {
   Lines lines;
   std::vector<std::array<double, 2>> corners;

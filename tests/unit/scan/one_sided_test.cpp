@@ -166,7 +166,7 @@ TEST(OneSided, ACurvedSheetHasTwoSurfaces) {
   for (const double share : shares(around, {0.5, 4, 1.7}, {-1, 5, 1.5})) EXPECT_GT(share, 0.9);
 }
 
-// Both heads see the treads; that one is behind the risers does not matter.
+// Both heads see the treads; it does not matter that one is behind the risers.
 TEST(OneSided, StationsOnAStairShareItsTreads) {
   QuadScene scene;
   for (int k = 0; k < 9; ++k) {

@@ -202,7 +202,7 @@ TEST(Presets, HaveABeam) {
   }
 }
 
-// What every preset detects is known, or marked as assumed. A range that the maker states for a reflectivity is reached
+// Each preset's detection is known, or marked as assumed. A range that the maker states for a reflectivity is reached
 // on it, and on no darker surface.
 TEST(Presets, HaveARangeOfDetection) {
   for (const ScannerPreset& preset : list_scanners(presets)) {

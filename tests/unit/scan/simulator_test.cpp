@@ -728,7 +728,7 @@ struct SeveralCallers {
   std::vector<NetworkCounts> exact = simulator.evaluate_each(networks);
   std::vector<NetworkCounts> sampled = simulator.evaluate_sampled(networks, {.voxels = 50});
 
-  // Whether calls give for network k what they gave before.
+  // Returns true if calls give the same as before for network k.
   bool agrees(std::size_t k) {
     const auto same = [](const NetworkCounts& a, const NetworkCounts& b) {
       return std::tie(a.saturated, a.partial_points, a.rays, a.points_on_surveyed, a.seen, a.shared) ==
@@ -785,7 +785,7 @@ TEST(Simulator, RefusesToBeCalledByACallbackOfItsOwnCall) {
   EXPECT_TRUE(callers.agrees(0));  // and it serves again
 }
 
-// As other processes would share the work, but it does all of it itself.
+// Stands for other processes that share the work, but leaves all of it to the simulator's own tracer.
 struct Counted final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
                                std::uint64_t fingerprint) override {

@@ -23,7 +23,7 @@ double area(const ConvexPolygon& polygon) {
   for (std::size_t k = 2; k < polygon.size(); ++k) twice += twice_area(polygon[0], polygon[k - 1], polygon[k]);
   return twice / 2;
 }
-// Whether p is left of every edge by more than `margin`, which may be negative.
+// True if p is left of every edge by more than `margin`, which may be negative.
 bool inside(const ConvexPolygon& polygon, const PlanePoint& p, double margin) {
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const PlanePoint &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];

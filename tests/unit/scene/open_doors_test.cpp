@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaves of doors that are nodes of their own, or connected parts of a larger mesh, and what only looks like one.
+// Leaves of doors that are nodes of their own, or connected parts of a larger mesh, and parts that only look like one.
 #include "scene/open_doors.hpp"
 
 #include <gtest/gtest.h>

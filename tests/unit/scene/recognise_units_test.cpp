@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and the up axis: what is recognised, what is asked for, and what options and marks decide.
+// Units and the up axis: those that are recognised, those that need a question, and the effect of options and marks.
 #include "scene/recognise_units.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class House {
     for (const Vec3& corner : test::box_corners(low, high)) points.push_back(corner);
     for (const Triangle& t : test::box_triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
-  // As the loader reads it by glTF's rule, where the file has it in this unit, with this axis up.
+  // Loads the file by glTF's rule, when it is in this unit with this axis up.
   RawScene written(Unit unit, UpAxis up) const {
     RawScene raw;
     for (const Vec3& p : points) {

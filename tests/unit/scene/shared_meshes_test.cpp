@@ -359,7 +359,7 @@ std::vector<std::array<Float3, 3>> sorted_triangles(const Scene& scene, std::siz
   return all;
 }
 
-// What is surveyed; all else blocks.
+// Patterns of surveyed meshes; all others block.
 const std::vector<std::vector<std::string>> kSurveyed{{"ground"}, {"box *"}, {"box 0", "box 4"}, {"ground", "box 1"}};
 
 TEST(SharedMeshes, SurfacesOfBothRolesInOnePlaneAreCutAtEachPlace) {

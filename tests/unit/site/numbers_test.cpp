@@ -144,7 +144,7 @@ TEST_F(Positions, OfQuestionsAreFiniteAndInReach) {
   }
 }
 
-// What a row reads, its check takes; what it refuses, its check refuses too where the options hold it.
+// A row's check accepts each value that the row reads, and refuses each other value that the options can hold.
 template <class Options>
 void expect_consistent(const SettingTable<Options>& table) {
   for (const SettingRow<Options>& row : table) {

@@ -121,7 +121,7 @@ std::string section(const std::string& title, const SettingTable<Options>& table
   return text;
 }
 
-// docs/settings.md is made of the tables. Where it is not, the page as it should be is in the folder of the test.
+// The tables make docs/settings.md. If it differs, the folder of the test has the page as it should be.
 TEST(SettingTables, AreAPageOfTheDocumentation) {
   const std::string page =
       "# Settings\n\n"

@@ -48,7 +48,7 @@ TEST(SiteChanges, SomebodyWhoStoodStillInOneScanDoesNotCount) {
   ASSERT_EQ(gone.passing.size(), 1u);
   EXPECT_NEAR(gone.passing[0].box.max.z, person.max.z, 0.1);
   EXPECT_EQ(gone.passing[0].scans, 1u);
-  // The order of the scans says nothing; what both saw stands there, and so does what no other scan could see.
+  // The order of scans does not matter. Things that both saw stand there, and so do those that only one could see.
   EXPECT_EQ(changes_of(model, std::array{second, first}).passing.size(), 1u);
   EXPECT_EQ(changes_of(model, std::array{first, again}).things.size(), 1u);
   const SiteChanges alone = changes_of(model, std::array{first, scan_at(model, {11, 4.5, 1.85})});

@@ -152,7 +152,7 @@ TEST(DeviceRays, AnswersAreTheProcessorsToTheBit) {
   }
 }
 
-// A closed box of many triangles, from inside at its corners and edges: each ray is close to call.
+// A closed box of many triangles, seen from inside at its corners and edges: each ray is a close call.
 TEST(DeviceRays, NoRayPassesBetweenTriangles) {
   Triangles box;
   constexpr int n = 12;
@@ -342,7 +342,7 @@ TEST(DeviceRays, ErrorsAreThoseOfTheProcessor) {
   EXPECT_EQ(RayTracer(scene, {Engine::automatic}).engine().engine, best->engine);
 }
 
-// A device that answers with the index of each ray's origin, and fails when it is told to.
+// A device that answers with the index of each ray's origin, and fails on request.
 struct Fragile {
   int made = 0, lose_builds = 0, lose_calls = 0;
   std::size_t room = 1'000'000, finds = 0;
@@ -380,7 +380,7 @@ struct Batches {
   RayBatches batches{[this] { return std::make_unique<FragileFinder>(fragile); }};
   std::size_t largest = 0;
 
-  // Whether every ray got its own answer.
+  // Returns true if every ray got its own answer.
   bool run(std::size_t many) {
     std::vector<std::uint32_t> answers(many);
     const bool whole = batches.run(many,

@@ -264,7 +264,7 @@ TEST(RayTracer, SharedMeshesAreMetWhereTheyStand) {
   EXPECT_GT(std::ranges::count_if(once.range_m, [](double range) { return range < kInfinity; }), 5000);
 }
 
-// Whichever engine scans, its rays meet what the same rays meet here, but for rounding at edges.
+// Rays meet the same as in the scans of every engine, except for rounding at edges.
 TEST(RayTracer, MeetsWhatScansOfEveryEngineMeet) {
   const Scene scene = random_soup(300, kFar).scene();
   const RayTracer tracer(scene);

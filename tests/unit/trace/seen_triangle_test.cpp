@@ -19,7 +19,7 @@ std::vector<Float3> blob(RandomStream& random) {
   return corners;
 }
 
-// From ones of which nothing is certain to a decimetre wide.
+// Slivers, from widths at which nothing is certain up to a decimetre.
 std::vector<Float3> sliver(RandomStream& random) {
   std::vector<Float3> corners = blob(random);
   corners[2] = {(corners[0].x + corners[1].x) / 2 + test::between(random, 1e-4f, 0.1f),
@@ -99,7 +99,7 @@ TEST(SeenTriangle, IsCertainOfSpecks) {
   EXPECT_GT(found.certain, found.hits / 3);
 }
 
-// Each ray of a cone has what the cone has, and a plane just behind the triangle is known to be.
+// Each ray of a cone has the properties of the cone, and a plane just behind the triangle is recognised.
 TEST(SeenTriangle, KnowsOfAConeWhatItKnowsOfItsRays) {
   RandomStream random(81);
   const auto unit = [](const Vec3& p) { return p * (1 / std::sqrt(dot(p, p))); };

@@ -81,8 +81,8 @@ TEST(SharedStations, AreTracedOnceWhereThereIsRoom) {
   const std::vector<std::vector<TraceStation>> networks{{a, b}, {a, c}, {b, c}, {}, {a, b, b}};
   EXPECT_EQ(traced(quiet.scanners, networks, 3), 3u);
   EXPECT_EQ(traced(quiet.scanners, networks, 0), 9u);
-  // With room for one, the station needed next stays: a for the second network, then b for its own other place and for
-  // the fourth.
+  // With room for one, the cache keeps the station needed next: a for the second network, then b for its own other
+  // place and for the fourth.
   EXPECT_EQ(traced(quiet.scanners, networks, 1), 6u);
   const SharedStations shared(quiet.scanners, networks, 0);
   EXPECT_EQ(std::vector<std::size_t>(shared.order().begin(), shared.order().end()),

@@ -341,7 +341,7 @@ TEST(Summary, BeginsWithWhatEndedAPlanAndWhatTheNextStationAdds) {
       << "it has it";
 }
 
-// Nobody asked for that share, so nothing speaks of one that was asked for.
+// Nobody asked for that share, so no line mentions a requested one.
 TEST(Summary, SaysWhatLinksLeaveOutOfWhatPays) {
   PlanResult result = fewest_result(21, {0.86, 0.002}, 0.96);
   result.pays = {.least_m2 = 25, .stations = 19, .capture = 0.96};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small point clouds by hand, and what a reader makes of them.
+// Small point clouds by hand, and the results of reading them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// E57 files with what vantage's own writer never writes: fields of any width, packets whose streams are out of step.
+// E57 files that vantage's own writer never makes: fields of any width, packets whose streams are out of step.
 #pragma once
 
 #include <cstdint>

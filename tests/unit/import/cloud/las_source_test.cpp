@@ -156,7 +156,7 @@ TEST_F(LasSystems, WithoutMetresAreRefused) {
   });
   expect_refused_for("middle of the earth", [&] { with(34735, keys({{1024, 3}})); });
   expect_refused_for("point south and west", [&] { with(34735, keys({{1024, 1}, {3072, 5513}})); });
-  // What says nothing of lengths leaves them open.
+  // The unit stays open if nothing in the file states one.
   EXPECT_FALSE(with(2112, "a note")->metric());
   EXPECT_EQ(with(2112, "a note")->notes().size(), 1u);
   EXPECT_FALSE(with(34735, keys({{1024, 1}}))->metric());

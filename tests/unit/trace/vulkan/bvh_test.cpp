@@ -55,7 +55,7 @@ Soup nested_soup() {
 // its stack. A traversal leaves one child there at each inner node.
 class Walk {
  public:
-  // From a node on. Of a tree that places meshes, `placed` has the corners of each placement, where they stand.
+  // Walks from a node on. In a tree that places meshes, `placed` has the corners of each placement, where they stand.
   explicit Walk(const Bvh& bvh, std::uint32_t root = 0, std::span<const std::vector<Float3>> placed = {})
       : bvh_(bvh), placed_(placed), seen_(bvh.triangles.size()), places_(placed.size()) {
     node(root, 1);
