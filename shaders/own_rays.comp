@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds what rays of a caller's own meet, where float arithmetic is sure of it: one thread per ray.
+// Finds the hits of a caller's own rays, if float arithmetic is certain of them: one thread per ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/crossing.glsl"
@@ -12,14 +12,14 @@ layout(push_constant, scalar) uniform Push { OwnRaysPush push; };
 
 float infinite() { return uintBitsToFloat(0x7F800000u); }
 
-// A walk has found this so far.
+// State of a walk.
 struct Found {
   float near, far;  // interval of the nearest sure hit; nothing beyond its end matters
   float other;      // least distance at which any other triangle may be hit
   uint what;        // triangle of the nearest sure hit, or the number of sure hits
 };
 
-// Adds what is known of one more triangle. Returns whether nothing else can change the answer.
+// Adds one more triangle. Returns true if nothing else can change the answer.
 bool take(inout Found found, OwnRay ray, Crossing met, uint triangle) {
   if (!met.possible || met.far <= ray.from || met.near > ray.range) return false;
   const bool sure = met.sure && met.near > ray.from && met.far <= ray.range;
@@ -41,8 +41,8 @@ bool take(inout Found found, OwnRay ray, Crossing met, uint triangle) {
   return question == own_rays_blocked && sure;
 }
 
-// void find(inout Found found, OwnRay ray, float start): calls take() for every triangle numbered below push.end that
-// the ray may meet from `start` to found.far. Of each engine.
+// Each engine defines void find(inout Found found, OwnRay ray, float start): it calls take() for every triangle
+// numbered below push.end that the ray may meet from `start` to found.far.
 #include "find.glsl"
 
 void main() {
@@ -55,7 +55,7 @@ void main() {
     push.answers.at[k] = ray.range == own_ray_open ? open_answer : nothing;
     return;
   }
-  // Limits by more than their own rounding. Where nothing is found, `other` tells of doubtful triangles.
+  // Limits are widened by more than their own rounding. If no hit is sure, `other` is the first doubtful one.
   Found found = Found(infinite(), ray.range * (1.0 + doubt_of_depth), infinite(), nothing);
   find(found, ray, max(ray.from * (1.0 - doubt_of_depth), 0.0));
   bool open = found.other < infinite();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces counts and masks of all voxels to the sums behind coverage (equation 8) and overlap (equation 11). Integers
-// only, so the order does not matter.
+// Reduces counts and masks of all voxels to the sums for coverage (equation 8) and overlap (equation 11). Uses only
+// integers, so the order does not matter.
 //
-// Masks of reduce_voxels voxels are turned into one bit string per station; pairs are then counted 32 voxels at a time.
+// Turns masks of reduce_voxels voxels into one bit string per station; then counts pairs 32 voxels at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -21,7 +21,7 @@ shared uint any_seen[reduce_voxels];  // per subgroup
 shared uint flags[2];
 shared uint sums[6];
 
-// Pair number to (i, j), i < j, in the order (0, 1), (0, 2), …, (1, 2), …
+// Returns (i, j), i < j, for a pair number, in the order (0, 1), (0, 2), …, (1, 2), …
 uvec2 pair_of(uint p, uint n) {
   uint i = 0u;
   while (p >= n - 1u - i) {
@@ -83,14 +83,14 @@ void main() {
     counts_of[round] = voxel < push.voxel_count ? push.counts.at[counts + voxel] : 0u;
     if (counts_of[round] > 0u) some |= 1u << round;
   }
-  // Long stretches of voxels are often unseen, and a voxel without points has no stations.
+  // Skips long stretches of unseen voxels, which are frequent; a voxel without points has no stations.
   const uint some_of_subgroup = subgroupOr(some);
   if (subgroupElect()) any_seen[gl_SubgroupID] = some_of_subgroup;
   barrier();
   uint some_of_all = 0u;
   for (uint g = 0u; g < gl_NumSubgroups; ++g) some_of_all |= any_seen[g];
 
-  // All threads do the same rounds, so all reach the barriers.
+  // All threads do the same number of rounds, so all reach the barriers.
   [[dont_unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces station masks to the sums behind the registration error, as src/trace/registration_sums.cpp does: the same
-// roundings in the same order up to whole numbers, whose sum does not depend on the order.
+// Reduces station masks to the sums for the registration error, as src/trace/registration_sums.cpp does: with the same
+// roundings in the same order up to integers, whose sum does not depend on the order.
 //
 // A workgroup processes register_voxels voxels of one network at a time. First its threads compute the weight of each
 // station at each voxel; then each thread sums one pair of stations over them, in its own registers.
@@ -26,10 +26,10 @@ shared float weights[register_voxels * stations_at_most];  // 1/s²; below 0 if 
 shared float scales[2u * register_voxels];  // units / Σ w of each side
 shared int products[register_voxels * pair_sums];
 shared int surface[register_voxels * 4u];  // weight and place
-shared float means[2u * register_voxels * instrument_errors];  // of what errors move a plane by, over its stations
+shared float means[2u * register_voxels * instrument_errors];  // mean movement of a plane by errors
 shared uint any_seen;
 
-// 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
+// Returns 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
 float weight_of(RegistrationPatch plane, vec3 head) {
   precise float x = head.x - plane.point.x;
   precise float y = head.y - plane.point.y;
@@ -71,7 +71,7 @@ float weight_of(RegistrationPatch plane, vec3 head) {
   return facing < 0.0 ? -weight : weight;
 }
 
-// Distance along the normal by which an error of the scanner moves a plane, in units of the largest deviation.
+// Returns the distance along the normal by which an error moves a plane, in units of the largest deviation.
 float deviation_of(RegistrationPatch plane, vec3 head, uint place, uint error) {
   precise float x = head.x - plane.point.x;
   precise float y = head.y - plane.point.y;
@@ -152,7 +152,7 @@ void main() {
   }
   const uint j = i + 1u + rest;
   const uint station = thread % n, station_slices = register_pairs / n, station_slice = thread / n;
-  // Stations times errors likewise.
+  // Stations times errors are shared in the same way.
   const uint errors_here = first_pair < errors ? min(errors - first_pair, register_pairs) : 0u;
   const uint error_slices = errors_here > 0u ? register_pairs / errors_here : 0u;
   const uint error_slice = errors_here > 0u ? thread / errors_here : 0u;
@@ -245,7 +245,7 @@ void main() {
         }
         precise float front_mean = front * exact_reciprocal(front_total);
         precise float behind_mean = behind * exact_reciprocal(behind_total);
-        // One station alone is tied to none: its difference is 0, exactly.
+        // A single station is tied to none; its difference is exactly 0.
         means[2u * task] = many.x > 1u ? front_mean : last.x;
         means[2u * task + 1u] = many.y > 1u ? behind_mean : last.y;
       }

@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { SampleArgumentsPush push; };
 
 void main() {
   const uint wanted = push.control.at[push.over];
-  // Work that does not fit is not begun: the host cuts the chunk and repeats it.
+  // Does not begin work that does not fit; the host cuts the chunk and repeats it.
   const bool fits =
       push.control.at[control_pairs] <= push.pair_capacity && push.control.at[control_rays] <= push.ray_capacity &&
       push.control.at[control_parts] <= push.item_capacity && push.control.at[control_rest] <= push.ray_capacity;

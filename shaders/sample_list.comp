@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists the rays of open pairs that may put a point into the voxel: all that pass its cube and are not known to be
-// stopped before. Their number varies greatly between pairs, so the threads of a subgroup share the walks of their
-// pairs evenly.
+// stopped before. Their number varies greatly between pairs, so the threads of a subgroup share their pairs' walks
+// evenly.
 //
 // Only the first part of a long walk is listed. Once it has been traced, the same code with SIGHTS defined queues the
 // other parts of walks whose pairs are still open, one thread per pair. With QUEUE defined it works through the queue.
@@ -18,7 +18,7 @@ RayWindow window_of(SamplePair pair) {
   return RayWindow(pair.window[0], pair.window[1], pair.window[2], pair.window[3], pair.window[4], pair.window[5]);
 }
 
-// Later parts of a walk: from x to y, empty if x >= y. If every point is wanted, that is all of a long walk.
+// Returns the later parts of a walk: x to y, empty if x >= y. If every point is wanted, they are all of a long walk.
 uvec2 later_parts(uint length) {
   if (length <= sample_part) return uvec2(0u);
   return uvec2(max(push.first_part, push.stop_at > 0u ? 1u : 0u), min(push.end_part, length / sample_part));
@@ -50,7 +50,7 @@ shared Occluder occluders[group_size];
 shared uint ends[group_size];  // end of the thread's steps among those of the subgroup
 shared uvec2 founds[group_size];  // one bit per step
 
-// Finds the ray at step k of a thread; returns whether there is one.
+// Finds the ray at step k of a thread; returns false if there is none.
 bool ray_at(uint thread, uint k, out uvec2 ray) {
   const Walk walk = walks[thread];
   const uint place = place_in_walk(walk.first + k, walk_length(walk.rays));
@@ -102,7 +102,7 @@ void main() {
   founds[self] = uvec2(0u);
   subgroupBarrier();
   for (uint j = rank; j < all; j += threads) {
-    // The first thread whose steps end after j.
+    // Finds the first thread whose steps end after j.
     uint low = first, high = first + threads - 1u;
     while (low < high) {
       const uint middle = (low + high) / 2u;

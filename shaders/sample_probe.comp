@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces one ray of every pair of slot and voxel, through the middle of the voxel, and lists the pairs still open then:
-// one thread per pair. Most pairs are then decided: hidden, or seen in a voxel that has all the points it needs.
-// Neighbouring threads have the same voxel and neighbouring stations, so their rays are similar.
+// Traces one ray of every pair of slot and voxel, through the middle of the voxel, and lists the pairs that are still
+// open: one thread per pair. Most pairs are then decided: hidden, or seen in a voxel that has all the points it needs.
+// Neighbouring threads have the same voxel and neighbouring stations, so that their rays are similar.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "trace.glsl"
 
 layout(local_size_x = group_size) in;
-layout(constant_id = 3) const bool watertight = false;  // whether the engine is watertight
+layout(constant_id = 3) const bool watertight = false;  // true if the engine is watertight
 layout(push_constant, scalar) uniform Push { SampleProbePush push; };
 #include "lib/occluder.glsl"
 #include "lib/sampled_point.glsl"
@@ -65,6 +65,6 @@ void main() {
     push.pairs.at[at] =
         SamplePair(of_voxel, slot, probe, occluder,
                    int[6](window.row0, window.row1, window.column0, window.column1, window.wrapped0, window.wrapped1));
-  // Threads of a subgroup have adjacent slots, and networks are many: summing over a subgroup would save no addition.
+  // Adds one by one: threads of a subgroup have adjacent slots and many networks, so sums would save no addition.
   if (traced && push.probed == 0u) add64(push.slot_rays, 2u * slot, 1u);
 }

@@ -19,7 +19,7 @@ void main() {
     const uint of_voxel = push.pairs.at[job.pair].voxel;
     slot = push.pairs.at[job.pair].slot;
     const SampleStation station = push.stations.at[slot];
-    // Since listing, other rays may have filled the voxel and shown that the station sees it.
+    // Since listing, other rays may have filled the voxel and proved that the station sees it.
     traced = !is_closed(station, of_voxel);
     if (traced) {
       const SampleVoxel voxel = push.voxels.at[of_voxel];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projects the surveyed bricks onto the sphere of directions around a station: one thread per brick. Every tile of rays
 // that may see a brick gets the distance of the farthest one; the other tiles see nothing that counts. Bricks are
-// widened by the noise's reach and by more than all rounding, so nothing that counts is lost.
+// widened by the noise's reach and by more than all rounding, so that nothing that counts is lost.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/rays_of_box.glsl"

@@ -6,8 +6,8 @@
 const float pi = 3.14159265358979;
 const float angle_slack = 1e-5;  // bounds the error of angle_of, and of turning angles into rays, generously
 
-// atan2 within 1e-6. atan(x) / x on [0, 1] is a polynomial of degree 9 in x², interpolated at Chebyshev nodes (error
-// below 1e-7).
+// Returns atan2 within 1e-6. atan(x) / x on [0, 1] is a polynomial of degree 9 in x², interpolated at Chebyshev nodes
+// (error below 1e-7).
 float angle_of(float y, float x) {
   const float ax = abs(x), ay = abs(y);
   const float larger = max(ax, ay);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Float arithmetic tells what it is sure of about a ray and a triangle; double precision can decide the rest. As
-// in lib/sheared_triangle.glsl, corners are sheared so that the ray is the z axis; here all errors are bounded, from
-// the rounding of the ray to float on, so a device may fuse and divide as it likes. It may not rearrange.
+// Decides a hit of a ray and a triangle in float only if certain; double precision can decide the rest. As in
+// lib/sheared_triangle.glsl, corners are sheared so that the ray is the z axis. Here all errors are bounded, from the
+// rounding of the ray to float on, so a device may fuse and divide as it likes. It may not rearrange.
 //
-// With u = 2^-24, a corner at depth z beside the ray by x is off by at most 2u of the origin's largest coordinate, for
-// the rounding of the origin in both of its components; 11u of z, for the direction (2u), its reciprocal (5u), products
-// and differences; and 2u of x. Of products in edge functions, 2u more. All factors below are larger by half or more.
+// With u = 2^-24, a corner at depth z and at distance x from the ray is off by at most 2u of the origin's largest
+// coordinate, for rounding it in both components; 11u of z, for the direction (2u), its reciprocal (5u), products and
+// differences; and 2u of x. Products in edge functions add 2u. All factors below are larger by half or more.
 #ifndef VANTAGE_LIB_CROSSING
 #define VANTAGE_LIB_CROSSING
 #include "lib/parameters.glsl"
 
 const float doubt_of_origin = 2.3841858e-7;  // 2^-22, a share of its largest coordinate
-const float doubt_of_scene = 3.7252903e-9;   // 2^-28, of the scene's: for roundings in double precision
+const float doubt_of_scene = 3.7252903e-9;   // 2^-28, of the scene's; covers double precision
 const float doubt_of_depth = 9.5367432e-7;   // 2^-20, of the depth of corners
-const float doubt_of_width = 4.7683716e-7;   // 2^-21, of their distances from the ray
-const float doubt_of_range = 1.9073486e-6;   // 2^-19, of the depth of corners, for distances
+const float doubt_of_width = 4.7683716e-7;   // 2^-21, of the corners' distances from the ray
+const float doubt_of_range = 1.9073486e-6;   // 2^-19, of the depth of corners; for distances
 const float least_area = 1e-30;              // products below may underflow
 
 float largest_of(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
@@ -26,7 +26,7 @@ struct Line {
   bool major_x, major_y;  // the largest component of the direction becomes z
   vec2 shear;
   float along;  // distance per depth
-  float doubt;  // of a corner's place, whatever its depth
+  float doubt;  // error of a corner's place at any depth
 };
 
 Line line_along(vec3 origin, vec3 direction, float doubt) {
@@ -47,7 +47,7 @@ vec3 sheared(Line line, vec3 corner) {
   return vec3(beside, p.z);
 }
 
-// A ray may meet a triangle within [near, far], if it does at all.
+// Interval [near, far] in which the ray may meet the triangle, if it meets it at all.
 struct Crossing {
   bool possible, sure;
   float near, far;
@@ -69,7 +69,7 @@ Crossing crossing_of(Line line, vec3 corner_a, vec3 corner_b, vec3 corner_c) {
   const float first = low * line.along, last = high * line.along;
   Crossing met = Crossing(true, least > doubt || most < -doubt, min(first, last) - slack, max(first, last) + slack);
   if (met.sure) {
-    // Weights of corners are off by 12 shares of doubt to area together, or the point is anywhere on the triangle.
+    // Errors of all weights together are up to 12 times doubt / area; else the point may lie anywhere on the triangle.
     precise float area = edges.x + edges.y + edges.z;
     precise float share = 1.0 / area;
     precise float depths = fma(edges.x, a.z, fma(edges.y, b.z, edges.z * c.z));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A voxel as a station sees it.
+// A voxel relative to a station.
 #ifndef VANTAGE_LIB_CUBE
 #define VANTAGE_LIB_CUBE
 #include "lib/parameters.glsl"
 #include "shared/noise_types.h"
 
-// Relative to the origin, widened by more than the rounding between a hit and its cell, so that no ray with a point in
-// the cell is missed.
+// Box relative to the origin, widened by more than the rounding between a hit and its cell, so that no ray with a point
+// in the cell is missed.
 struct Cube {
   vec3 low;
   float side;
@@ -16,10 +16,10 @@ struct Cube {
 
 vec3 high_of(Cube cube) { return cube.low + cube.side; }
 vec3 centre_of(Cube cube) { return cube.low + 0.5 * cube.side; }
-// Upper bound on the distance from the station to points of the cube.
+// Returns an upper bound on the distance from the station to points of the cube.
 float farthest_of(Cube cube) { return length(max(abs(cube.low), abs(high_of(cube)))); }
 
-// Upper bound on how far noise moves a hit nearer than t; counterpart of noise_reach.hpp.
+// Bounds how far noise moves a hit nearer than t; counterpart of noise_reach.hpp.
 float reach_within(float t) {
   if (!GIVEN(parameters.reaches)) return 0.0;
   const float last = float(noise_table_side - 1u);
@@ -37,7 +37,7 @@ Cube cube_of(SampleVoxel voxel, vec3 origin) {
   return cube;
 }
 
-// Interval of the ray inside the cube: from x to y, empty if x > y.
+// Returns the interval of the ray inside the cube: from x to y, empty if x > y.
 vec2 passage(Cube cube, vec3 direction) {
   const vec3 safe = vec3(abs(direction.x) < 1e-12 ? 1e-12 : direction.x, abs(direction.y) < 1e-12 ? 1e-12 : direction.y,
                          abs(direction.z) < 1e-12 ? 1e-12 : direction.z);
@@ -46,7 +46,7 @@ vec2 passage(Cube cube, vec3 direction) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// A hit further than this before a ray's passage through the cube puts no point there, including noise and rounding.
+// Returns how far before a ray's passage through the cube a hit may lie and still put a point there.
 float reach_of(Cube cube) { return cube.noise + cube.slack; }
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef VANTAGE_LIB_EXACT
 #define VANTAGE_LIB_EXACT
 
-// 1 / x by Newton's iteration from an integer guess; relative error below 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
+// Returns 1 / x by Newton's iteration from an integer guess, to 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
 float exact_reciprocal(float x) {
   precise float y = uintBitsToFloat(0x7EF311C7u - floatBitsToUint(x));
   for (int i = 0; i < 4; ++i) {
@@ -14,7 +14,7 @@ float exact_reciprocal(float x) {
   return y;
 }
 
-// 1 / √x, by the same method. REQUIRES: 2^-100 < x < 2^100.
+// Returns 1 / √x by the same method. REQUIRES: 2^-100 < x < 2^100.
 float exact_inverse_sqrt(float x) {
   precise float y = uintBitsToFloat(0x5F375A86u - (floatBitsToUint(x) >> 1));
   precise float half_x = 0.5 * x;

@@ -7,8 +7,8 @@
 
 layout(constant_id = glass_constant) const bool with_glass = false;
 
-// Share of the strength that passes a pane there and back, at the square of the cosine of incidence: T² by Fresnel's
-// formulas for the refractive index 1.5, reflections within the pane included.
+// Returns the share of strength that passes a pane there and back, at the square of the cosine of incidence: T² by
+// Fresnel's formulas for the refractive index 1.5, reflections within the pane included.
 float passed_of_pane(float square) {
   precise float a = 1.25 + 2.0 * square;
   precise float b = 1.25 + 6.0625 * square;
@@ -22,14 +22,14 @@ float passed_of_pane(float square) {
   return passed;
 }
 
-// The nearest faces of glass on a ray, in order of distance; no_primitive in place of those that are not there.
+// The nearest faces of glass on a ray, in order of distance; no_primitive in unused places.
 const uint faces_at_once = 4u;
 struct Faces {
   float t[faces_at_once];
   uint id[faces_at_once];
 };
 
-// Finds them in one walk, since most beams pass two or three: a walk for each face takes as long again.
+// Finds them in one walk. Most beams pass two or three faces, and a walk for each would double the time.
 Faces walk_faces(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 direction, float t_min, float t_max) {
   Faces found;
   for (uint k = 0u; k < faces_at_once; ++k) {
@@ -73,8 +73,8 @@ Faces walk_faces(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 
   return found;
 }
 
-// A beam on its way to a hit: the share of its strength that passes there and back, or the pane that
-// returns it.
+// A beam on its way to a hit: the share of its strength that passes there and back, or the pane that reflects
+// it.
 struct Passed {
   float share;
   Hit pane;
@@ -87,7 +87,7 @@ Passed pass_glass(vec3 origin, vec3 direction, float t) {
   TriangleCorners corners = TriangleCorners(parameters.glass_corners);
   precise float kept = t * (1.0 - face_gap_share);
   precise float end = kept - face_gap_m;
-  float start = 0.0;  // where faces count again
+  float start = 0.0;  // distance from which faces count again
   while (start < end) {
     const Faces faces = walk_faces(nodes, corners, origin, direction, start, end);
     for (uint k = 0u; k < faces_at_once; ++k) {
@@ -101,7 +101,7 @@ Passed pass_glass(vec3 origin, vec3 direction, float t) {
         return Passed(0.0, Hit(pane.t, triangle, pane.barycentric));
       }
       float share = passed_of_pane(square);
-      // The bit marks a face of a solid, of which a pane has two.
+      // The bit marks a face of a solid; a pane of a solid has two such faces.
       if ((faces.id[k] & surveyed_bit) != 0u && share > least_passed) {
         precise float root = share * exact_inverse_sqrt(share);
         share = root;

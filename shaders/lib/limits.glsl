@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits of a point: angle of incidence, footprint of the beam, range noise and strength of the echo (docs/method.md).
-// Only additions, multiplications and comparisons, so that every device decides alike.
+// Uses only additions, multiplications and comparisons, so that every device decides alike.
 #ifndef VANTAGE_LIB_LIMITS
 #define VANTAGE_LIB_LIMITS
 #include "lib/exact.glsl"
@@ -30,7 +30,7 @@ uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 directio
   return misses;
 }
 
-// True if the echo of this ray is lost at random.
+// Returns true if the echo of this ray is lost at random.
 bool is_lost(uint64_t ray, uint place) {
   return parameters.lost_below > 0u && random_bits(ray, place, dropout_stream) < parameters.lost_below;
 }

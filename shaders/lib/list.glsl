@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scanners whose directions are a list: rays near a direction, from bands of zenith in which rays are sorted by azimuth
+// Scanners whose directions are a list: finds rays near a direction in bands of zenith, which sort rays by azimuth
 // (src/trace/direction_list.hpp).
 #ifndef VANTAGE_LIB_LIST
 #define VANTAGE_LIB_LIST
@@ -15,7 +15,7 @@ struct BandRays {
 };
 uint count_of(BandRays rays) { return rays.end - rays.from + rays.wrapped_end - rays.wrapped; }
 
-// The first ray of a band at the azimuth or above it; `beyond`: above it.
+// Returns the first ray of a band at the azimuth or above; `beyond`: only above.
 uint place_in_band(uint first, uint end, float azimuth, bool beyond) {
   while (first < end) {
     const uint middle = (first + end) / 2u;
@@ -28,7 +28,7 @@ uint place_in_band(uint first, uint end, float azimuth, bool beyond) {
   return first;
 }
 
-// `start` is in a full turn from 0.
+// Returns the rays of a band between two azimuths. `start` is in a full turn from 0.
 BandRays rays_of_band(uint band, float start, float width) {
   const uint first = parameters.list_offsets.at[band], end = parameters.list_offsets.at[band + 1u];
   if (width >= 2.0 * pi) return BandRays(first, end, first, first);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Occlusion of a cube by a triangle in front of it, with margins above any engine's rounding. A part reported as hidden
-// is hidden on every engine; other parts may be hidden, too.
+// is hidden on every engine; other parts may be hidden as well.
 #ifndef VANTAGE_LIB_OCCLUDER
 #define VANTAGE_LIB_OCCLUDER
 #include "lib/cube.glsl"
 #include "lib/scene_triangle.glsl"
 
-// A triangle as its station sees it: normals of the planes through the station and an edge. They are scaled so that no
-// engine's rounding matters if a unit vector's product with them is beyond ±1. The normal of an edge without length is
+// A triangle as its station sees it: normals of the planes through the station and each edge. They are scaled so that
+// no engine's rounding matters if a unit vector's product with them is beyond ±1. An edge without length has normal
 // 0.
 struct Occluder {
   vec3 sides[3];
@@ -29,13 +29,13 @@ vec3 products_of(Occluder occluder, vec3 v) {
   return vec3(dot(occluder.sides[0], v), dot(occluder.sides[1], v), dot(occluder.sides[2], v));
 }
 
-// Whether the ray meets the triangle. `direction`: a unit vector.
+// Returns true if the ray meets the triangle. `direction`: a unit vector.
 bool stops(Occluder occluder, vec3 direction) {
   const vec3 at = products_of(occluder, direction);
   return all(greaterThan(at, vec3(1))) || all(lessThan(at, vec3(-1)));
 }
 
-// Position of a cube relative to the planes of a occluder: inside a plane if `at` is above `wide`, outside if it is
+// Position of a cube relative to the planes of an occluder: inside a plane if `at` is above `wide`, outside if it is
 // below −wide, else cut by it.
 struct Place {
   vec3 at, wide;
@@ -46,19 +46,19 @@ Place place_of(Cube cube, Occluder occluder, float facing) {
   return Place(facing * products_of(occluder, centre_of(cube)), 0.5 * cube.side * sizes + farthest_of(cube));
 }
 
-// Whether all rays through the cube meet the triangle.
+// Returns true if all rays through the cube meet the triangle.
 bool covers(Occluder occluder, Cube cube) {
   const Place place = place_of(cube, occluder, 1.0);
   return all(greaterThan(place.at, place.wide)) || all(lessThan(place.at, -place.wide));
 }
 
-// Whether rays through the cube hit the triangle beyond the scanner's least range, yet too far before the cube for
-// points in it. Computed from products with the normal n of the triangle's plane: a ray to q in the cube meets the
-// plane at (n·a / n·q) of the way.
+// Returns true if rays through the cube hit the triangle beyond the scanner's least range, yet too far before the cube
+// for points in it. Uses products with the normal n of the triangle's plane: a ray to q in the cube meets the plane at
+// (n·a / n·q) of the way.
 bool is_before(Corners t, Cube cube) {
   const float nearest = length(max(max(cube.low, -high_of(cube)), vec3(0)));
   const vec3 ab = t.b - t.a, ca = t.a - t.c, normal = cross(ab, ca);
-  // Error of the normal's products with unit vectors; it covers the effect of slender triangles and grazing rays on a
+  // Error of the normal's products with unit vectors, including the effect of slender triangles and grazing rays on a
   // hit's distance.
   const float doubt = size_of(ab) * size_of(ca) * (1.0 / 262144.0);
   const float plane = dot(normal, t.a);
@@ -71,7 +71,7 @@ bool is_before(Corners t, Cube cube) {
          nearest * (abs(plane) - plane_doubt) >= (parameters.min_range + cube.slack) * most;
 }
 
-// The corner of triangle `other` that is not on its common edge with `triangle`.
+// Returns the corner of triangle `other` that is not on its common edge with `triangle`.
 vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
   uint corner = 2u;
   for (uint k = 0u; k < 3u; ++k)
@@ -81,10 +81,10 @@ vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
   return corner == 0u ? corners.a : corner == 1u ? corners.b : corners.c;
 }
 
-// Whether all rays through the cube meet the triangle or others connected to it, for engines that let no ray pass
-// between two triangles with a common edge. The patch grows over every edge whose plane cuts the cube. It has no hole
-// if each of these edges has a triangle on either side, as the station sees it; it ends once it has grown over all of
-// them.
+// Returns true if all rays through the cube meet the triangle or others connected to it, for engines that let no
+// ray pass between two triangles with a common edge. The patch grows over every edge whose plane cuts the cube,
+// until no such edge is left. It has no hole if each of these edges has a triangle on either side, as the station
+// sees it.
 bool patch_covers(uint triangle, vec3 origin, Cube cube) {
   const uint most = 16u;
   uint members[most];
@@ -96,7 +96,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
     const Occluder occluder = occluder_of(corners);
     const float facing = dot(occluder.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
     const Place place = place_of(cube, occluder, facing);
-    if (any(lessThan(place.at, -place.wide))) {  // not in the way
+    if (any(lessThan(place.at, -place.wide))) {  // it does not cover the cube
       if (m == 0u) return false;
       continue;
     }

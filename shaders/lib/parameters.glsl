@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of scene, pattern, voxels and noise, common to all kernels. A uniform block, which drivers keep at hand;
+// Parameters of scene, pattern, voxels and noise, common to all kernels. They are a uniform block, which drivers cache;
 // reading an array's address from memory before every element would cost as much as the element.
 #ifndef VANTAGE_LIB_PARAMETERS
 #define VANTAGE_LIB_PARAMETERS

@@ -6,7 +6,7 @@
 #include "lib/parameters.glsl"
 #include "lib/turn.glsl"
 
-// `turn`: the station's; read if it is turned.
+// Returns a ray's direction. `turn`: the station's, read only if it is turned.
 vec3 ray_direction(uint row, uint column, vec3 turn[3]) {
   const float s = parameters.sin_zenith.at[row];
   const uint azimuth = listed ? row : column;
@@ -16,7 +16,7 @@ vec3 ray_direction(uint row, uint column, vec3 turn[3]) {
   return d;
 }
 
-// A ray's number within its station's pattern.
+// Returns a ray's number within its station's pattern.
 uint64_t ray_number(uint row, uint column) { return uint64_t(row) * parameters.columns + column; }
 
 vec3 point_on_ray(vec3 origin, vec3 direction, float t) {
@@ -33,7 +33,7 @@ uvec2 place_in_block(uint i) {
   return uvec2(column, row);
 }
 
-// Row and column of a thread's ray in a dispatch over rows from `first_row` on; those of a list lie one after the
+// Returns row and column of a thread's ray in a dispatch over rows from `first_row` on; rays of a list follow each
 // other.
 uvec2 ray_of_thread(uint first_row) {
   if (listed) return uvec2(first_row + gl_WorkGroupID.y * group_size + gl_LocalInvocationIndex, 0u);

@@ -25,7 +25,7 @@ Look look_of(Hit hit, vec3 direction) {
   return Look(normal, reflectivity_of(stored, normal, direction));
 }
 
-// The measured range. `look` is read if there is noise.
+// Returns the measured range. `look` is read only with noise.
 float range_of(Hit hit, Look look, uint64_t ray, uint place) {
   return with_noise ? noisy_range(hit.t, look.reflectivity, ray, place) : hit.t;
 }
@@ -34,8 +34,8 @@ vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uin
   return point_on_ray(origin, direction, range_of(hit, look, ray, place));
 }
 
-// Limits missed by a ray's hit, one bit each; its point counts if there are none and the mesh is surveyed. `look` is
-// read if there are limits. `passed`: share of the echo's strength that passes glass.
+// Returns the limits that a ray's hit misses, one bit each. Its point counts if there are none and the mesh is
+// surveyed. `look` is read only with limits. `passed`: share of the echo's strength that passes glass.
 uint misses_of(Hit hit, Look look, vec3 direction, float passed, uint64_t ray, uint place) {
   if (!with_limits) return 0u;
   return limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t, passed) |

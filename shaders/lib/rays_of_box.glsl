@@ -6,9 +6,9 @@
 #include "lib/list.glsl"
 #include "lib/parameters.glsl"
 
-// Rows [row0, row1] and up to two runs of columns; the second holds columns beyond a full turn. Empty runs have end <
-// begin. Of a list: bands, bits of the azimuth from which its rays are near and of the width of those azimuths, and the
-// most rays that one of the bands has there.
+// Rows [row0, row1] and up to two runs of columns; the second run is beyond a full turn. Empty runs have end < begin.
+// For a list: bands; the azimuth from which rays are near, and the width of those azimuths, both as bits of floats; and
+// the most rays that a band has there.
 struct RayWindow {
   int row0, row1;
   int column0, column1;
@@ -21,7 +21,7 @@ int column_count_of(RayWindow w) {
   return listed ? w.wrapped0 : first_run_of(w) + max(w.wrapped1 - w.wrapped0 + 1, 0);
 }
 
-// Place k of a list's window; its row is no_ray if it has none.
+// Returns the ray at place k of a list's window; its row is no_ray if there is none.
 uvec2 listed_ray_in_window(RayWindow w, uint band, uint place) {
   const BandRays rays = rays_of_band(band, intBitsToFloat(w.column0), intBitsToFloat(w.column1));
   if (place >= count_of(rays)) return uvec2(no_ray, 0u);
@@ -29,14 +29,14 @@ uvec2 listed_ray_in_window(RayWindow w, uint band, uint place) {
   return uvec2(parameters.list_rays.at[place < run ? rays.from + place : rays.wrapped + place - run], 0u);
 }
 
-// Ray k of the window, row by row.
+// Returns ray k of the window, row by row.
 uvec2 ray_in_window(RayWindow w, int columns, int k) {
   if (listed) return listed_ray_in_window(w, uint(w.row0 + k / columns), uint(k % columns));
   const int column = k % columns, run = first_run_of(w);
   return uvec2(w.row0 + k / columns, column < run ? w.column0 + column : w.wrapped0 + column - run);
 }
 
-// Zenith of a row of a pattern without a step, whose zeniths ascend; and the first row above a zenith.
+// Returns the zenith of a row of a pattern without a step, whose zeniths ascend; below, the first row above a zenith.
 float zenith_of(uint row) { return angle_of(parameters.sin_zenith.at[row], parameters.cos_zenith.at[row]); }
 int first_row_above(float zenith) {
   uint first = 0u, end = parameters.rows;
@@ -86,9 +86,9 @@ RayWindow window_of_list(float zenith0, float zenith1, float start, float width)
   return w;
 }
 
-// All rays from the coordinate origin that may meet the box [low, high], and few others.
+// Returns all rays from the coordinate origin that may meet the box [low, high], and few others.
 RayWindow rays_of_box(vec3 low, vec3 high) {
-  // Zenith: the horizontal distance is least at the point of the box nearest to the axis, largest at a corner.
+  // Zenith: the horizontal distance is least at the box's point nearest to the axis, and largest at a corner.
   const vec2 nearest = clamp(vec2(0), low.xy, high.xy);
   const vec2 farthest = max(abs(low.xy), abs(high.xy));
   const float least = length(nearest), largest = length(farthest);
@@ -96,7 +96,7 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
   const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
 
   float start = 0.0, width = 2.0 * pi;
-  // A ray along the axis has any azimuth.
+  // A ray along the axis has every azimuth.
   if (least > angle_slack * max(abs(low.z), abs(high.z))) {
     // Corners relative to the direction of the nearest point, from which they all lie within a right angle.
     const vec2 axis = nearest;

@@ -41,10 +41,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems 
 
 const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick
 
-// Whether an array exists; a macro, since glslang cannot overload on reference types.
+// True if an array exists; a macro, since glslang cannot overload on reference types.
 #define GIVEN(array) (uint64_t(array) != 0ul)
 
-// Index of this thread in a dispatch whose groups lie in rows of groups_in_row.
+// Returns the index of this thread in a dispatch whose groups lie in rows of groups_in_row.
 uint thread_of_rows() {
   return (gl_WorkGroupID.y * groups_in_row + gl_WorkGroupID.x) * group_size + gl_LocalInvocationIndex;
 }

@@ -7,7 +7,7 @@
 #include "lib/pattern.glsl"
 #include "lib/rays_of_box.glsl"
 
-// Word with a station's bit of a voxel.
+// Returns the word with a station's bit of a voxel.
 uint mask_word(SampleStation station, uint voxel) {
   return (station.network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + voxel;
 }
@@ -16,25 +16,25 @@ bool is_seen(SampleStation station, uint voxel) {
   return (push.masks.at[mask_word(station, voxel)] & mask_bit(station)) != 0u;
 }
 
-// If the voxel is full and its station known to see it, no ray of the pair changes anything.
+// Returns true if no ray of the pair changes anything: the voxel is full, and its station is known to see it.
 bool is_closed(SampleStation station, uint voxel) {
   return push.stop_at > 0u && push.counts.at[station.network * push.voxel_count + voxel] >= push.stop_at &&
          (push.mask_words == 0u || is_seen(station, voxel));
 }
 
-// Whether the ray may put a point into a cube that it crosses from range.x to range.y.
+// Returns true if the ray may put a point into a cube that it crosses from range.x to range.y.
 bool may_see(Cube cube, vec2 range) {
   return range.x <= range.y && range.y + cube.noise >= parameters.min_range &&
          range.x - cube.noise <= parameters.max_range;
 }
 
-// All rays that may meet the cube, and few others.
+// Returns all rays that may meet the cube, and few others.
 RayWindow window_of(Cube cube, SampleStation station) {
   vec3 low = cube.low, high = high_of(cube);
   if (turned) turn_back(station.turn, low, high);
   return rays_of_box(low, high);
 }
-// The host rejects patterns of over 2^31 rays.
+// Fits 32 bits, since the host rejects patterns of over 2^31 rays.
 uint rays_of(RayWindow window) { return uint(row_count_of(window) * column_count_of(window)); }
 uint number_of(uvec2 ray) { return ray.x * parameters.columns + ray.y; }
 

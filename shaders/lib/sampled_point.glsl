@@ -15,7 +15,7 @@ Hit trace_into(Cube cube, vec2 range, vec3 origin, vec3 direction) {
                from_the_root);
 }
 
-// Whether the hit's point lies in the voxel and counts.
+// Returns true if the hit's point lies in the voxel and counts.
 bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 direction, uint ray) {
   if (hit.id == no_primitive || (hit.id & surveyed_bit) == 0u) return false;
   Look look = unseen;
@@ -27,7 +27,7 @@ bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 directi
                    station.place) == 0u;
 }
 
-// Returns the voxel's number of points after that, or a few more.
+// Counts a point. Returns the voxel's number of points after that, or a few more.
 uint count_point(SampleStation station, uint voxel) {
   const uint before = atomicAdd(push.counts.at[station.network * push.voxel_count + voxel], 1u);
   if (with_masks && !is_seen(station, voxel)) atomicOr(push.masks.at[mask_word(station, voxel)], mask_bit(station));

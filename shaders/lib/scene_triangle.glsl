@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle of the scene by its number, whether it is stored where it stands or with a mesh that nodes share. Corners
-// are in the order in which they are stored, which a mirrored place reverses.
+// A triangle of the scene by its number, stored either in place or with a mesh that nodes share. Corners are in stored
+// order, which a mirrored place reverses.
 #ifndef VANTAGE_LIB_SCENE_TRIANGLE
 #define VANTAGE_LIB_SCENE_TRIANGLE
 #include "lib/exact.glsl"
@@ -9,7 +9,7 @@
 layout(constant_id = shared_constant) const bool with_shared = false;
 
 struct StoredTriangle {
-  uint number;   // it is stored by
+  uint number;   // number by which it is stored
   uint surface;  // index into arrays of diffuse coefficients and limits
   uint place;    // of its mesh, or no_place
 };
@@ -22,13 +22,13 @@ StoredTriangle stored_of(uint triangle) {
   return StoredTriangle(triangle + run.to_stored, k, run.place);
 }
 
-// True if its corners are stored in the other order than SceneData::corners() has them.
+// Returns true if its corners are stored in another order than SceneData::corners() returns.
 bool is_mirrored(uint triangle) {
   const uint place = stored_of(triangle).place;
   return place != no_place && parameters.places.at[place].mirrored != 0u;
 }
 
-// Numbers of its corners' positions and normals.
+// Returns the indices of its corners' positions and normals.
 uvec3 vertices_of(StoredTriangle stored) {
   const uint first = 3u * stored.number;
   return uvec3(parameters.triangles.at[first], parameters.triangles.at[first + 1u],
@@ -44,7 +44,7 @@ vec3 turned_from_mesh(vec3 x, vec3 y, vec3 z, vec3 v) {
   return abc;
 }
 
-// Edges from its first corner to the others.
+// Edges from the first corner to the others.
 struct Edges {
   vec3 second, third;
 };
@@ -57,7 +57,7 @@ Edges edges_of(StoredTriangle stored, uvec3 vertices) {
   return Edges(turned_from_mesh(place.x, place.y, place.z, e), turned_from_mesh(place.x, place.y, place.z, f));
 }
 
-// Corners relative to a station, and the metres by which they may be elsewhere for its rays.
+// Corners relative to a station, and their error in metres for its rays.
 struct Corners {
   vec3 a, b, c;
   float doubt;
@@ -71,7 +71,7 @@ Corners corners_of(uint triangle, vec3 origin) {
     precise vec3 c = parameters.positions.at[vertices.z] - origin;
     return Corners(a, b, c, 0.0);
   }
-  // Edges are placed by themselves, since a small triangle may be far from the origin of its mesh.
+  // Edges are placed separately, since a small triangle may be far from the origin of its mesh.
   const MeshTransform place = parameters.places.at[stored.place];
   const Edges edges = edges_of(stored, vertices);
   precise vec3 mesh = place.origin - origin;
@@ -81,11 +81,11 @@ Corners corners_of(uint triangle, vec3 origin) {
   return Corners(a, b, c, place.doubt * (place.size + abs(mesh.x) + abs(mesh.y) + abs(mesh.z)));
 }
 
-// The triangle across the edge from a corner to the next, or no_primitive.
+// Returns the triangle across the edge from a corner to the next, or no_primitive.
 uint neighbour_of(uint triangle, uint corner) {
   const StoredTriangle stored = stored_of(triangle);
   const uint other = parameters.neighbours.at[3u * stored.number + corner];
-  // Within a shared mesh, neighbours have the numbers that they are stored by.
+  // Within a shared mesh, neighbours have stored numbers.
   if (!with_shared || stored.place == no_place || other == no_primitive) return other;
   return other - stored.number + triangle;
 }

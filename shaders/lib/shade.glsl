@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Appearance of a hit to the scanner: normal, Lambertian reflectivity, and the resulting noise (Algorithm 1).
+// Appearance of a hit to the scanner: normal, Lambertian reflectivity, and the noise that follows (Algorithm 1).
 #ifndef VANTAGE_LIB_SHADE
 #define VANTAGE_LIB_SHADE
 #include "lib/exact.glsl"
@@ -15,18 +15,18 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
   return n;
 }
 
-// Unit normal of the triangle's plane.
+// Returns the unit normal of the triangle's plane.
 vec3 flat_normal(StoredTriangle stored) {
   const Edges edges = edges_of(stored, vertices_of(stored));
   const vec3 e = edges.second, f = edges.third;
-  // Scaled first, so that tiny triangles do not underflow.
+  // Scales first, so that tiny triangles do not underflow.
   precise float largest = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
   precise vec3 es = e * exact_reciprocal(largest);
   precise vec3 fs = f * exact_reciprocal(largest);
   return unit_or(exact_cross(es, fs), vec3(0, 0, 1));
 }
 
-// Normal at a vertex, where it stands; 0 if the file has none.
+// Returns the normal at a vertex in place; 0 if the file has none.
 vec3 normal_at(StoredTriangle stored, uint vertex) {
   const vec3 n = parameters.normals.at[vertex];
   if (!with_shared || stored.place == no_place) return n;
@@ -34,7 +34,7 @@ vec3 normal_at(StoredTriangle stored, uint vertex) {
   return unit_or(turned_from_mesh(place.normal_x, place.normal_y, place.normal_z, n), vec3(0));
 }
 
-// Interpolated vertex normal, or the triangle's own if the file has none; turned towards the scanner.
+// Returns the interpolated vertex normal, or the plane's if the file has none, turned towards the scanner.
 vec3 oriented_normal(StoredTriangle stored, vec2 barycentric, vec3 direction) {
   vec3 n = vec3(0);
   if (parameters.has_normals != 0u) {
@@ -54,7 +54,7 @@ vec3 oriented_normal(StoredTriangle stored, vec2 barycentric, vec3 direction) {
   return exact_dot(n, direction) > 0.0 ? -n : n;
 }
 
-// R (I · (−N)), section 3.2.
+// Returns R (I · (−N)), section 3.2.
 float reflectivity_of(StoredTriangle stored, vec3 normal, vec3 direction) {
   precise float r = parameters.diffuse.at[stored.surface] * -exact_dot(normal, direction);
   return clamp(r, 0.0, 1.0);
@@ -89,7 +89,7 @@ uint random_bits(uint64_t ray, uint place, uint stream) {
                     uvec4(uint(ray), uint(ray >> 32), place, stream)).x;
 }
 
-// Range with noise. Depends only on seed, station, ray and hit.
+// Returns the range with noise, which depends only on seed, station, ray and hit.
 float noisy_range(float t, float reflectivity, uint64_t ray, uint place) {
   precise float displacement = sigma_at(t, reflectivity) * normal_from_bits(random_bits(ray, place, noise_stream));
   precise float moved = t + displacement;

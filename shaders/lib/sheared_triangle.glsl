@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intersection of a ray with a triangle's plane, in coordinates sheared so that the ray is the z axis (Woop, Benthin,
-// Wald: Watertight Ray/Triangle Intersection, 2013). Only +, − and × are used, uncontracted, so all devices round
+// Wald: Watertight Ray/Triangle Intersection, 2013). Uses only +, − and ×, uncontracted, so that all devices round
 // alike.
 #ifndef VANTAGE_LIB_SHEARED_TRIANGLE
 #define VANTAGE_LIB_SHEARED_TRIANGLE
@@ -44,7 +44,7 @@ ShearedTriangle sheared(Shear shear, vec3 origin, vec3 a, vec3 b, vec3 c) {
   return ShearedTriangle(sheared(shear, p), sheared(shear, q), sheared(shear, r));
 }
 
-// Twice the signed areas opposite each corner. The ray meets the triangle if all have one sign or are 0.
+// Returns twice the signed areas opposite each corner. The ray meets the triangle if all have one sign or are 0.
 vec3 edge_functions(ShearedTriangle t) {
   precise float u = t.c.x * t.b.y - t.c.y * t.b.x;
   precise float v = t.a.x * t.c.y - t.a.y * t.c.x;

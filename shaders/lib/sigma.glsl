@@ -4,7 +4,7 @@
 #define VANTAGE_LIB_SIGMA
 #include "lib/references.glsl"
 
-// Bilinear in normalised distance and reflectivity, the latter within [0, 1].
+// Interpolates bilinearly in normalised distance and reflectivity, the latter within [0, 1].
 float sigma_in(Floats sigma, float min_range, float inverse_span, float t, float reflectivity) {
   precise float from_start = t - min_range;
   precise float normalised = from_start * inverse_span;

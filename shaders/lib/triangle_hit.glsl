@@ -4,8 +4,8 @@
 // Hits depend only on ray and triangles, to the bit, on every device and in every order of traversal:
 // - A ray hits a triangle if it passes inside or on its projection, in sheared coordinates (lib/sheared_triangle.glsl).
 //   Each vertex is sheared by itself, so neighbours agree about it. An edge test compares two rounded products, whose
-//   order is exact unless they are equal; equal counts as inside for both. So no ray passes between two triangles that
-//   share an edge or a vertex.
+//   order is exact unless they are equal; equal counts as inside for both. No ray therefore passes between two
+//   triangles that share an edge or a vertex.
 // - Only +, − and × are used, uncontracted, so all devices round alike.
 // - Triangles of a mesh that nodes share are met in the frame of the mesh, into which the ray is moved.
 // - The hit's t is clamped to the triangle's own box, widened by more than all rounding. Every box above contains that
@@ -17,7 +17,7 @@
 #include "lib/widening.glsl"
 #include "trace/hit.glsl"
 
-// 1 / direction, with a small number in place of a component of 0.
+// Returns 1 / direction, with a small number in place of a component of 0.
 vec3 inverse_of(vec3 direction) {
   const vec3 size = abs(direction);
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
@@ -39,7 +39,7 @@ SlabRay slab_ray(vec3 origin, vec3 inverse, float widening) {
   return SlabRay(inverse, low, high);
 }
 
-// Interval of the ray inside the box [low, high]: from x to y.
+// Returns the interval of the ray inside the box [low, high]: from x to y.
 vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
   precise vec3 a = low * ray.inverse - ray.low;
   precise vec3 b = high * ray.inverse - ray.high;
@@ -47,7 +47,7 @@ vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// Replaces the best hit by the triangle's, if that is better. `inverse`: of the shear's direction; `widening`: of the
+// Replaces the best hit by the triangle's if that is better. `inverse`: of the shear's direction; `widening`: of the
 // origin.
 void meet_triangle(inout Hit best, float t_min, Shear shear, vec3 origin, vec3 inverse, float widening, vec3 a, vec3 b,
                    vec3 c, uint id) {

@@ -10,8 +10,8 @@ vec3 turn_direction(vec3 turn[3], vec3 d) {
   return vec3(exact_dot(turn[0], d), exact_dot(turn[1], d), exact_dot(turn[2], d));
 }
 
-// Replaces a box around the scanner by one in its own frame that contains it, wider by more than the rounding of a
-// turned direction.
+// Replaces a box around the scanner by one in the scanner's own frame that contains it, widened by more than the
+// rounding of a turned direction.
 void turn_back(vec3 turn[3], inout vec3 low, inout vec3 high) {
   const vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
   const vec3 reach = abs(middle) + half_size;

@@ -4,7 +4,7 @@
 #define VANTAGE_LIB_VOXEL
 #include "lib/parameters.glsl"
 
-// Voxel coordinates. Mirrors VoxelGrid::cell_of to the bit.
+// Returns voxel coordinates, as VoxelGrid::cell_of does, to the bit.
 bool cell_of(vec3 p, out uvec3 cell) {
   precise vec3 q = p - parameters.voxel_min;
   precise vec3 scaled = q * parameters.voxel_inverse_size;

@@ -13,13 +13,13 @@ VANTAGE_CONST uint bvh_placements_array = 2;  // BvhPlacement, if meshes are sha
 
 // A binary BVH node: boxes of both children, as centre and half size, which needs fewer minima and maxima per ray than
 // two corners. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle in the
-// rest. Boxes are larger by `widening` on all sides than their contents.
+// rest. Boxes exceed their contents by `widening` on all sides.
 VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
 VANTAGE_CONST uint bvh_end = 0xFFFFFFFFu;  // no leaf
-// If nodes share meshes, the tree from node 0 on has leaves that place a mesh, with a count that no other leaf has;
-// the rest is an index of BvhPlacement.
+// If nodes share meshes, the tree from node 0 on has leaves that place a mesh. These have a count that no other leaf
+// has; the rest is an index of BvhPlacement.
 VANTAGE_CONST uint bvh_placement_count = 7;
 VANTAGE_CONST uint bvh_leave = 0xFFFFFFFEu;  // no leaf: end of a mesh
 VANTAGE_CONST uint bvh_stack_size = 64;
@@ -44,7 +44,7 @@ struct BvhTriangle {
   uint unused1;
 };
 
-// A mesh that nodes share, where one of them places it.
+// One placement of a mesh that nodes share.
 struct BvhPlacement {
   vec3 row0;  // of the linear part of mesh_from_local
   uint root;  // node of the mesh's own tree, in its own frame
@@ -53,10 +53,10 @@ struct BvhPlacement {
   vec3 row2;
   float widening;  // of the mesh's boxes
   vec3 origin;     // of the mesh, in the local frame
-  float doubt;     // by which its corners may be elsewhere for a ray, in its frame, per metre of the distances involved
+  float doubt;     // error of its corners for a ray, in its frame, per metre of the distances involved
 };
 
-// A node at which rays of a tile may start, and the distance of its box; infinity if there is none.
+// A node at which rays of a tile may start, and the distance of its box; infinity in unused entries.
 struct TileStart {
   uint node;
   float near;

@@ -20,7 +20,7 @@ VANTAGE_CONST uint normal_segments = 16;
 VANTAGE_CONST uint normal_rows = normal_octaves * normal_segments + 1;
 // u = philox4x32-10(key = seed, counter = {ray low, ray high, place, noise_stream})[0]
 VANTAGE_CONST uint noise_stream = 0x6e6f6973u;
-// The same, for whether a ray's echo is lost: u is below a limit.
+// The same for lost echoes: an echo is lost if u is below a limit.
 VANTAGE_CONST uint dropout_stream = 0x64726f70u;
 
 VANTAGE_SHARED_END

@@ -11,7 +11,7 @@ struct RegistrationPatch {
   vec3 point;  // local frame
   vec3 normal;
   float rays;      // area / (Δh·Δv): rays of a free view, before distance and obliquity
-  float least;     // fewest of them for a station that is to recognise a plane
+  float least;     // fewest of them for a station to recognise a plane
   float variance;  // m² of the modelling error, ρ²L²/A; 0: no plane to register by
   float diffuse;
   float extent;     // surface of the voxel as a share of a face, times 2^15

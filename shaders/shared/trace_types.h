@@ -36,9 +36,9 @@ VANTAGE_CONST uint glass_constant = 5;   // of `with_glass` in lib/glass.glsl
 VANTAGE_CONST uint shared_constant = 6;  // of `with_shared` in lib/scene_triangle.glsl
 VANTAGE_CONST uint listed_constant = 7;  // of `listed` in lib/list.glsl
 
-// Glass (docs/method.md). A pane returns the beam itself at up to 1° from its normal: the square of that cosine. A beam
-// with a smaller share left is lost. Faces nearer together than the sum of two gaps, one a share of the distance, are
-// one, as are triangles on both sides of an edge; a pane as near to what is behind it does not count.
+// Glass (docs/method.md). A pane reflects the beam at up to 1° from its normal: the square of that cosine. A beam with
+// a smaller share left is lost. Faces nearer together than the sum of two gaps, one of them a share of the distance,
+// count as one, as do triangles on both sides of an edge. A pane this near to the surface behind it does not count.
 VANTAGE_CONST float pane_return_square = 0.9996954f;
 VANTAGE_CONST float least_passed = 1e-6f;
 VANTAGE_CONST float face_gap_share = 3.8146973e-6f;  // 2^-18
@@ -57,19 +57,19 @@ VANTAGE_CONST uint misses_footprint = 2;
 VANTAGE_CONST uint misses_noise = 4;
 VANTAGE_CONST uint misses_echo = 8;
 
-// Scenes whose nodes share meshes (scene/scene_data.hpp). A run of triangles, which are stored elsewhere than their
+// Scenes whose nodes share meshes (scene/scene_data.hpp). A run of triangles that are stored elsewhere than their
 // numbers say.
 VANTAGE_CONST uint no_place = 0xFFFFFFFFu;
 VANTAGE_CONST uint run_block_bits = 10;
 struct TriangleRun {
   uint first_triangle;
-  uint to_stored;  // added to the number of a triangle, gives the number that it is stored by, modulo 2^32
-  uint place;      // index into `places`; no_place: stored where it stands
+  uint to_stored;  // added to a triangle's number, modulo 2^32, gives its stored number
+  uint place;      // index into `places`; no_place: stored in place
 };
 struct MeshTransform {
   vec3 x, y, z, origin;               // columns of local_from_mesh
   vec3 normal_x, normal_y, normal_z;  // of the map of normals, up to a positive length
-  float doubt;  // by which rounding may move the mesh for a ray: a share of `size` and the distance of its origin
+  float doubt;  // largest shift of the mesh by rounding, for a ray: a share of `size` and the distance of its origin
   float size;   // metres
   uint mirrored;
 };
@@ -79,7 +79,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_zenith;
   VANTAGE_ADDRESS(Floats) sin_azimuth;
   VANTAGE_ADDRESS(Floats) cos_azimuth;
-  // The rows of a list are its rays; these find them, as DirectionList does.
+  // A list has one row for each ray; these arrays find its rays, as DirectionList does.
   VANTAGE_ADDRESS(Uints) list_rays;       // by band of zenith, then by azimuth
   VANTAGE_ADDRESS(Floats) list_azimuths;  // of these, in a full turn from 0
   VANTAGE_ADDRESS(Uints) list_offsets;    // of each band in them, and an end
@@ -97,11 +97,11 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle, or per run: index into `limits`
   VANTAGE_ADDRESS(Limits) limits;
-  // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0:
-  // glass weakens no echo.
+  // Tree of the triangles of glass, BvhNode and BvhTriangle; the surveyed bit of an id marks a face of a solid. 0: no
+  // glass weakens echoes.
   uint64_t glass_nodes;
   uint64_t glass_corners;
-  // If meshes are shared.
+  // Only if meshes are shared.
   VANTAGE_ADDRESS(TriangleRuns) runs;  // ascending, and an end
   VANTAGE_ADDRESS(Uints) run_at;       // the run of every 2^run_block_bits-th triangle
   VANTAGE_ADDRESS(MeshTransforms) places;
@@ -157,10 +157,10 @@ struct CountPush {
   uint padding;
 };
 
-// Finds the tiles of directions that see a surveyed brick, and the distance of the farthest.
+// Finds the tiles of directions that see a surveyed brick, and the distance of each tile's farthest one.
 struct TilePush {
-  VANTAGE_ADDRESS(Uints) tile_far;  // bits of a non-negative float, which have the same order as the float; 0: nothing
-                                    // to see
+  VANTAGE_ADDRESS(Uints) tile_far;  // bits of a non-negative float, which are ordered as the float; 0: nothing to
+                                    // see
   VANTAGE_ADDRESS(Uints) tile_list;
   VANTAGE_ADDRESS(Uints) dispatch;  // three words: an indirect dispatch
   VANTAGE_ADDRESS(Uints) rays;      // receives the rays of the listed tiles, 64 bits
@@ -200,12 +200,12 @@ struct ClampPush {
 // of group g of network n start at word (n · groups + g) · totals_stride:
 // - weight of the saturated voxels (64 bits);
 // - points of the others, each times its voxel's weight and point weight (64 bits);
-// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(weighted points /
-// goal, 1)
-//   without rounding;
+// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² without rounding,
+//   with r = min(weighted points / goal, 1);
 // - seen[stations], then shared[pairs].
-// With c = weighted points >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) −
-// c(k−1))² if neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
+// The three sums use c = weighted points >> difference_shift for a voxel that is not saturated. squares (64 bits) adds
+// (c(k) − c(k−1))² if neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges
+// counts such pairs.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
@@ -243,12 +243,12 @@ struct SampleStation {
   uint network;  // within the batch
   vec3 turn[3];
 };
-// A pair of slot and voxel that is still open after its first ray was traced.
+// A pair of slot and voxel that is still open after its first ray.
 struct SamplePair {
   uint voxel;  // within the sample
   uint slot;
   uint probe;     // the traced ray; no_ray: none was worth tracing
-  uint occluder;  // the triangle that stopped it before the voxel; not_occluded: none did
+  uint occluder;  // the triangle that stopped it before the voxel; or not_occluded
   int window[6];  // RayWindow, in its order
 };
 VANTAGE_CONST uint no_ray = 0xFFFFFFFFu;
@@ -257,7 +257,7 @@ struct SampleRay {
   uint pair;
   uint ray;
 };
-// Part of a pair's walk. The first part of a long walk is traced before the others are listed, since they may not be
+// Part of a pair's walk. The first part of a long walk is traced before the other parts are listed, as they may not be
 // needed.
 struct SampleItem {
   uint pair;
@@ -275,7 +275,7 @@ VANTAGE_CONST uint control_rest = 6;      // rays listed for them; if there is n
 VANTAGE_CONST uint control_dispatch = 7;  // three words
 VANTAGE_CONST uint control_words = 10;
 
-// The first of a chunk's kernels.
+// Input of the first of a chunk's kernels.
 struct SampleProbePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleStations) stations;
@@ -294,7 +294,7 @@ struct SampleProbePush {
   uint probed;   // 1: these pairs were probed before, so their results are already counted
   uint pair_capacity;
 };
-// The other kernels of a chunk.
+// Input of the other kernels of a chunk.
 struct SamplePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleStations) stations;

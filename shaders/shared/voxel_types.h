@@ -10,8 +10,8 @@ VANTAGE_CONST uint brick_bits = 3;            // a brick has 2^3 voxels per side
 VANTAGE_CONST uint brick_mask_words = 16;     // 512 bits
 VANTAGE_CONST uint empty_slot = 0xFFFFFFFFu;  // BrickSlot::brick of an empty slot
 
-// Bit m of the mask (word m / 32, bit m % 32) is the voxel whose Morton code within the brick is m. Index of a voxel =
-// first + number of set bits below it, which is its position in Morton order.
+// Bit m of the mask (word m / 32, bit m % 32) is the voxel whose Morton code within the brick is m. A voxel's index is
+// first + the number of set bits below it, which is its position in Morton order.
 struct VoxelBrick {
   uint x, y, z;  // brick coordinates: voxel coordinates / 8
   uint first;

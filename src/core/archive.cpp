@@ -10,8 +10,8 @@
 namespace vantage {
 namespace {
 
-// Empty if the stream ends early. Reads in pieces, so that a damaged length allocates no more memory than the stream
-// can fill.
+// Returns nothing if the stream ends early. Reads in pieces, so that a damaged length allocates no more memory than the
+// stream can fill.
 std::optional<std::string> next_bytes(std::istream& in, std::uint64_t count) {
   constexpr std::uint64_t kPiece = 1 << 20;
   std::string bytes;

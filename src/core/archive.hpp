@@ -119,7 +119,7 @@ class ArchiveReader {
     values.resize(size(least_bytes));
     for (T& value : values) each(value);
   }
-  // Length of a list whose elements take at least `least_bytes` each.
+  // Returns the length of a list whose elements take at least `least_bytes` each.
   std::size_t size(std::size_t least_bytes) {
     const std::uint64_t many = whole();
     if (many > left_.size() / least_bytes) fail();

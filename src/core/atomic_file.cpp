@@ -25,7 +25,7 @@ std::string temporary_prefix(const std::filesystem::path& file) {
 constexpr std::string_view kSuffix = ".partial";
 constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
-// `offset` < 0: the current position. Returns false, with errno, if not all could be written.
+// `offset` < 0: the current position. Returns false, with errno, unless all bytes were written.
 bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset = -1) {
   while (bytes > 0) {
     const ssize_t n = offset < 0 ? ::write(descriptor, data, bytes) : ::pwrite(descriptor, data, bytes, offset);
@@ -40,9 +40,9 @@ bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset
   return true;
 }
 
-// Whether no process writes the file any more: a writer holds a lock on it.
+// Returns true if no process writes the file any more; a writer holds a lock on it.
 bool abandoned(const std::filesystem::path& temporary) {
-  // No link: it may lead to what only looks like a file.
+  // Follows no link, as it may lead to a file that only looks alike.
   const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (descriptor < 0) return false;
   const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;

@@ -31,7 +31,7 @@ class AtomicFile {
 
   // Removes temporaries of `file` left by a killed process. Running processes lock theirs, which stay.
   static void remove_leftovers(const std::filesystem::path& file);
-  // The same for all files of a folder.
+  // Does the same for all files of a folder.
   static void remove_leftovers_in(const std::filesystem::path& folder);
 
  private:
@@ -43,8 +43,8 @@ class AtomicFile {
   bool settled_ = false;
 };
 
-// Removes files of a folder that an earlier run left and this one may not write again. One that cannot be removed
-// stays.
+// Removes files of a folder that an earlier run left and this one may not write again. Files that cannot be removed
+// stay.
 void remove_earlier(const std::filesystem::path& folder, std::initializer_list<const char*> names);
 
 // Throws Error io.

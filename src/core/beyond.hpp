@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// Distance of a value outside an interval, and of a point outside a box; 0 within.
+// Returns the distance of a value outside an interval, or of a point outside a box; 0 within.
 inline double beyond(double value, double low, double high) { return std::max({low - value, value - high, 0.0}); }
 inline double beyond(const Vec3& p, const Box& box) {
   return std::hypot(beyond(p.x, box.min.x, box.max.x), beyond(p.y, box.min.y, box.max.y),

@@ -41,7 +41,7 @@ std::string closest_name(std::string_view typed, std::span<const std::string> na
     const auto longer = std::max(wanted.size(), known.size());
     double distance =
         static_cast<double>(edit_distance(wanted, known)) / std::max(1.0, static_cast<double>(longer / 3));
-    // half of a name is no misspelling: it ranks after a slip, and before a name that is two thirds right
+    // half of a name is no misspelling: it ranks after a slip and before a name that is two thirds right
     constexpr double kHalf = 0.6;
     if (wanted.size() >= 3 && (known.starts_with(wanted) || known.ends_with(wanted)))
       distance = std::min(distance, kHalf);

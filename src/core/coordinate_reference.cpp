@@ -59,7 +59,7 @@ class Reference {
   }
 
  private:
-  // The systems of plan and height that others wrap or join.
+  // Finds the systems of plan and height inside systems that wrap or join others.
   void split(const PJ* system) {
     const PJ_TYPE type = proj_get_type(system);
     if (type == PJ_TYPE_BOUND_CRS) {
@@ -107,7 +107,7 @@ class Reference {
     return count > 0;
   }
 
-  // Text of version 1 has no words for some axes, of which the registry then tells.
+  // Takes axes from the registry, as text of version 1 has no words for some.
   void take_registered_axes(CoordinateReference& out) const {
     const char *authority = proj_get_id_auth_name(plan_.get(), 0), *code = proj_get_id_code(plan_.get(), 0);
     if (!authority || !code || out.kind != Kind::projected) return;

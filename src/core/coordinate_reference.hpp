@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinate reference systems as PROJ understands them (PROJ contributors: PROJ coordinate transformation software
-// library, 2022), without its network.
+// Coordinate reference systems by PROJ (PROJ contributors: PROJ coordinate transformation software library, 2022),
+// without its network.
 #pragma once
 
 #include <optional>
@@ -20,19 +20,19 @@ struct CoordinateReference {
   std::string name = {};
   Axis first = {}, second = {};
   std::optional<Axis> height = {};  // if the system has one
-  // Well-known text of version 1 (OGC 01-009, as GDAL writes it) in one line; empty where version 1 has no words for
-  // the system. The other one is that of the same system with all lengths in metres and heights upwards.
+  // Well-known text of version 1 (OGC 01-009, as GDAL writes it) in one line; empty if version 1 has no words for the
+  // system. `in_metres` is the same system with all lengths in metres and heights upwards.
   std::string text = {}, in_metres = {};
 
   bool has_lengths() const { return kind == Kind::projected || kind == Kind::local; }
-  // Whether x points east and y north, in either order of its definition, or both are of a polar system.
+  // Returns true if x points east and y north, in either order of definition, or both are of a polar system.
   bool has_usual_axes() const;
 };
 
-// `definition`: well-known text of either version, EPSG:N, or EPSG:N+M with heights. Empty if PROJ does not know it.
+// Reads well-known text of either version, EPSG:N, or EPSG:N+M with heights. Empty if PROJ does not know it.
 std::optional<CoordinateReference> read_coordinate_reference(const std::string& definition);
 
-// Metres in a unit of length by its EPSG code, as 9003; empty if PROJ knows no such unit.
+// A unit of length by its EPSG code, such as 9003; empty if PROJ knows no such unit.
 struct LengthUnit {
   std::string name;
   double metres = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stop token that follows another one and the clock.
+// A stop token that follows another token and the clock.
 #pragma once
 
 #include <atomic>
@@ -20,11 +20,11 @@ class Deadline {
   Deadline& operator=(const Deadline&) = delete;
 
   std::stop_token stop() const { return stop_.get_token(); }
-  // Whether the clock stopped it first.
+  // Returns true if the clock stopped it first.
   bool passed() const { return passed_; }
-  // Infinite without a limit.
+  // Returns infinity without a limit.
   double seconds_left() const;
-  // Ends `seconds` from now instead. Of no effect without a limit, or once it has ended.
+  // Ends `seconds` from now instead. Has no effect without a limit, or once it has ended.
   void move(double seconds);
 
  private:

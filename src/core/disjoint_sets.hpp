@@ -21,7 +21,7 @@ class DisjointSets {
     while (parent_[at] != at) at = parent_[at] = parent_[parent_[at]];
     return at;
   }
-  // True if the two were in different sets.
+  // Joins two sets; returns false if they were one already.
   bool join(std::size_t a, std::size_t b) {
     const auto [low, high] = std::minmax({find(a), find(b)});
     parent_[high] = low;

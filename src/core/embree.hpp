@@ -51,7 +51,7 @@ inline std::string device_config() {
   return forced && *forced ? "isa=" + std::string(forced) : "max_isa=avx2";
 }
 
-// One line about the instruction set, for comparing results.
+// Returns one line about the instruction set, to compare results.
 inline std::string told() {
   if (const char* const forced = std::getenv("VANTAGE_EMBREE_ISA"); forced && *forced)
     return "runs on every CPU; held to " + std::string(forced) + " by VANTAGE_EMBREE_ISA";

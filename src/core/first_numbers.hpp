@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-// `count` numbers, from `first` on.
+// Returns `count` numbers, from `first` on.
 template <class Number = std::size_t>
 std::vector<Number> first_numbers(std::size_t count, Number first = 0) {
   std::vector<Number> numbers(count);

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-// The bytes of a GLB before its binary chunk, which has `binary` bytes, a multiple of four: header, document, and the
-// chunk's own header. Throws std::length_error above 4 GiB, the limit of GLB.
+// Returns the bytes of a GLB before its binary chunk, which has `binary` bytes, a multiple of four: header, document,
+// and the chunk's own header. Throws std::length_error above 4 GiB, the limit of GLB.
 inline std::string glb_head(std::string document, std::size_t binary) {
   constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJson = 0x4E4F534A, kBinary = 0x004E4942;
   document.resize((document.size() + 3) / 4 * 4, ' ');

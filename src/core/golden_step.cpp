@@ -9,8 +9,8 @@
 namespace vantage {
 namespace {
 
-// Largest quotient of the continued fraction of step / population; 0 if they have a common divisor. The smaller it is,
-// the more even the walk at its worst size; the golden section has only ones.
+// Returns the largest quotient of the continued fraction of step / population; 0 if they have a common divisor. The
+// smaller it is, the more even the walk is at its worst size; the golden section has only ones.
 std::uint64_t largest_quotient(std::uint64_t step, std::uint64_t population) {
   std::uint64_t largest = 0;
   while (step > 0) {

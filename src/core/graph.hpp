@@ -13,7 +13,7 @@ struct Components {
   std::size_t count = 0;
 };
 
-// Components of the undirected graph over nodes 0 to n − 1; `linked(i, j)` says whether two are neighbours.
+// Returns the components of the undirected graph over nodes 0 to n − 1; `linked(i, j)`: i and j are neighbours.
 template <class Linked>
 Components components(std::size_t n, Linked linked) {
   Components found{.of = std::vector<std::size_t>(n, n)};
@@ -38,7 +38,7 @@ Components components(std::size_t n, Linked linked) {
   return found;
 }
 
-// The same of a sparse graph; `for_each_neighbour(i, visit)` calls visit(j) for each neighbour.
+// Does the same for a sparse graph; `for_each_neighbour(i, visit)` calls visit(j) for each neighbour.
 template <class ForEachNeighbour>
 Components components_along(std::size_t n, ForEachNeighbour for_each_neighbour) {
   Components found{.of = std::vector<std::size_t>(n, n)};
@@ -63,9 +63,9 @@ struct TreeEdge {
   double weight;
 };
 
-// Spanning tree with the largest sum of weights, and so the largest minimum (Prim: Shortest Connection Networks and
-// Some Generalizations, 1957). Edges are in the order in which they join the tree of node 0. `weight(i, j)` is
-// symmetric; a weight not above 0 means no edge. An unreachable node joins by an edge of weight 0.
+// Returns the spanning tree with the largest sum of weights, and thus the largest minimum (Prim: Shortest Connection
+// Networks and Some Generalizations, 1957). Edges are in the order in which they join the tree of node 0. `weight(i,
+// j)` is symmetric; a weight not above 0 means no edge. An unreachable node joins by an edge of weight 0.
 template <class Weight>
 std::vector<TreeEdge> strongest_spanning_tree(std::size_t n, Weight weight) {
   std::vector<TreeEdge> tree, best(n);  // the strongest edge from the tree to each node

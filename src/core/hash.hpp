@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash to recognise data (multiply and xor-shift): fast, stable between runs, not cryptographic.
+// Hash that recognises equal data (multiply and xor-shift): fast, stable between runs, not cryptographic.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ double upper_tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi); }
 
-// Coefficients of the cubic with the given values at 0, ⅓, ⅔ and 1.
+// Returns the coefficients of the cubic with the given values at 0, ⅓, ⅔ and 1.
 std::array<double, 4> cubic_through(const std::array<double, 4>& y) {
   const double d1 = y[1] - y[0], d2 = y[2] - y[0], d3 = y[3] - y[0];
   return {y[0], 9 * d1 - 4.5 * d2 + d3, -22.5 * d1 + 18 * d2 - 4.5 * d3, 13.5 * d1 - 13.5 * d2 + 4.5 * d3};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops of oneTBB that do their whole work or throw. Once an error ends a loop, oneTBB ends the loops inside it, too:
-// they return as usual, with any part of their work undone, and what follows them would read what was never written.
+// Loops of oneTBB that do their whole work or throw. Once an error ends a loop, oneTBB also ends the loops inside it.
+// They return as usual with part of their work undone, and code after them would read values that were never written.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -15,7 +15,7 @@
 namespace vantage::parallel {
 
 // Thrown by a loop that was cut short, in a task of the loop that the error ends; oneTBB drops it and keeps the error.
-// No std::exception, since nothing may take it for an error of its own.
+// It is no std::exception, so that nobody handles it as an error of its own.
 struct CutShort {};
 
 // tbb::parallel_for.

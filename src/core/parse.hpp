@@ -24,10 +24,10 @@ inline constexpr Interval positive{.low = 0, .low_included = false};
 inline constexpr Interval not_negative{.low = 0};
 inline constexpr Interval any_share{.low = 0, .high = 1};
 inline constexpr Interval share_below_1{.low = 0, .high = 1, .high_included = false};
-// Lengths, steps and rates that must not be 0, in any of their units. Smaller and larger ones overflow what is computed
-// of them.
+// Lengths, steps and rates that must not be 0, in any of their units. Smaller and larger ones would overflow values
+// computed from them.
 inline constexpr Interval measurable{.low = 1e-6, .high = 1e9};
-// Limits of time in seconds, 0 where there is none: thirty years, since clocks count in 64 bits of nanoseconds.
+// Limits of time in seconds, 0 for none: at most thirty years, since clocks count in 64 bits of nanoseconds.
 inline constexpr Interval any_seconds{.low = 0, .high = 1e9};
 
 // Throws unless the number is finite and in the interval.
@@ -37,12 +37,12 @@ void check_number(double value, const std::string& what, const Interval& interva
 double parse_number(std::string_view text, const std::string& what, const Interval& interval = any_number);
 std::uint64_t parse_count(std::string_view text, const std::string& what, std::uint64_t low = 0,
                           std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
-// "true" or "false".
+// Parses "true" or "false".
 bool parse_flag(std::string_view text, const std::string& what);
-// The text without surrounding blanks.
+// Returns the text without surrounding blanks.
 std::string_view trimmed_text(std::string_view text);
 std::vector<std::string_view> split(std::string_view text, char separator);
-// Comma-separated numbers, from `fewest` to `most` of them.
+// Parses comma-separated numbers, from `fewest` to `most` of them.
 std::vector<double> parse_numbers(std::string_view text, const std::string& what, std::size_t fewest, std::size_t most,
                                   const Interval& interval = any_number);
 
@@ -51,17 +51,17 @@ struct CountRange {
 };
 CountRange parse_count_range(std::string_view text, const std::string& what, std::size_t low, std::size_t high);
 
-// A number of voxels ("20000") or a share of them ("5%", "0.05").
+// Parses a number of voxels ("20000") or a share of them ("5%", "0.05").
 SampleSize parse_sample(std::string_view text, const std::string& what);
 
-// Devices, comma-separated: all, numbers, cpu.
+// Parses comma-separated devices: all, numbers, cpu.
 DeviceList parse_devices(std::string_view text, const std::string& what);
 
-// Seconds: a number, optionally followed by s, min or h.
+// Parses seconds: a number, optionally followed by s, min or h.
 double parse_duration(std::string_view text, const std::string& what);
-// "06:30": minutes after midnight, up to 24:00.
+// Parses "06:30" to minutes after midnight, up to 24:00.
 double parse_clock(std::string_view text, const std::string& what);
-// "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.
+// Parses "4G", "500 MiB" or "2e9" to bytes; K, M, G, T are powers of 1024.
 std::uint64_t parse_bytes(std::string_view text, const std::string& what);
 
 }  // namespace vantage

@@ -21,7 +21,7 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std::array<
   return c;
 }
 
-// 32 random bits of a ray, by its number and its station's place; random_bits() of the shaders has the same.
+// Returns 32 random bits of a ray, by its number and its station's place, as random_bits() of the shaders does.
 constexpr std::uint32_t random_bits(std::uint64_t seed, std::uint64_t ray, std::uint32_t place, std::uint32_t stream) {
   return philox4x32(seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place, stream})[0];
 }

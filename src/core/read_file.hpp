@@ -15,7 +15,7 @@ class RegularFile {
   explicit RegularFile(const std::filesystem::path& file, const std::string& what = "");
 
   std::uint64_t size() const { return size_; }
-  // Reads the next bytes, at most so many; 0 at the end. Throws Error io.
+  // Reads the next bytes, at most `most`, and returns their number; 0 at the end. Throws Error io.
   std::size_t read_next(void* bytes, std::size_t most);
   // Reads all size() bytes. Called once. Throws Error io.
   void read(void* bytes);

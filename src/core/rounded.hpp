@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// The value with so many significant digits, for people.
+// Returns the value with `digits` significant digits, for people.
 inline std::string rounded(double value, int digits = 3) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);

@@ -18,13 +18,13 @@
 
 namespace vantage {
 
-// Degrees without the rounding of radians, so that 360 is not above 360.
+// Returns degrees without the rounding of radians, so that 360 is not above 360.
 inline double whole_degrees(Angle angle) {
   const double degrees = angle.in_degrees();
   return std::abs(degrees) < 1e3 ? std::round(degrees * 1e12) / 1e12 : degrees;
 }
 
-// The help of a setting with its default.
+// Returns the help of a setting with its default.
 inline std::string otherwise(const std::string& help, double usual) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.6g", usual);
@@ -43,7 +43,7 @@ class SettingRows {
     group_ = std::move(name);
     return *this;
   }
-  // These change the last row.
+  // These functions change the last row.
   SettingRows& by_scene() { return last().by_scene = true, *this; }
   SettingRows& advanced() { return last().advanced = true, *this; }
   SettingRows& by_preset() { return last().by_preset = true, *this; }

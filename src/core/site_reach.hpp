@@ -12,7 +12,7 @@ namespace vantage {
 // and the margins for rounding would exceed the scene.
 inline constexpr double kSiteReach_m = 1e6;
 
-// Whether a position is finite and within reach of `origin`, the scene's; both in the survey frame.
+// Returns true if a position is finite and within reach of the scene's `origin`; both in the survey frame.
 inline bool in_reach(const Vec3& position, const Vec3& origin) {
   const Vec3 local = position - origin;
   return std::abs(local.x) <= kSiteReach_m && std::abs(local.y) <= kSiteReach_m && std::abs(local.z) <= kSiteReach_m;
@@ -20,7 +20,7 @@ inline bool in_reach(const Vec3& position, const Vec3& origin) {
 
 [[noreturn]] void refuse_position(const Vec3& position, std::string_view what);
 
-// Throws Error invalid_argument for a position that is not in reach. `what` begins the message: "station 3 stands".
+// Throws Error invalid_argument for a position out of reach. `what` begins the message: "station 3 stands".
 inline void require_in_reach(const Vec3& position, const Vec3& origin, std::string_view what) {
   if (!in_reach(position, origin)) refuse_position(position, what);
 }

@@ -6,7 +6,7 @@
 namespace vantage {
 namespace {
 
-// Removes the remainder of a cosine that should be 0, from π/2 in double.
+// Replaces a cosine by 0 if only the rounding of π/2 keeps it from being 0.
 double without_rounding(double value) { return std::abs(value) < 1e-15 ? 0 : value; }
 
 }  // namespace

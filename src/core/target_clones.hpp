@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VANTAGE_TARGET_CLONES before a function compiles it for the baseline and for AVX2 (with population count), chosen at
-// program start. Both round alike, since contraction is off. Sanitizers start after that choice, so they get the
-// baseline alone.
+// program start. Both round alike, since contraction is off. Sanitizers start after that choice, so they get only the
+// baseline.
 #pragma once
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__) && \

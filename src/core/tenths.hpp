@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Millimetres of a prediction, whose hundredths mean nothing.
+// Millimetres of a prediction, rounded to tenths, as hundredths have no meaning.
 #pragma once
 
 #include <string>

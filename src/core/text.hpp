@@ -16,7 +16,7 @@ inline std::string number(double value) {
 }
 inline std::string number(std::integral auto value) { return std::to_string(value); }
 
-// With `digits` digits after the point, for people.
+// Writes `digits` digits after the point, for people.
 inline std::string fixed(double value, int digits) {
   char buffer[400];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, digits).ptr};
@@ -29,7 +29,7 @@ inline std::string grouped(std::uint64_t value) {
   return text;
 }
 
-// "08:05" of minutes after midnight, of a later day too.
+// Returns minutes after midnight as "08:05", also those of a later day.
 inline std::string clock_text(double minutes) {
   constexpr std::int64_t kDay_min = 24 * 60;
   const std::int64_t whole = std::llround(minutes), of_day = (whole % kDay_min + kDay_min) % kDay_min;
@@ -37,14 +37,14 @@ inline std::string clock_text(double minutes) {
   return (hours.size() < 2 ? "0" : "") + hours + ":" + (rest.size() < 2 ? "0" : "") + rest;
 }
 
-// ASCII letters alone.
+// Converts only ASCII letters.
 inline std::string lower_case(std::string text) {
   for (char& c : text)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return text;
 }
 
-// "85.3 %" of a share of 0.853.
+// Returns "85.3 %" for a share of 0.853.
 inline std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
 
 }  // namespace vantage

@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// How many bytes one character of UTF-8 has; 0 where there is none.
+// Returns the number of bytes of the UTF-8 character at this place; 0 if there is none.
 inline std::size_t utf8_character(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at);
@@ -35,7 +35,7 @@ inline bool is_utf8(std::string_view text) {
   return true;
 }
 
-// Unchanged if it is UTF-8, else read as Latin-1.
+// Returns the text unchanged if it is UTF-8; else converts it from Latin-1.
 inline std::string to_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string out;

@@ -28,11 +28,11 @@ namespace vantage::importers {
 namespace {
 
 constexpr std::size_t kMostErrors = 4096;
-// Open files, of which a pipe holds 64 KiB of the kernel's memory, and threads.
+// Limits open files, as each pipe holds 64 KiB of the kernel's memory, and threads.
 constexpr std::uint64_t kMostFiles = 256, kMostThreads = 256;
 
-// The limit of RLIMIT_NPROC, which counts all processes and threads of a user: there are no more now than the system
-// has.
+// Returns the limit for RLIMIT_NPROC, which counts all processes and threads of a user: the number that the system has
+// now, plus the importer's own.
 std::uint64_t most_tasks() {
   std::ifstream load("/proc/loadavg");
   std::string word;
@@ -45,7 +45,7 @@ std::uint64_t most_tasks() {
   return all + kMostThreads;
 }
 
-// Ends a process and whatever it started.
+// Ends a process and all that it started.
 void end(pid_t process) {
   kill(-process, SIGKILL);
   kill(process, SIGKILL);  // it may not have its group yet
@@ -82,7 +82,7 @@ struct Pipe {
   Descriptor from, to;
 };
 
-// At `most` a signal tells which limit was reached; at `hard` the process ends.
+// Sets a limit. A signal reports it at `most`; the process ends at `hard`.
 void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard) noexcept {
   rlimit now{};
   getrlimit(resource, &now);
@@ -90,15 +90,15 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
   setrlimit(resource, &wanted);
 }
 
-// Sanitizers reserve terabytes and read what the sandbox closes: a build with one runs importers outside of both.
+// Sanitizers reserve terabytes and read files that the sandbox closes: their builds run importers without either limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kConfined = false;
 #else
 constexpr bool kConfined = true;
 #endif
 
-// Runs after the fork, where only system calls are safe. Allocation is limited by RLIMIT_DATA: unlike RLIMIT_AS it does
-// not count the address space that node reserves and never uses.
+// Runs after the fork, where only system calls are safe. RLIMIT_DATA limits allocation: unlike RLIMIT_AS it does not
+// count the address space that node reserves and never uses.
 [[noreturn]] void become(char* const* words, char* const* environment, Sandbox& sandbox, const Limits& limits,
                          std::uint64_t tasks, int nothing, int out, int err) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -125,7 +125,7 @@ constexpr bool kConfined = true;
 
 using Clock = std::chrono::steady_clock;
 
-// Lines of a standard error: shares done are reported, others are errors.
+// Reads lines of standard error: reports shares of the work done, and keeps other lines as errors.
 class ErrorLines {
  public:
   ErrorLines(std::string& errors, const Progress& progress) : errors_(errors), progress_(progress) {}
@@ -157,7 +157,7 @@ class ErrorLines {
   std::string line_;
 };
 
-// Reads both ends until they are closed; records why it stopped earlier.
+// Reads both pipes until they are closed; records the reason if it stops earlier.
 void listen(Pipe& out, Pipe& err, const Limits& limits, const Progress& progress, Ended& ended) {
   ErrorLines lines(ended.errors, progress);
   const auto deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
@@ -242,7 +242,7 @@ Ended run_limited(const std::vector<std::string>& words, const std::vector<std::
   int status = 0;
   try {
     listen(out, err, limits, progress, ended);
-  } catch (...) {  // not enough memory for its output, or thrown by a report
+  } catch (...) {  // not enough memory for the output, or thrown by a report
     end(process);
     waitpid(process, &status, 0);
     throw;

@@ -12,10 +12,10 @@
 namespace vantage::importers {
 
 struct Limits {
-  std::uint64_t memory = 0;  // that it may allocate; 0: any
+  std::uint64_t memory = 0;  // that the program may allocate; 0: any amount
   unsigned cpu_s = 15 * 60, wall_s = 60 * 60;
   std::uint64_t output = std::uint64_t{1} << 32;  // bytes
-  // It starts a program of its own by posix_spawn(), in the same sandbox and with the same limits each. Both have the
+  // The program starts another one by posix_spawn(), in the same sandbox and with the same limits each. Both get the
   // variables PATH and VANTAGE_IMPORTERS.
   bool spawns = false;
 };
@@ -32,10 +32,10 @@ struct Ended {
   bool timed_out = false, too_large = false, stopped = false;
 };
 
-// Runs a program with these words, `words[0]` its path, in a sandbox (sandbox.hpp), and waits. It has no environment
-// unless it `spawns`, and dumps no core. If the kernel has Landlock, it reads nothing outside the system's folders,
-// `programs` and `readable`. Lines "progress SHARE" of its standard error are reported. Throws Error io if it cannot be
-// started.
+// Runs a program with these words, `words[0]` its path, in a sandbox (sandbox.hpp), and waits. The program has no
+// environment unless it `spawns`, and dumps no core. If the kernel has Landlock, the program reads only the system's
+// folders, `programs` and `readable`. Lines "progress SHARE" of its standard error are reported. Throws Error io if it
+// cannot be started.
 Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& programs,
                   const std::vector<std::filesystem::path>& readable, const Limits& limits,
                   const Progress& progress = {});

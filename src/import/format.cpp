@@ -24,7 +24,7 @@ constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc", "unit", true};
 constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
-// A PLY holds either; its name alone means faces.
+// A PLY holds a mesh or points; its extension alone means a mesh.
 constexpr const char* kOfClouds = "cell unit up";
 constexpr Format kE57{"E57", ".e57 ", kCloud, kOfClouds, true}, kLas{"LAS", ".las .laz ", kCloud, kOfClouds, true},
     kPlyPoints{"PLY of points", ".ply ", kCloud, kOfClouds, true},
@@ -34,7 +34,7 @@ constexpr Format kPlan{"a floor plan in DXF", ".dxf ", "vantage-import-plan", "u
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx,  &kCollada,
                               &k3ds,  &kX3d, &kDxf, &kE57, &kLas, &kText, &kPcd};
 
-// A file that people take for a model, by its first bytes, and advice about it.
+// A file often mistaken for a model, with its first bytes and advice.
 struct Mistaken {
   std::string_view begins;
   const char* is;
@@ -63,7 +63,7 @@ constexpr std::array kMistaken{
     Mistaken{"#VRML"sv, "a VRML file; export X3D (as XML) or glTF"},
 };
 
-// Bytes of a file that its format is told by.
+// Number of bytes of a file that may be read to recognise its format.
 constexpr std::uint64_t kMostRecognised = std::uint64_t{1} << 30;
 
 std::string lower(std::string_view text) {
@@ -88,7 +88,7 @@ std::uint32_t little_endian_32(std::string_view bytes) {
   return value;
 }
 
-// Non-empty lines of a text, without surrounding blanks.
+// Returns the non-empty lines of a text, without surrounding blanks.
 std::vector<std::string_view> first_lines(std::string_view text, std::size_t most) {
   std::vector<std::string_view> lines;
   while (!text.empty() && lines.size() < most) {
@@ -107,8 +107,8 @@ bool holds_obj(std::string_view text) {
   constexpr std::array kWords{"v"sv, "vn"sv, "vt"sv, "vp"sv,     "f"sv,      "fo"sv, "l"sv,
                               "p"sv, "g"sv,  "s"sv,  "mtllib"sv, "usemtl"sv, "o"sv,  "mg"sv};
   std::size_t known = 0, others = 0;
-  bool vertices = false;  // a letter alone makes no model
-  bool goes_on = false;   // a line that ends with a backslash does
+  bool vertices = false;  // a single letter at the start makes no model
+  bool goes_on = false;   // true after a line that ends with a backslash
   for (const std::string_view line : first_lines(text, 2000)) {
     if (!goes_on && line.front() != '#')
       ++(std::ranges::find(kWords, first_word(line)) != kWords.end() ? known : others);
@@ -118,7 +118,7 @@ bool holds_obj(std::string_view text) {
   return vertices && known > 20 * others;
 }
 
-// Whether most of the first lines have three numbers and no more other words, behind titles and counts.
+// Returns true if most of the first lines have at least three numbers and no more other words than numbers.
 bool holds_numbers(std::string_view text) {
   constexpr std::size_t kLines = 40;
   const auto three_numbers = [](std::string_view line) {
@@ -140,7 +140,7 @@ bool holds_numbers(std::string_view text) {
   return points >= 2 && points > others;
 }
 
-// A PLY's header may say that it has no faces.
+// Returns true if a PLY's header declares no faces.
 bool ply_without_faces(std::string_view text) {
   for (const std::string_view line : first_lines(text, 1000)) {
     if (line.starts_with("end_header")) return true;
@@ -150,7 +150,7 @@ bool ply_without_faces(std::string_view text) {
   return false;
 }
 
-// The name of an XML document's root element, in lower case.
+// Returns the name of an XML document's root element, in lower case.
 std::string root_element(std::string_view text) {
   for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
     const std::string_view rest = text.substr(at + 1);
@@ -183,7 +183,7 @@ std::optional<Head> read_head(const std::filesystem::path& file) {
   return head;
 }
 
-// A text of two bytes a letter that is no XML, whose readers know it.
+// Returns true for a text in UTF-16 that is no XML; readers of XML know UTF-16.
 bool is_wide_text(std::string_view bytes) {
   const auto begins = [&](std::string_view mark, std::size_t letter) {
     return bytes.size() >= 4 && bytes.starts_with(mark) && bytes[letter] != '<' && bytes[5 - letter] == '\0';
@@ -251,7 +251,7 @@ const Format* format_by_extension(const std::filesystem::path& file) {
   return found == kFormats.end() ? nullptr : *found;
 }
 
-// Whether a text has one of these words within its first bytes.
+// Returns true if a text has one of these words within its first bytes.
 bool mentions(std::istream& stream, std::uint64_t most, std::span<const std::string_view> words) {
   constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = 64;  // no word is longer
   std::string block;
@@ -268,13 +268,13 @@ bool mentions(std::istream& stream, std::uint64_t most, std::span<const std::str
   return false;
 }
 
-// Whether its JSON says that meshes are compressed, or gzip is around the file.
+// Returns true if the JSON declares compressed meshes, or the file is gzipped.
 bool is_packed(const std::filesystem::path& file, const Head& head) {
   constexpr std::array kWords{"\"KHR_draco_mesh_compression\""sv, "\"EXT_meshopt_compression\""sv,
                               "\"KHR_meshopt_compression\""sv};
   if (head.bytes.starts_with("\x1F\x8B")) return true;
   if (format_by_content(head) != &kGltf) return false;
-  // A GLB's JSON comes first; a tile's tables before that are short.
+  // A GLB's JSON comes first; the tables of a tile before it are short.
   const bool glb = head.bytes.starts_with("glTF") && head.bytes.size() >= 20;
   const std::uint64_t json =
       glb ? 20 + std::uint64_t{little_endian_32(std::string_view(head.bytes).substr(12))} : head.size;
@@ -282,16 +282,16 @@ bool is_packed(const std::filesystem::path& file, const Head& head) {
   return mentions(stream, std::min(json, kMostRecognised), kWords);
 }
 
-// Whether a DXF draws lines and no face that stands up: it is a floor plan then, and no model.
+// Returns true if a DXF draws lines and no upright face, which makes it a floor plan and no model.
 bool is_drawing(const std::filesystem::path& file) {
   constexpr std::array kLines{"LINE"sv,   "LWPOLYLINE"sv, "ARC"sv,   "CIRCLE"sv,  "HATCH"sv, "SOLID"sv,
                               "INSERT"sv, "POLYLINE"sv,   "MLINE"sv, "ELLIPSE"sv, "TRACE"sv, "SPLINE"sv};
-  // Bits of group 70: a POLYLINE that is a mesh of polygons or of faces, a VERTEX that is a place and no face.
+  // Bits of group 70: a POLYLINE is a mesh of polygons or of faces; a VERTEX is a position, not a face.
   constexpr int kPolygons = 16, kFaces = 64, kPlace = 64;
   std::ifstream stream(file, std::ios::binary);
   auto left = static_cast<std::streamsize>(kMostRecognised);
   const auto next = [&](std::string& line) {
-    std::array<char, 64> text{};  // longer lines are texts
+    std::array<char, 64> text{};  // a longer line is a text, cut off here
     stream.getline(text.data(), text.size());
     left -= stream.gcount();
     if (stream.fail() && !stream.eof() && stream.gcount() > 0) {
@@ -306,7 +306,7 @@ bool is_drawing(const std::filesystem::path& file) {
   bool lines = false;
   std::string code, value, entity;
   double lowest = 0, highest = 0, height = 0;
-  int flags = 0, mesh = 0;  // of the entity; of the polyline that its vertices follow
+  int flags = 0, mesh = 0;  // the current entity's; those of the polyline that its vertices follow
   bool any = false;
   const auto reach = [&](double z) {
     lowest = any ? std::min(lowest, z) : z, highest = any ? std::max(highest, z) : z, any = true;
@@ -332,7 +332,7 @@ bool is_drawing(const std::filesystem::path& file) {
   return lines;
 }
 
-// Throws Error io for what is called as a model in a folder and is no file.
+// Throws Error io if an entry of a folder has a model's extension and is no file.
 void require_file(const std::filesystem::directory_entry& entry) {
   namespace fs = std::filesystem;
   std::error_code failure;

@@ -8,8 +8,8 @@
 
 namespace vantage::importer {
 
-// Bytes of a GLB from a document, to which `buffers` are added, and its binary chunk. Throws std::length_error above 4
-// GiB, the limit of GLB.
+// Returns the bytes of a GLB: a document, to which `buffers` are added, and its binary chunk. Throws std::length_error
+// above 4 GiB, the limit of GLB.
 std::string glb_bytes(nlohmann::json document, const std::string& binary);
 
 // Collects the binary chunk of a GLB, its views and its accessors.

@@ -27,11 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a process takes besides what it allocates: code, above all.
+// Memory of a process besides what it allocates, mainly code.
 constexpr std::uint64_t kCode = std::uint64_t{32} << 20;
 constexpr int kRefused = 65, kUnavailable = 69, kMemory = 71;  // of sysexits.h: EX_DATAERR, EX_UNAVAILABLE, EX_OSERR
 
-// Whether it is a whole GLB, by its header.
+// Returns true if its header is that of a complete GLB.
 bool is_glb(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 20 || std::memcmp(bytes.data(), "glTF", 4) != 0) return false;
   std::uint32_t length = 0;
@@ -39,11 +39,11 @@ bool is_glb(std::span<const std::uint8_t> bytes) {
   return length == bytes.size();
 }
 
-// Content that is read for a key, of all files together. What is beyond it counts by what its folder says of it: a key
-// must not take longer than the import.
+// Bytes that are read for a key, of all files together. Files beyond them count by what their folder says of them, as a
+// key must not take longer than the import.
 constexpr std::uint64_t kMostRead = std::uint64_t{1} << 30;
 
-// Names of material tables in an OBJ that is given in blocks: of these formats, only OBJ names files that matter.
+// Collects the names of material tables in the blocks of an OBJ, the only format here whose other files matter.
 class TableNames {
  public:
   void add(std::string_view block) {
@@ -65,7 +65,7 @@ class TableNames {
 
  private:
   static constexpr std::string_view kWord = "mtllib";
-  static constexpr std::size_t kLongest = 4096;  // a path
+  static constexpr std::size_t kLongest = 4096;  // longest path
   static constexpr std::size_t kMost = 1000;
 
   void end_line() {
@@ -79,10 +79,10 @@ class TableNames {
 
   std::set<std::string> names_;
   std::string line_;    // the beginning of the open line
-  bool other_ = false;  // it names no table
+  bool other_ = false;  // it begins otherwise, so that it names no table
 };
 
-// Whether a file is below a folder, links followed.
+// Returns true if a file lies below a folder, after following links.
 bool is_below(const fs::path& file, const fs::path& folder) {
   std::error_code failure;
   const fs::path inner = fs::canonical(file, failure);
@@ -94,7 +94,7 @@ bool is_below(const fs::path& file, const fs::path& folder) {
 
 struct Stopped {};
 
-// Hashes what an importer reads. Throws Error io for what is no regular file or cannot be read, and Stopped.
+// Hashes what an importer reads. Throws Stopped, or Error io if a file cannot be read or is not regular.
 class KeyReader {
  public:
   explicit KeyReader(const Progress& progress) : progress_(progress) {}
@@ -152,10 +152,10 @@ class KeyReader {
 
 struct Key {
   std::string text;
-  std::vector<fs::path> tables;  // files that the model names, as far as its importer may read them
+  std::vector<fs::path> tables;  // files that the model names and its importer may read
 };
 
-// Changes with the model, the importer, what it is told, and this program. Throws as KeyReader.
+// Returns a key that changes with the model, the importer, its settings, and this program. Throws as KeyReader.
 Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const Format& format, const Importer& importer,
               const std::vector<std::string>& settings, const Progress& progress) {
   KeyReader key(progress);
@@ -163,10 +163,10 @@ Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const F
   key.add(vantage::version());
   key.add(name);
   for (const std::string& setting : settings) key.add(setting);
-  std::error_code failure;  // then both are -1
+  std::error_code failure;  // on failure, both numbers are -1
   key.add_number(fs::file_size(importer.program, failure));
   key.add_number(fs::last_write_time(importer.program, failure).time_since_epoch().count());
-  // Storeys and scans of several files are called as these.
+  // Storeys and scans of several files take these files' names.
   const bool named = files.size() > 1 || fs::is_directory(model, failure);
   for (const fs::path& file : files) {
     if (named) key.add(file.filename().string());
@@ -175,7 +175,7 @@ Key cache_key(const fs::path& model, const std::vector<fs::path>& files, const F
   return {key.text(), key.tables()};
 }
 
-// Empty if the user has none.
+// Returns an empty path if the user has no cache folder.
 fs::path cache_folder() {
   const char* given = std::getenv("XDG_CACHE_HOME");
   if (given && *given == '/') return fs::path(given) / "vantage/imports";
@@ -183,7 +183,7 @@ fs::path cache_folder() {
   return home && *home == '/' ? fs::path(home) / ".cache/vantage/imports" : fs::path();
 }
 
-// Behind the GLB of an entry: what it is an entry for, and its checksum.
+// Follows the GLB of a cache entry: the key of the entry, and a checksum.
 struct Seal {
   std::array<char, 16> key{};
   std::uint32_t checksum = 0;
@@ -196,7 +196,7 @@ struct Seal {
   friend bool operator==(const Seal&, const Seal&) = default;
 };
 
-// Empty if there is no entry, or if it is not as it was written.
+// Returns nothing if there is no entry, or if it is not as it was written.
 std::optional<std::vector<std::uint8_t>> cached(const fs::path& entry, const Limits& limits) {
   try {
     RegularFile file(entry);
@@ -212,7 +212,7 @@ std::optional<std::vector<std::uint8_t>> cached(const fs::path& entry, const Lim
   return {};
 }
 
-// For its user alone: a model may be confidential. A cache that cannot be written only costs time.
+// Only the user may read it, since a model may be confidential. A cache that cannot be written only costs time.
 void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
   try {
     fs::create_directories(entry.parent_path());
@@ -240,7 +240,7 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);
 }
 
-// Why an importer gave no GLB.
+// Returns the reason why an importer gave no GLB.
 Error failure_of(const Ended& ended, const std::string& file, const Format& format, const Limits& limits) {
   const std::string who = file + ": the importer of " + format.name, said = last_line(ended.errors);
   constexpr const char* kOtherwise = "; export the model again, or as glTF";
@@ -284,7 +284,7 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
   std::vector<fs::path> files = files_of(file, beside);
   for (fs::path& one : files) one = fs::absolute(one);
   limits.cpu_s = std::min(limits.cpu_s, seconds_for(files));
-  limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors
+  limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may share the processors with others
   limits.output = std::min(limits.output, limits.memory);
   Importer importer = [&] {
     try {
@@ -293,7 +293,7 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  // The buffers of a textual glTF are other files below its folder, which the key does not cover.
+  // The buffers of a textual glTF are separate files below its folder, which the key does not cover.
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();

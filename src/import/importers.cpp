@@ -22,12 +22,12 @@ bool can_run(const fs::path& file) {
   return fs::is_regular_file(file, failure) && access(file.c_str(), X_OK) == 0;
 }
 
-// The folder of the executable or shared library with this function; empty if unknown.
+// Returns the folder of the executable or shared library with this function; empty if unknown.
 fs::path own_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&can_run), &info) == 0 || !info.dli_fname) return {};
   std::error_code failure;
-  // The name of an executable may be the one by which it was called.
+  // An executable's name may be only the one by which it was called.
   fs::path file = fs::canonical(info.dli_fname, failure);
   if (failure) file = fs::read_symlink("/proc/self/exe", failure);
   return failure ? fs::path() : file.parent_path();
@@ -38,7 +38,7 @@ std::vector<fs::path> folders() {
   std::vector<fs::path> out;
   if (const fs::path own = own_folder(); !own.empty())
     for (const fs::path& folder :
-         {own, own / "../libexec/vantage", own / "../../libexec/vantage"})  // lib may have a folder an architecture
+         {own, own / "../libexec/vantage", own / "../../libexec/vantage"})  // an architecture may have its own lib
       out.push_back(folder.lexically_normal());
   out.emplace_back(VANTAGE_LIBEXEC_FOLDER);
   return out;
@@ -57,7 +57,7 @@ std::string missing(const Format& format, const std::string& why, const std::str
          remedy + ", or export glTF";
 }
 
-// What the importer of clouds reads besides: node with the script that uncompresses LAZ, and the registry of PROJ.
+// Adds the other files of the importer of clouds: node, the script that decompresses LAZ, and the registry of PROJ.
 void add_helpers(Importer& importer, const Format& format) {
   std::error_code failure;
   const fs::path script = fs::canonical(importer.program.parent_path() / "vantage-import-laz", failure);
@@ -70,7 +70,7 @@ void add_helpers(Importer& importer, const Format& format) {
     if (const char* folder = std::getenv(name); folder && *folder) importer.readable.emplace_back(folder);
 }
 
-// Advice where an importer is missing. REQUIRES: that of a format.
+// Returns advice if an importer is missing. REQUIRES: an importer of a format.
 std::string remedy_for(std::string_view importer) {
   if (importer == "vantage-import-ifc") return "install node and web-ifc with setup.sh --ifc";
   struct Needs {
@@ -90,7 +90,7 @@ Importer find_importer(const Format& format) {
   const std::string remedy = remedy_for(format.importer);
   for (const fs::path& folder : folders()) {
     std::error_code failure;
-    // A program, or a folder with a script for node.
+    // The importer is a program, or a folder with a script for node.
     fs::path program = fs::canonical(folder / format.importer, failure);
     if (failure) continue;
     const bool script = fs::is_directory(program, failure);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Common end of importers written in C++.
+// Main loop and exit codes shared by the importers in C++.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,15 @@
 
 namespace vantage::importer {
 
-// The model cannot become a scene; the message says why.
+// Thrown if the model cannot become a scene; the message says why.
 struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Says on standard error how much of the work is done, a share; seldom, however often it is called.
+// Reports the share of work done on standard error; writes seldom, however often it is called.
 void tell_progress(double done);
 
-// Writes the result of `convert` to standard output. Returns the exit code, of sysexits.h: 0; 65 if the model is at
+// Writes the result of `convert` to standard output. Returns an exit code of sysexits.h: 0; 65 if the model is at
 // fault, or 71 if memory is short, each with a line on standard error that says so.
 int run(const std::function<std::string()>& convert);
 

@@ -26,8 +26,8 @@ namespace {
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
 constexpr std::uint64_t kReadFile = LANDLOCK_ACCESS_FS_READ_FILE;
 constexpr std::uint64_t kReadFolder = kReadFile | LANDLOCK_ACCESS_FS_READ_DIR;
-// All file accesses that a version of Landlock knows: renames between folders since version 2, truncation since version
-// 3, ioctl of devices since version 5. Headers may not name them yet.
+// Returns all file accesses that a version of Landlock knows. Renames between folders came with version 2, truncation
+// with 3, ioctl of devices with 5. Headers may not name them yet.
 std::uint64_t known_accesses(long version) {
   std::uint64_t last = LANDLOCK_ACCESS_FS_MAKE_SYM;
   for (const long since : {2, 3, 5})
@@ -35,7 +35,7 @@ std::uint64_t known_accesses(long version) {
   return (last << 1) - 1;
 }
 
-// landlock_ruleset_attr of later headers: TCP since version 4, signals and abstract sockets since version 6.
+// Matches landlock_ruleset_attr of later headers: TCP since version 4, signals and abstract sockets since version 6.
 struct Handled {
   std::uint64_t files, network, scoped;
 };
@@ -53,7 +53,7 @@ int make_ruleset() {
 
 void allow(int rules, const char* path, bool running) noexcept {
   const int place = open(path, O_PATH | O_CLOEXEC);
-  if (place < 0) return;  // a system folder that this system lacks
+  if (place < 0) return;  // this system lacks the folder
   struct stat status {};
   if (fstat(place, &status) == 0) {
     landlock_path_beneath_attr rule{};
@@ -95,7 +95,7 @@ class Filter {
     if (context_) seccomp_release(context_);
   }
 
-  // Calls that this architecture lacks are left out.
+  // Skips calls that this architecture lacks.
   template <class... Conditions>
   void allow(const char* call, Conditions... conditions) {
     add(SCMP_ACT_ALLOW, call, conditions...);
@@ -106,7 +106,7 @@ class Filter {
     if (context_ && number >= 0)
       seccomp_rule_add(context_, action, number, static_cast<unsigned>(sizeof...(conditions)), conditions...);
   }
-  // The program of the filter; empty if it cannot be made.
+  // Returns the program of the filter; empty if it cannot be made.
   std::vector<sock_filter> program() const {
     std::vector<sock_filter> lines;
     const int memory = context_ ? memfd_create("filter", MFD_CLOEXEC) : -1;
@@ -124,7 +124,7 @@ class Filter {
   scmp_filter_ctx context_;
 };
 
-// Stands for the process that the filter is for, which does not exist yet.
+// Placeholder for the id of the process that the filter is for, which does not exist yet.
 constexpr std::uint32_t kItself = 0x7E570001;
 
 scmp_arg_cmp masked(unsigned argument, std::uint64_t mask, std::uint64_t value) {
@@ -135,32 +135,32 @@ scmp_arg_cmp equal(unsigned argument, std::uint64_t value) { return masked(argum
 std::vector<sock_filter> make_filter(bool spawns) {
   Filter filter;
   for (const char* call : kAllowed) filter.allow(call);
-  // Files are opened for reading alone.
+  // Files may be opened only for reading.
   constexpr std::uint64_t kWriting = O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY);
   filter.allow("open", masked(1, kWriting, O_RDONLY));
   filter.allow("openat", masked(2, kWriting, O_RDONLY));
-  // Memory that is shared counts for no limit, unless it is a file's.
+  // Forbids shared memory without a file, since it counts towards no limit.
   for (const std::uint64_t kind : {std::uint64_t{0}, std::uint64_t{MAP_SHARED}, std::uint64_t{MAP_ANONYMOUS}})
     filter.allow("mmap", masked(3, MAP_SHARED | MAP_ANONYMOUS, kind));
-  // Threads, and no processes. The C library falls back to clone, whose flags can be seen.
+  // Allows threads, but no processes. The C library falls back to clone, whose flags the filter can check.
   constexpr std::uint64_t kThread = CLONE_VM | CLONE_THREAD;
   filter.allow("clone", masked(0, kThread, kThread));
   constexpr std::uint64_t kSpawn = CLONE_VM | CLONE_VFORK;
   if (spawns) filter.allow("clone", masked(0, kSpawn | CLONE_THREAD, kSpawn));
   filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");
-  // Neither an owner, which would get signals, nor a larger pipe.
+  // Forbids an owner, who would get signals, and a larger pipe.
   for (const int command : {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL})
     filter.allow("fcntl", equal(1, static_cast<std::uint64_t>(command)));
   for (const std::uint64_t request : {std::uint64_t{FIOCLEX}, std::uint64_t{FIONCLEX}, std::uint64_t{FIONBIO},
                                       std::uint64_t{FIONREAD}, std::uint64_t{TCGETS}, std::uint64_t{TIOCGWINSZ}})
     filter.allow("ioctl", equal(1, request));
-  // No descriptor is a socket; shells ask.
+  // No descriptor is a socket, but shells ask.
   for (const char* call : {"getpeername", "getsockname", "getsockopt"}) filter.add(SCMP_ACT_ERRNO(ENOTSOCK), call);
   constexpr std::uint64_t kNameMemory = 0x53564D41;  // PR_SET_VMA
   for (const std::uint64_t option : {std::uint64_t{PR_SET_NAME}, std::uint64_t{PR_GET_NAME}, kNameMemory})
     filter.allow("prctl", equal(0, option));
-  filter.allow("prlimit64", equal(0, 0));                                             // its own
-  for (const char* call : {"kill", "tgkill"}) filter.allow(call, equal(0, kItself));  // abort() ends by one
+  filter.allow("prlimit64", equal(0, 0));                                             // of itself only
+  for (const char* call : {"kill", "tgkill"}) filter.allow(call, equal(0, kItself));  // abort() ends with one
   return filter.program();
 }
 
@@ -174,7 +174,7 @@ Sandbox::Sandbox(const std::vector<std::filesystem::path>& programs, const std::
   if (rules_ < 0) return;
   for (const char* folder : {"/usr", "/lib", "/lib32", "/lib64", "/bin", "/sbin", "/nix"}) allow(rules_, folder, true);
   for (const auto& place : programs) allow(rules_, place.c_str(), true);
-  // The dynamic linker's list of libraries, and what node looks for.
+  // Files of the dynamic linker, and files that node looks for.
   for (const char* file : {"/etc/ld.so.cache", "/etc/localtime", "/etc/ssl/openssl.cnf", "/dev/null", "/dev/zero",
                            "/dev/random", "/dev/urandom", "/proc/meminfo", "/proc/cpuinfo", "/proc/stat",
                            "/proc/version_signature", "/proc/sys/vm/overcommit_memory", "/sys/devices/system/cpu",
@@ -194,7 +194,7 @@ void Sandbox::enter() noexcept {
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
   if (rules_ >= 0) {
-    allow(rules_, "/proc/self", false);  // of this process, and no other
+    allow(rules_, "/proc/self", false);  // of this process only
     syscall(SYS_landlock_restrict_self, rules_, 0);
   }
 #endif

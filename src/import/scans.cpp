@@ -16,19 +16,19 @@
 namespace vantage::importers {
 namespace {
 
-// Its name is another than that of the surfaces, so that the cache keeps both.
+// Its name differs from that of the surfaces, so that the cache keeps both.
 constexpr Format kScans{"scans of E57", ".e57-scans ", "vantage-import-cloud"};
 constexpr Format kPoints{"points of E57", ".e57-points ", "vantage-import-cloud"},
     kTextPoints{"points of PTX", ".xyz-points ", "vantage-import-cloud"};
-// Scanners level themselves to seconds of arc; poses of a registration are turned by more. No scanner is set up at less
-// than this on purpose.
+// Scanners level themselves to seconds of arc; a registration turns poses by more. Nobody sets a scanner up with a
+// smaller tilt on purpose.
 constexpr double kLevel_rad = 0.05;
 
 }  // namespace
 
 StationSetup setup_of(const std::array<double, 4>& rotation) {
   const auto [w, x, y, z] = rotation;
-  // The scanner's upright axis, and its first one, in the survey's frame.
+  // The scanner's vertical axis in the survey's frame.
   const Vec3 up{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
   StationSetup setup;
   const double tilt = std::atan2(std::hypot(up.x, up.y), up.z);
@@ -43,10 +43,10 @@ StationSetup setup_of(const std::array<double, 4>& rotation) {
 
 namespace {
 
-// Calls `read(document, binary)` for the parts of a GLB; what does not fit becomes an Error.
+// Calls `read(document, binary)` for the parts of a GLB; throws Error if they are not as expected.
 template <class Read>
 void read_parts(const std::filesystem::path& file, const std::vector<std::uint8_t>& glb, Read&& read) {
-  constexpr std::size_t kHead = 20, kChunkHead = 8;  // the GLB's with its first chunk's; another chunk's
+  constexpr std::size_t kHead = 20, kChunkHead = 8;  // headers of the GLB with its first chunk; of another chunk
   std::uint32_t length = 0;                          // of the JSON; as_glb() has checked the header
   std::memcpy(&length, glb.data() + kHead - kChunkHead, sizeof length);
   try {

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kStationsAtOnce = 64;
 // The largest standard error of a share.
 constexpr double kLargestError = 0.5;
-// Voxels whose surfaces are looked at together.
+// Number of voxels whose surfaces are examined together.
 constexpr std::size_t kPatchesAtOnce = std::size_t{1} << 20;
 
 }  // namespace
@@ -33,14 +33,14 @@ AttainableCounts::AttainableCounts(const Simulator& simulator, std::uint64_t vox
     weights_.push_back(simulator.voxel_weight(voxel));
     point_weights_.push_back(simulator.point_weight(voxel));
   }
-  // All are 1, or none is.
+  // Either all are 1 or none is.
   if (!point_weights_.empty() && point_weights_.front() != 1) goal_ *= densest_point_weight;
 }
 
 AttainableCounts AttainableCounts::part(const Simulator& simulator, std::uint64_t voxels) const {
   AttainableCounts some(simulator, voxels, from_);
   std::size_t e = 0;
-  std::vector<std::size_t> at;  // the element here of each of its elements
+  std::vector<std::size_t> at;  // the element here of each element of `some`
   for (std::size_t k = 0; k < some.voxels_.size(); ++k) {
     while (e < voxels_.size() && voxels_[e] < some.voxels_[k]) ++e;
     if (e == voxels_.size() || voxels_[e] != some.voxels_[k])
@@ -76,8 +76,8 @@ void AttainableCounts::raise(std::size_t element, double point_weights) {
   counts_[element] = std::max(counts_[element], std::min(point_weights, goal_));
 }
 
-// Σ part / Σ whole, with the error of a ratio: that of the mean of part − ratio · whole, by successive differences, as
-// a systematic sample needs it (Wolter, Introduction to Variance Estimation, 2007, chapters 6 and 8).
+// Returns Σ part / Σ whole with the error of a ratio: the error of the mean of part − ratio · whole, by successive
+// differences, as systematic samples need (Wolter, Introduction to Variance Estimation, 2007, chapters 6 and 8).
 template <class Share>
 Estimate AttainableCounts::ratio(const std::vector<double>& whole, const Share& part) const {
   double parts = 0, wholes = 0;
@@ -114,7 +114,7 @@ Estimate AttainableCounts::captured(std::span<const double> point_weights) const
   return captured(point_weights, nullptr);
 }
 
-// Elements of other meshes have the weight 0, in a ratio to which they add nothing but their place in the sample.
+// Elements of other meshes have the weight 0; they add nothing to the ratio but their place in the sample.
 Estimate AttainableCounts::captured(std::span<const double> point_weights, const OfMeshes* of) const {
   assert(point_weights.size() == counts_.size());
   const auto weight = [&](std::size_t e) { return of && of->has[e] == 0 ? 0.0 : static_cast<double>(weights_[e]); };
@@ -137,7 +137,7 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
     std::vector<Network> alone;
     for (const Station& station : stations.subspan(first, std::min(kStationsAtOnce, stations.size() - first)))
       if (station.active) alone.push_back({station});
-    // Voxels that have their goal cannot rise.
+    // Skips voxels that have their goal, as they cannot rise.
     std::vector<std::uint8_t> enough(attainable.voxels().size());
     for (std::size_t e = 0; e < enough.size(); ++e) enough[e] = attainable.has_goal(e);
     std::size_t counted = 0;

@@ -14,7 +14,7 @@ namespace vantage {
 namespace {
 
 // Sums for one station over j < k: weights of its pairs of neighbours, and of linked pairs. Both sums of equation 13
-// hold each pair twice.
+// contain each pair twice.
 struct LinkSums {
   double pairs = 0, triangles = 0;
   double share() const { return pairs > 0 ? triangles / pairs : 0; }
@@ -35,8 +35,8 @@ LinkSums link_sums(const std::vector<double>& w, std::size_t n, std::size_t i) {
   return sums;
 }
 
-// Networks above kNarrow stations, more than a search has, sum kAtOnce stations at once, so that a row is read once for
-// all of them, vectorised over k. 1024 stations have 178 million triples.
+// Networks of more than kNarrow stations, larger than a search uses, sum kAtOnce stations at once, so that a row is
+// read once for all of them, vectorised over k. 1024 stations have 178 million triples.
 constexpr std::size_t kNarrow = 64, kAtOnce = 8;
 
 // linked[b][k] = Σ_j<k w_ij w_jk for stations i = first + b.

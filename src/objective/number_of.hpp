@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-// The value of an objective. Throws Error invalid_argument if that is NaN, which no network can be ranked by.
+// Returns the value of an objective. Throws Error invalid_argument if it is NaN, which cannot rank networks.
 inline double number_of(const Objective& objective, const MeasuredNetwork& network) {
   const double value = objective.value(network);
   if (std::isnan(value))

@@ -11,13 +11,13 @@ namespace vantage {
 namespace {
 
 constexpr std::uint64_t kLeastVoxels = std::uint64_t{1} << 13, kWeighingVoxels = std::uint64_t{1} << 16;
-// Standard error up to which an error is known: a share of it, or a length if that is larger.
+// A registration error is known if its standard error is at most this share of it, or this length if larger.
 constexpr double kKnownShare = 0.02, kKnown_m = 0.02e-3;
-// Standard errors of the smaller sample within which the larger one must agree with it. A sample that holds no voxel of
-// what holds the scans together, as of the reveals along a facade, does not know that it knows nothing.
+// A larger sample must agree with the smaller one within this many standard errors of the smaller. A sample without a
+// voxel of surfaces that hold the scans together, such as a facade's reveals, underestimates its own error.
 constexpr double kAgree = 2;
 
-// Tells of each network whether its error is known, sample after sample.
+// Decides for each network if its error is known, sample by sample.
 class Known {
  public:
   bool operator()(std::size_t network, const Estimate& rms_m) {

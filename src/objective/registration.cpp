@@ -44,7 +44,7 @@ RegistrationOptions levelled_by(RegistrationOptions options, std::span<const Sca
 }
 
 // E |shift + turn × q|² = tr D + 2 q · E[shift × turn] + |q|² tr A − qᵀ A q, with A the covariance of the turn and D
-// that of the shift: a map asks for it at millions of points.
+// that of the shift. Written out, since a map evaluates it at millions of points.
 double RegistrationError::at(std::size_t station, const Vec3& local) const {
   const std::array<double, 36>& pose = poses[station];
   const auto c = [&](std::size_t row, std::size_t column) { return pose[6 * row + column]; };

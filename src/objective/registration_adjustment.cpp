@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
 constexpr double least_scale_m = 1;  // least scale of rotations, for tiny surfaces
-// From so many stations on, most pairs see nothing together, and a sparse factor is the cheaper one.
+// From this many stations on, most pairs have no common view, and a sparse factor is cheaper.
 constexpr std::size_t kSparseStations = 64;
 
 Vector3d to_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -111,7 +111,7 @@ RegistrationError RegistrationAdjustment::error() const {
   MatrixXd right(mean.cols(), mean.rows() + instrument.cols());
   right << mean.transpose(), instrument;
   PartialInverse absolute = inverse_times(right);
-  const MatrixXd motions = absolute.times.rightCols(instrument.cols());  // by each error of the instrument
+  const MatrixXd motions = absolute.times.rightCols(instrument.cols());  // motion by each error of the instrument
   absolute.times.conservativeResize(Eigen::NoChange, mean.rows());
   const MatrixXd mean_motion = mean * motions;
   auto covariances = relative_covariances(absolute, mean);
@@ -151,7 +151,7 @@ MatrixXd RegistrationAdjustment::covariance() const {
   return information.llt().solve(MatrixXd::Identity(information.rows(), information.rows()));
 }
 
-// The mean of the stations' motions is mean · x: d × all unknowns.
+// Returns the matrix whose product with the unknowns is the mean of the stations' motions: d × all unknowns.
 MatrixXd RegistrationAdjustment::mean() const {
   const Eigen::Index d = unknowns_, skipped = 6 - d;
   MatrixXd sum = MatrixXd::Zero(d, d), metric(d, static_cast<Eigen::Index>(moments_.size()) * d);
@@ -219,7 +219,7 @@ std::size_t RegistrationAdjustment::pair(std::size_t i, std::size_t j) const {
   return (i * (2 * n - i - 1) / 2 + (j - i - 1)) * of_pair;
 }
 
-// Whether two stations, the first before the second, see a common surface.
+// Returns true if two stations, the first before the second, see a common surface.
 bool RegistrationAdjustment::tied(std::size_t i, std::size_t j) const {
   const std::span<const double> sums = std::span(sums_.pairs).subspan(pair(i, j), of_pair);
   return std::ranges::any_of(sums, [](double sum) { return sum != 0; });
@@ -235,7 +235,7 @@ Matrix6d RegistrationAdjustment::information_of(std::size_t i, std::size_t j) co
   return moved * h * moved.transpose();
 }
 
-// Takes J of the sums to J about the surface's centre and in its scale.
+// Transforms J of the sums to J about the surface's centre and in its scale.
 Matrix6d RegistrationAdjustment::from_sums() const {
   Matrix6d moved = Matrix6d::Identity();
   moved.topLeftCorner<3, 3>() /= scale_;
@@ -243,7 +243,7 @@ Matrix6d RegistrationAdjustment::from_sums() const {
   return moved;
 }
 
-// Prior of tilt, heading and head.
+// Returns the prior of tilt, heading and head.
 Matrix6d RegistrationAdjustment::prior_of(std::size_t place) const {
   const double scale = scale_ * sums_.radius_m;
   Matrix6d given = Matrix6d::Zero();
@@ -253,8 +253,8 @@ Matrix6d RegistrationAdjustment::prior_of(std::size_t place) const {
   return given + weight_of(options_.position_m) * at_head.transpose() * at_head;
 }
 
-// Calls add(a, b, h) for all information, between two stations or, where a is b, on one by itself. Between two, h is on
-// the first by itself, hᵀ on the second.
+// Calls add(a, b, h) for all information: between two stations, or on one station if a is b. Between two, h acts on the
+// first, and hᵀ on the second.
 template <class Add>
 void RegistrationAdjustment::for_information(const Add& add) const {
   for (std::size_t a = 0; a < stations_.size(); ++a) {
@@ -279,7 +279,7 @@ MatrixXd RegistrationAdjustment::information() const {
   return all;
 }
 
-// The information of the unknowns alone.
+// Returns only the information of the unknowns.
 SparseBlocks RegistrationAdjustment::sparse_information() const {
   const Eigen::Index d = unknowns_;
   const auto of_unknowns = [d](const Matrix6d& h) -> SmallBlock { return h.bottomRightCorner(d, d); };
@@ -300,8 +300,8 @@ Matrix3d RegistrationAdjustment::sighting_weight(const RegistrationTarget& targe
   return across * Matrix3d::Identity() + (along - across) * line * line.transpose();
 }
 
-// A target's centre is unknown, so k sightings of weights W give W_i (ΣW)⁻¹ W_j for each pair, as a plane does but in
-// all three axes. A control point adds the weight of its coordinates, which belongs to no station.
+// A target's centre is unknown, so k sightings of weights W give W_i (ΣW)⁻¹ W_j for each pair, as a plane does, but
+// along all three axes. A control point adds the weight of its coordinates, which belongs to no station.
 template <class Add>
 void RegistrationAdjustment::for_targets(const Add& add) const {
   for (const RegistrationTarget& target : targets_) {
@@ -342,8 +342,8 @@ MatrixXd RegistrationAdjustment::of_unknowns(const MatrixXd& all) const {
   return some;
 }
 
-// Covariance of each station's unknowns without the best-fitting motion of the whole: (I − 1 B) C (I − 1 B)ᵀ. B x is
-// that motion, the mean of the stations' motions in the metric of the surface that each sees.
+// Returns the covariance of each station's unknowns without the best-fitting motion of the whole: (I − 1 B) C (I − 1
+// B)ᵀ. B x is that motion, the mean of the stations' motions in the metric of the surface that each sees.
 std::vector<Matrix6d> RegistrationAdjustment::relative_covariances(const PartialInverse& c,
                                                                    const MatrixXd& mean) const {
   const Eigen::Index d = unknowns_, skipped = 6 - d;

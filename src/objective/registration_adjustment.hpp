@@ -22,7 +22,7 @@ namespace vantage {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
-// Displacement at q by an unknown vector.
+// Returns the displacement at q by an unknown vector.
 Matrix36d displacement(const Eigen::Vector3d& q);
 
 // Mass, centre and second moments of a surface.
@@ -34,35 +34,35 @@ struct Moments {
   Moments() = default;
   explicit Moments(const double* m);
   void add(const Moments& other);
-  // The same about another centre, in units of `scale`.
+  // Returns the moments about another centre, in units of `scale`.
   Moments moved(const Eigen::Vector3d& centre, double scale) const;
-  // Σ displacement(q)ᵀ displacement(q).
+  // Returns Σ displacement(q)ᵀ displacement(q).
   Matrix6d quadratic() const;
 };
 
-// Adjustment of the stations that see something.
+// Adjusts the stations that see something.
 class RegistrationAdjustment {
  public:
-  // `sums`: of the surfaces that register the scans; `share` scales them from the counted voxels to the whole site.
-  // `covered`: of the surface whose error is wanted. All are borrowed.
+  // `sums`: of the surfaces that register the scans; `share` scales them from counted voxels to the whole site.
+  // `covered`: of the surface whose error is wanted. Borrows all of them.
   RegistrationAdjustment(const RegistrationSums& sums, double share, const RegistrationSums& covered,
                          const RegistrationOptions& options, std::span<const RegistrationTarget> targets);
 
-  // The errors that all scans of an instrument share (`RegistrationSums::instrument`) are unknown and not estimated:
-  // their effect is added, C + K Kᵀ with K = C · instrument().
+  // Errors that all scans of an instrument share (`RegistrationSums::instrument`) are unknown and not estimated. Their
+  // effect is added: C + K Kᵀ with K = C · instrument().
   RegistrationError error() const;
 
-  // What a further target would bring, without adjusting anew. A column of unknowns has `unknowns()` entries for each
-  // of `stations()`.
+  // The rest predicts the effect of a further target without a new adjustment. A column of unknowns has `unknowns()`
+  // entries for each of `stations()`.
   bool covers_something() const { return mass_ > 0; }
   std::span<const std::size_t> stations() const { return stations_; }  // by their places in the network
   Eigen::Index unknowns() const { return unknowns_; }                  // of a station: 4 or 6
   Eigen::MatrixXd covariance() const;                                  // of all unknowns
   // The mean square error over the covered surface is tr(metric() · covariance()).
   Eigen::MatrixXd metric() const;
-  // Inverse of the covariance of a target's centre in a scan. REQUIRES: the station is one of `stations()`.
+  // Returns the inverse covariance of a target's centre in a scan. REQUIRES: the station is one of `stations()`.
   Eigen::Matrix3d sighting_weight(const RegistrationTarget& target, const RegistrationTarget::Sighting& sighting) const;
-  // Displacement of a point of the local frame by a station's unknowns: 3 × unknowns().
+  // Returns the displacement of a point of the local frame by a station's unknowns: 3 × unknowns().
   Eigen::MatrixXd displacement_at(const Vec3& local) const;
 
  private:
@@ -73,7 +73,7 @@ class RegistrationAdjustment {
   Matrix6d prior_of(std::size_t place) const;
   Eigen::MatrixXd mean() const;
   PartialInverse inverse_times(const Eigen::MatrixXd& right) const;
-  // Σ Jᵀ w (b − b̄) of all unknowns: × errors of the instrument; no columns if none are stated.
+  // Returns Σ Jᵀ w (b − b̄) of all unknowns × errors of the instrument; no columns if none are stated.
   Eigen::MatrixXd instrument() const;
   std::size_t pair(std::size_t i, std::size_t j) const;  // its first sum
   bool tied(std::size_t i, std::size_t j) const;
@@ -87,7 +87,7 @@ class RegistrationAdjustment {
   std::vector<Matrix6d> relative_covariances(const PartialInverse& covariances, const Eigen::MatrixXd& mean) const;
 
   const RegistrationSums& sums_;
-  double share_;  // voxels of the site over counted voxels
+  double share_;  // voxels of the site divided by counted voxels
   RegistrationOptions options_;
   std::span<const RegistrationTarget> targets_;
   Eigen::Index unknowns_;  // per station
@@ -97,13 +97,13 @@ class RegistrationAdjustment {
   double scale_ = 1, mass_ = 0;
 };
 
-// What an adjustment is made of. Borrows the counts.
+// Inputs of an adjustment. Borrows the counts.
 struct RegistrationInputs {
   const RegistrationSums& held_by;
   double share;
   const RegistrationSums& covered;
 };
-// Throws Error invalid_argument as registration_error().
+// Returns them. Throws Error invalid_argument as registration_error().
 RegistrationInputs registration_inputs(const NetworkCounts& counts, std::uint64_t voxels,
                                        const RegistrationOptions& options, const NetworkCounts* surroundings,
                                        std::uint64_t surroundings_voxels);

@@ -26,7 +26,7 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
       if (overlap) error = std::max(error, overlap_estimate(counts, population).standard_error);
     }
     if (error <= wanted || progress.stopped()) return size;
-    // error² = s²·(1/n − 1/N) gives s², which gives the n for the wanted error.
+    // error² = s²·(1/n − 1/N) gives s², and s² gives the n for the wanted error.
     const double n = static_cast<double>(size), all = static_cast<double>(population);
     const double variance = error * error / (1 / n - 1 / all);
     const double needed = reserve / (wanted * wanted / variance + 1 / all);

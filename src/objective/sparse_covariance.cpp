@@ -14,18 +14,18 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Operations of a dense factor, which many threads share, that are worth one of a sparse factor, which one thread
+// Operations of a dense factor, which many threads share, that cost as much as one of a sparse factor, which one thread
 // makes.
 constexpr double kSparseOperation = 2;
 constexpr Index kMostDenseRows = 16'000;  // 2 GB; more are left sparse
-// Share of the rows of the last column of a supernode that its first one needs.
+// Least share of the rows of a supernode's last column that its first column needs.
 constexpr double kAlike = 0.75;
 constexpr Index kTile = 96;  // rows and columns of a dense matrix that one task works on
 
-// Columns of blocks of a factor that are eliminated together, since almost the same rows of them are not 0.
+// Block columns of a factor that are eliminated together, since they have almost the same nonzero rows.
 struct Supernode {
   std::size_t first, columns;       // in the order of elimination
-  std::vector<std::size_t> places;  // of the rows that are not 0, rising: those of its own columns first
+  std::vector<std::size_t> places;  // of the nonzero rows, ascending: those of its own columns first
 };
 
 struct Elimination {
@@ -33,7 +33,7 @@ struct Elimination {
   std::vector<Supernode> supernodes;   // one after the other
   std::vector<std::size_t> supernode;  // of each place
 
-  // Products of blocks that the factor takes.
+  // Returns the number of products of blocks that the factor takes.
   double products() const {
     double sum = 0;
     for (const Supernode& some : supernodes)
@@ -47,7 +47,7 @@ std::vector<std::size_t> fill_reducing_order(const SparseBlocks& matrix) {
   const auto add = [&](std::size_t row, std::size_t column) {
     ties.emplace_back(static_cast<int>(row), static_cast<int>(column), 1);
   };
-  // Eigen takes a column without a diagonal for one that ties everything, and orders nothing.
+  // Eigen takes a column without a diagonal for one that is tied to all others, and orders nothing.
   for (std::size_t k = 0; k < matrix.diagonal.size(); ++k) add(k, k);
   for (const SparseBlocks::Pair& pair : matrix.pairs) add(pair.row, pair.column), add(pair.column, pair.row);
   const auto n = static_cast<Index>(matrix.diagonal.size());
@@ -71,7 +71,7 @@ Elimination eliminate(const SparseBlocks& matrix) {
   for (std::vector<std::size_t>& rows : below) {
     std::ranges::sort(rows);
     rows.erase(std::ranges::unique(rows).begin(), rows.end());
-    // Eliminated, a column leaves its rows to the first of them.
+    // A column, once eliminated, passes its rows on to the first of them.
     if (rows.size() > 1) below[rows.front()].insert(below[rows.front()].end(), rows.begin() + 1, rows.end());
   }
   for (std::size_t first = 0, end; first < n; first = end) {
@@ -129,7 +129,7 @@ class SparseFactor {
  private:
   Index rows(std::size_t blocks) const { return static_cast<Index>(blocks) * size_; }
 
-  // A block of what is stored by supernodes; REQUIRES: column <= row, not 0 in the factor.
+  // Returns a block of columns stored by supernodes. REQUIRES: column <= row, not 0 in the factor.
   Eigen::Block<MatrixXd> block(std::vector<MatrixXd>& columns, std::size_t row, std::size_t column) const {
     const std::size_t k = elimination_.supernode[column];
     const Supernode& own = elimination_.supernodes[k];
@@ -137,8 +137,8 @@ class SparseFactor {
     return columns[k].block(rows(static_cast<std::size_t>(at)), rows(column - own.first), size_, size_);
   }
 
-  // Calls each(columns, c, count, at) for the supernodes of which supernode k has rows: `columns` of it are those of
-  // the places from c on, and at[r] is where it has the row of place c + r.
+  // Calls each(later, c, count, at) for each later supernode of which supernode k has rows. `count` of its columns are
+  // at the places of k from c on; it stores the row of place c + r at at[r].
   template <class Each>
   void for_later(std::size_t k, const Each& each) const {
     const std::vector<std::size_t>& places = elimination_.supernodes[k].places;
@@ -175,7 +175,7 @@ class SparseFactor {
     });
   }
 
-  // A⁻¹ right, of which rows are in the order of elimination.
+  // Solves A⁻¹ right, with rows in the order of elimination.
   void solve(MatrixXd& right) const {
     const auto for_below = [&](const Supernode& own, const auto& each) {
       for (std::size_t r = own.columns; r < own.places.size(); ++r)
@@ -200,14 +200,14 @@ class SparseFactor {
     }
   }
 
-  // The blocks of A⁻¹ where L is not 0, from the last column on (Takahashi, Fagan and Chin: Formation of a sparse bus
-  // impedance matrix, 1973): with U = L below the diagonal · its inverse, Z below = −Z U, and
-  // Z on the diagonal = (L Lᵀ)⁻¹ − Uᵀ Z below.
+  // Returns the blocks of A⁻¹ at the nonzero blocks of L, from the last column on (Takahashi, Fagan and Chin: Formation
+  // of a sparse bus impedance matrix, 1973). With U = L below the diagonal · its inverse: Z below = −Z U, and Z on the
+  // diagonal = (L Lᵀ)⁻¹ − Uᵀ Z below.
   std::vector<MatrixXd> inverse() const {
     std::vector<MatrixXd> found(columns_.size());
     for (std::size_t k = columns_.size(); k-- > 0;) {
       const Index width = columns_[k].cols(), rest = columns_[k].rows() - width;
-      MatrixXd among(rest, rest);  // the inverse among the rows below, its lower triangle
+      MatrixXd among(rest, rest);  // the inverse at the rows below, its lower triangle
       for_later(k, [&](std::size_t later, std::size_t c, std::size_t count, const std::vector<std::size_t>& at) {
         const std::size_t from = c - elimination_.supernodes[k].columns;
         for (std::size_t j = 0; j < count; ++j)
@@ -243,7 +243,7 @@ void for_tiles(Index first, Index rows, const Each& each) {
   });
 }
 
-// L of A = L Lᵀ, tile by tile: the same bits on any number of threads. What is above the diagonal means nothing.
+// Returns L of A = L Lᵀ, computed by tiles, with equal bits for any number of threads. Ignore its upper triangle.
 MatrixXd dense_factor(MatrixXd a) {
   const Index n = a.rows();
   for (Index k = 0; k < n; k += kTile) {
@@ -265,7 +265,7 @@ MatrixXd dense_factor(MatrixXd a) {
   return a;
 }
 
-// Blocks of A⁻¹ = L⁻ᵀ L⁻¹ from columns of L⁻¹, which begin at the diagonal.
+// Returns blocks of A⁻¹ = L⁻ᵀ L⁻¹ from columns of L⁻¹, which begin at the diagonal.
 PartialInverse dense_inverse(const SparseBlocks& matrix, const MatrixXd& right) {
   const MatrixXd factor = dense_factor(matrix.dense());
   const Index block = matrix.diagonal.front().rows(), n = factor.rows();

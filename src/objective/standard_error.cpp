@@ -22,10 +22,10 @@ namespace vantage {
 namespace {
 
 constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
-constexpr double least_unbiased = 0.5;  // of a sample's registration error, that remains after subtracting its bias
+constexpr double least_unbiased = 0.5;  // least share of a sample's registration error after subtracting its bias
 
-// The sums that a function looks at. Those of registration are by far the most with hundreds of stations, and they may
-// be of a sample although every voxel was counted.
+// Sums that a function reads. With hundreds of stations, those of registration are by far the most; they may come from
+// a sample although every voxel was counted.
 enum class Sums : std::uint8_t { none, registration };
 
 double unsampled_share(const NetworkCounts& counts, std::uint64_t population, Sums sums = Sums::none) {
@@ -34,7 +34,7 @@ double unsampled_share(const NetworkCounts& counts, std::uint64_t population, Su
   return 1.0 - static_cast<double>(voxels) / static_cast<double>(population);
 }
 
-// The sample's own counts, without its groups.
+// Returns the sample's own counts, without its groups.
 NetworkCounts without_groups(const NetworkCounts& all, Sums sums) {
   NetworkCounts rest;
   rest.stations = all.stations;
@@ -69,8 +69,8 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   }
 }
 
-// Leaves differences of sums that are exact except for their last place. A group of a large network lacks pairs that
-// nothing was summed for.
+// Subtracts a group; differences of sums are exact except for their last place. A group of a large network lacks pairs
+// without any sum.
 void take_off(RegistrationSums& rest, const RegistrationSums& group) {
   rest.voxels -= group.voxels;
   if (group.pairs.size() < rest.pairs.size()) {
@@ -85,8 +85,8 @@ void take_off(RegistrationSums& rest, const RegistrationSums& group) {
   subtract(rest.instrument, group.instrument);
 }
 
-// `of` each delete-one-group replicate, in parallel and with `whole` beside them; empty if there are fewer than two
-// groups.
+// Returns `of` for each delete-one-group replicate, in parallel and with `whole` beside them; empty if there are fewer
+// than two groups.
 template <class Value>
 std::vector<Value> replicates(
     const NetworkCounts& counts, Sums sums, const std::function<Value(const NetworkCounts&)>& of,
@@ -123,8 +123,8 @@ double jackknife_error(const std::vector<double>& values, double unsampled, doub
   return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error * scale);
 }
 
-// Bias of a function of a sample, by the same replicates (Quenouille 1956): the part that falls as 1/n, with n counted
-// against the population.
+// Returns the bias of a function of a sample, by the same replicates (Quenouille 1956): the part that falls as 1/n,
+// with n counted against the population.
 double jackknife_bias(double estimate, const std::vector<double>& values, double unsampled) {
   const double groups = static_cast<double>(values.size());
   double sum = 0;
@@ -140,8 +140,8 @@ Estimate jackknifed(double seen, const std::vector<double>& values, double unsam
   return {seen - within_error(jackknife_bias(seen, values, unsampled), error), error};
 }
 
-// Whether group g of 20 is in half r < 19 of them: the rows of Paley's Hadamard matrix of order 20, by the squares
-// modulo 19. Each group is in as many halves as any other, and with each other one as often (McCarthy:
+// Returns true if group g of 20 is in half r < 19 of them: the rows of Paley's Hadamard matrix of order 20, by the
+// squares modulo 19. Each group is in as many halves as any other, and equally often with each other group (McCarthy:
 // Pseudo-replication: Half samples, 1969).
 constexpr std::size_t kHalvedGroups = 20;
 bool in_half(std::size_t r, std::size_t g) {
@@ -154,8 +154,8 @@ bool in_half(std::size_t r, std::size_t g) {
   return g == q || (squares >> ((g + q - r) % q) & 1) == 1;
 }
 
-// Mean excess of half a sample over all of it, over balanced halves and their complements. Unlike leaving out a
-// twentieth, this shows the loss of links that rest on a few voxels.
+// Returns the mean excess of half a sample over the whole, over balanced halves and their complements. Unlike leaving
+// out a twentieth, this shows the loss of links that depend on a few voxels.
 double halving_bias(double estimate, const NetworkCounts& counts, double unsampled,
                     const std::function<double(const NetworkCounts&)>& of) {
   constexpr std::size_t halvings = kHalvedGroups - 1;
@@ -170,8 +170,8 @@ double halving_bias(double estimate, const NetworkCounts& counts, double unsampl
   return unsampled * sum / (2.0 * halvings);
 }
 
-// For functions of pairs: links may rest on a few voxels, of which a sample holds one or none. The correction's own
-// error is as large as the correction.
+// Estimates functions of pairs: links may depend on a few voxels, of which a sample holds one or none. The correction's
+// own error is as large as the correction.
 Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, double scale,
                   const std::function<double(const NetworkCounts&)>& of) {
   const std::vector<double> values = replicates<double>(counts, Sums::none, of);
@@ -211,7 +211,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   const NetworkCounts& counts = measured.counts;
   double variance = 0;
   const auto add = [&](double error) { variance += error * error; };
-  // On voxels of its own, whatever else was counted.
+  // These objectives have voxels of their own, whatever else was counted.
   if (objective.needs.attainable && objective.standard_error) add(objective.standard_error(measured));
   const bool registered = objective.needs.registration.has_value();
   const Sums sums = registered ? Sums::registration : Sums::none;
@@ -281,7 +281,7 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   };
   double seen = 0;
   const auto whole = [&] { seen = error(counts, surroundings); };
-  std::vector<std::pair<std::vector<double>, double>> sampled;  // replicates, and the share that is not in the sample
+  std::vector<std::pair<std::vector<double>, double>> sampled;  // replicates, and the unsampled share
   if (const double unsampled = unsampled_share(counts, voxels, Sums::registration); unsampled > 0)
     sampled.emplace_back(
         replicates<double>(
@@ -301,8 +301,8 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
     estimate.value -= within_error(jackknife_bias(seen, values, unsampled), own);
     estimate.standard_error = std::hypot(estimate.standard_error, own);
   }
-  // A bias that seems larger means that the weakest link rests on voxels of one group; the sample cannot tell its size.
-  // But no registration is without error.
+  // An apparently larger bias means that the weakest link depends on voxels of one group, so that the sample cannot
+  // show its size. Still, no registration is without error.
   estimate.value = std::max(estimate.value, least_unbiased * seen);
   return estimate;
 }

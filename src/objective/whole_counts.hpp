@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// Counts of a cancelled evaluation hold some of the points: no measure may be made of them. Throws Error
-// invalid_argument. `measure`: what was wanted.
+// Throws Error invalid_argument for counts of a cancelled evaluation, which hold only some points and allow no measure.
+// `measure`: the one that was wanted.
 inline void require_whole(const NetworkCounts& counts, const char* measure) {
   if (counts.cancelled)
     throw Error(Errc::invalid_argument,

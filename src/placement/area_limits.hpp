@@ -19,7 +19,7 @@ class AreaLimits {
   explicit AreaLimits(const WalkableOptions& options);
   bool any() const { return levels_ || !within_.empty() || !without_.empty(); }
   bool allow(const Vec3& ground) const { return allow_near(ground, 0); }
-  // Whether a place within `margin_m` may be allowed; conservative, so true for some places further away.
+  // Returns true if a place within `margin_m` may be allowed; also true for some places further away.
   bool allow_near(const Vec3& ground, double margin_m) const;
 
  private:

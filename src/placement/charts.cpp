@@ -42,7 +42,7 @@ void weld(const std::vector<glm::dvec3>& points, const std::vector<char>& used, 
   }
 }
 
-// Whether two triangles seen from above share more than an outline.
+// Returns true if two triangles seen from above share more than an outline.
 bool overlap_in_plan(const std::array<Uv, 3>& a, const std::array<Uv, 3>& b, double tolerance) {
   for (const auto& [from, other] : {std::pair(&a, &b), std::pair(&b, &a)})
     for (int e = 0; e < 3; ++e) {
@@ -84,7 +84,7 @@ class Graph {
   std::vector<std::uint32_t> neighbour_;
 };
 
-// Pairs of pieces of the same part that overlap in plan view.
+// Returns pairs of pieces of the same part that overlap in plan view.
 Graph find_overlaps(const SurfacePieces& pieces, const std::vector<Triangle>& kept,
                     const std::vector<std::uint32_t>& part) {
   std::vector<Uv> plan;

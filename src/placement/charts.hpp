@@ -19,12 +19,12 @@ struct GroundChart {
   double mean_z = 0;     // over the plan area
 };
 
-// Connected parts (by vertices at the same place, to `weld_m`). Parts that overlap themselves in plan view are split;
-// repeated pieces are left out. Largest first.
+// Returns connected components (by vertices at the same place, to `weld_m`). Components that overlap themselves in plan
+// view are split; repeated pieces are left out. Largest first.
 std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m);
 
-// Whether a disc of this radius, seen from above, fits somewhere in the chart. Tests the middles of its pieces and of
-// their edges.
+// Returns true if a disc of this radius, seen from above, fits somewhere in the chart. Tests the middles of pieces and
+// of their edges.
 bool holds_disc(const SurfacePieces& pieces, const GroundChart& chart, double radius_m);
 
 // Lays the charts side by side. Each chart is turned to its smallest rectangle and scaled so that its (u, v) area is in

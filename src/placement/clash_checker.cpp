@@ -28,7 +28,7 @@ struct ClashChecker::Impl {
   MeshTree tree;
   std::optional<MeshTree> opaque;  // set if some meshes are of glass
 
-  // In the local frame. Embree ends the process for positions that are not in reach.
+  // Converts to the local frame. Embree ends the process for positions out of reach.
   glm::dvec3 local(const Vec3& point) const {
     require_in_reach(point, origin, "the checked position is");
     return to_glm(point - origin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the ground that something bars the way to: what it is, and whether they are entered nevertheless.
+// Parts of the ground behind obstacles: the kind of obstacle, and the decision to enter them nevertheless.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -15,10 +15,10 @@
 namespace vantage {
 namespace {
 
-// A closed part is entered from this share of the reached floor on, or from this area on: 20 m² for a passage of 0.6 m.
+// A closed part is entered from this share of the reached floor, or this area, on: 20 m² for a passage of 0.6 m.
 constexpr double kEnteredShare = 0.1, kEnteredRooms = 22;
-constexpr double kHighestStep = 4;                       // of what a person takes: 1 m
-constexpr double kHighestRung = 1.8, kLowestRung = 0.6;  // of the same: 0.45 m and 0.15 m between two rungs
+constexpr double kHighestStep = 4;                       // in steps of a person: 1 m
+constexpr double kHighestRung = 1.8, kLowestRung = 0.6;  // in such steps: 0.45 m and 0.15 m between two rungs
 constexpr std::size_t kMostRungs = 400'000;
 constexpr int kDirections = 16;
 
@@ -38,8 +38,8 @@ double GroundField::reached_area() const {
   return area;
 }
 
-// Returns those of these samples that lie on level strips no longer than a rung: boards of a shelf and ledges of a wall
-// are longer. The others are unmarked.
+// Returns those of the marked samples that lie on level strips no longer than a rung; boards of a shelf and ledges of a
+// wall are longer. Unmarks the others.
 std::vector<std::uint32_t> GroundField::narrow_ones(std::vector<std::uint8_t>& marked) const {
   const double longest = 5 * radius_;  // 1.5 m
   const auto level = static_cast<float>(0.12 * climb_);
@@ -67,8 +67,8 @@ std::vector<std::uint32_t> GroundField::narrow_ones(std::vector<std::uint8_t>& m
   return narrow;
 }
 
-// Samples with room and rungs are linked if one gets from one to the other with the hands. A rung has another one, or a
-// floor, a rung's height above or below it, and room for a body upright before it.
+// Links samples with room and rungs if a person climbs from one to the other by hand. A rung has another rung, or a
+// floor, one rung's height above or below it, and room for an upright body before it.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> GroundField::climbs(const MeshTree& tree) const {
   const double most = kHighestRung * climb_, least = kLowestRung * climb_;
   const auto near = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;  // a step ahead, from before a stringer
@@ -129,7 +129,7 @@ GroundField::Ways GroundField::find_ways() const {
   std::vector<std::uint8_t> done(z_.size(), 0);
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
   const auto reached = [&](std::uint32_t s) { return has_room(s) && access_[part_[s]] == Access::reached; };
-  // Most of what is reached lies among what is reached, from where nothing new begins.
+  // Skips samples amid reached ones, from where nothing new begins; most are such.
   parallel::for_all(std::size_t{0}, z_.size(), [&](std::size_t k) {
     const auto s = static_cast<std::uint32_t>(k);
     if (!reached(s)) return;
@@ -173,7 +173,7 @@ GroundField::Ways GroundField::find_ways() const {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
         const double step = std::abs(double{z_[n]} - z_[s]);
         if (!has_room(n) || part_[n] == part_[s] || step > kHighestStep * climb_) continue;
-        const double share = (step / climb_ - 1) / (kHighestStep - 1);  // of the way from an easy step to the highest
+        const double share = (step / climb_ - 1) / (kHighestStep - 1);  // between an easy step, 0, and the highest, 1
         constexpr std::size_t kClasses = kEfforts - high_step;
         go(n, share <= 0 ? std::size_t{step_over}
                          : high_step + std::min(kClasses - 1, static_cast<std::size_t>(share * kClasses)));
@@ -206,7 +206,7 @@ std::vector<std::uint32_t> GroundField::first_closed(const Ways& ways) const {
   return first;
 }
 
-// Under a slope of the roof, floor where one only stoops goes along the sides.
+// Returns true for floor under a sloped roof, bordered by floor on which one can only stoop.
 bool GroundField::is_attic(std::uint32_t part) const {
   constexpr double kUnderEaves_m = 0.4;  // of the side of a square as large, for a passage of 0.6 m
   std::vector<std::uint8_t> seen(z_.size(), 0);
@@ -241,7 +241,7 @@ bool GroundField::is_above_ceiling(const MeshTree& tree, std::uint32_t part) con
   return 2 * above > looked_at;
 }
 
-// True if a person can turn on it, as on a platform but not on a rack.
+// Returns true if a person can turn on the part, as on a platform but not on a rack.
 bool GroundField::is_wide(std::uint32_t part) const {
   const auto far = static_cast<std::int64_t>(std::ceil(2.5 * radius_ / cell_));
   for (const std::uint32_t s : members(part)) {
@@ -291,7 +291,7 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
   parallel::for_all(std::size_t{0}, rims.size(), [&](std::size_t k) {
     const Rim& rim = rims[k];
     const glm::dvec2 p = middle(column_[rim.sample]);
-    // Beyond a parapet, or beside the bare edge; under eaves.
+    // Distance beyond a parapet or beside the bare edge; and under eaves.
     const double beyond = rim.bare ? 2 * cell_ : beyond_rim(), under = 3 * radius_;
     const auto met = [&](double above, double from, double to) {
       const glm::dvec3 at{p.x, p.y, z_[rim.sample] + above * height_};
@@ -302,7 +302,7 @@ bool GroundField::is_top(const MeshTree& tree, std::uint32_t part) const {
   return !rims.empty() && static_cast<double>(steep.load()) > kMostFaces * static_cast<double>(rims.size());
 }
 
-// Heights are shares of a person's: rails reach from the knee to the hip, and the head is looked over.
+// Heights as shares of a person's: rails reach from the knee to the hip, and one looks over them at head height.
 constexpr std::array kRailHeights{0.25, 0.4, 0.5, 0.57};
 constexpr std::array kHeadHeight{0.8};
 
@@ -331,7 +331,7 @@ bool GroundField::is_gallery(const MeshTree& tree, std::uint32_t part) const {
     if (stands_beyond(tree, rim, kHeadHeight)) return;
     const auto column = column_beyond(rim);
     if (!column) return;
-    std::uint32_t below = nowhere;  // what lies highest below
+    std::uint32_t below = nowhere;  // the highest surface below
     for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
       if (z_[n] < z_[rim.sample] && (below == nowhere || z_[n] > z_[below])) below = n;
     if (below != nowhere && has_room(below) && access_[part_[below]] == Access::reached) ++over;
@@ -374,7 +374,7 @@ bool GroundField::is_open_deck(const MeshTree& tree, std::uint32_t part) const {
 bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   constexpr std::size_t kMost = 400;
   const std::span<const std::uint32_t> samples = members(part);
-  // How far one sees, through panes; infinity: out of the model.
+  // Returns how far one sees, through panes; infinity if out of the model.
   const auto sight = [&](glm::dvec3 from, const glm::dvec3& way) {
     constexpr int kPanes = 8;
     constexpr double kBehind_m = 1e-3;
@@ -388,15 +388,15 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
     }
     return far;
   };
-  std::map<std::uint32_t, bool> grounds;  // by part: whether it may be ground, or water
+  std::map<std::uint32_t, bool> grounds;  // by part: true if it may be ground or water
   const auto is_ground = [&](std::uint32_t number) {
     const auto [at, is_new] = grounds.try_emplace(number, false);
     if (is_new) at->second = is_open_ground(tree, number);
     return at->second;
   };
-  // An end of the model beneath ground, or beneath water, is no opening.
+  // A view out of the model beneath ground or water is no opening.
   const auto leaves_beneath_ground = [&](const glm::dvec3& from, const glm::dvec3& way) {
-    double end = 0;  // of what is drawn
+    double end = 0;  // end of the drawn ground
     for (double at = 0; const auto column = column_at(from.x + way.x * at, from.y + way.y * at); at += cell_)
       if (first_[*column] < first_[*column + 1]) end = at;
     bool beneath = false;
@@ -432,8 +432,8 @@ bool GroundField::has_openings(const MeshTree& tree, std::uint32_t part) const {
   return false;
 }
 
-// Ground under the sky that is large enough to be entered, sealed parts as large as a room, and covered ones as large
-// as a hall.
+// Returns true for ground under the sky that is large enough to be entered, sealed parts as large as a room, and
+// covered ones as large as a hall.
 bool GroundField::may_be_told(std::uint32_t part) const {
   const Part& p = parts_[part];
   const double area = p.area(cell_), hall = 10 * room();
@@ -472,7 +472,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
       closed.height_m = std::max(closed.height_m, std::abs(double{z_[before]} - z_[s]));
   }
   if (sky) {
-    const bool way = effort <= climb, canopy = 2 * part.above_surfaces > part.samples;  // as a stand's, over its seats
+    const bool way = effort <= climb, canopy = 2 * part.above_surfaces > part.samples;  // as over a stand's seats
     closed.kind = !is_wide(number)                             ? ClosedKind::top
                   : !above && !canopy && !is_top(tree, number) ? ClosedKind::ground
                   : way                                        ? ClosedKind::room
@@ -480,7 +480,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
     return closed;
   }
   if (by_step || effort == climb) {
-    // People climb onto goods and machines, too: only a wide part is a floor, and a high one has a rail.
+    // People also climb onto goods and machines, so only a wide part is a floor, and a high one needs a rail.
     if (!is_wide(number) || (is_top(tree, number) && !is_gallery(tree, number))) closed.kind = ClosedKind::top;
     if (by_step && is_attic(number)) closed.kind = ClosedKind::attic;
   }
@@ -512,7 +512,7 @@ bool GroundField::enter_next_closed(const MeshTree& tree, double enough) {
   if (all < enough) return false;
   const Ways& ways = ways_from_reached();
   const std::vector<std::uint32_t> first = first_closed(ways);
-  std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, ClosedPart>>> together;  // by the first on the way
+  std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, ClosedPart>>> together;  // by the first part entered
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);
     if (part.kind == ClosedKind::room || part.kind == ClosedKind::ground)
@@ -545,7 +545,7 @@ std::vector<GroundField::ClosedPart> GroundField::not_entered(const MeshTree& tr
   for (const std::uint32_t i : told) {
     ClosedPart part = closed_part(tree, ways, i);
     const bool sky = parts_[i].under_the_sky();
-    // Terrain drawn as a block ends like the top of something: what is larger than all that is reached is told.
+    // Terrain drawn as a block ends like the top of an object; it is reported if larger than all reached ground.
     const bool block = !is_roof(parts_[i]) && part.area_m2 > reached;
     if (!sky || part.kind != ClosedKind::top || block) closed.push_back(std::move(part));
   }
@@ -560,12 +560,12 @@ std::vector<GroundField::ClosedPart> GroundField::low_floors(const MeshTree& tre
   for (std::uint32_t s = 0; s < z_.size(); ++s) below += stoops(s) && (taken_[s] & kOverhead);
   if (static_cast<double>(below) * cell_ * cell_ < enough) return {};
   const Ways& ways = ways_from_reached();
-  // Between two beams there may be room for a head.
+  // Between two beams a head may have room.
   const auto is_low = [&](std::uint32_t s) {
     if (ways.effort[s] != stoop) return false;
     return stoops(s) || (has_room(s) && parts_[part_[s]].area(cell_) < room());
   };
-  constexpr double kMostOpen = 0.35;  // of its border: the rim of a room or of open ground, under a slope or a tree
+  constexpr double kMostOpen = 0.35;  // share of its border: a room's or open ground's rim, under a slope or a tree
   constexpr std::size_t kMeasured = 400;
   const auto far = static_cast<std::int64_t>(std::ceil(2.5 * radius_ / cell_));
   std::vector<ClosedPart> floors;
@@ -610,7 +610,7 @@ std::vector<GroundField::ClosedPart> GroundField::low_floors(const MeshTree& tre
     for (std::size_t k = 0; k < floor.size(); k += floor.size() / kMeasured + 1)
       if (const auto over = tree.first(place(floor[k]) + glm::dvec3{0, 0, climb_}, {0, 0, 1}))
         headrooms.push_back(over->distance + climb_);
-    const auto tenth = headrooms.begin() + static_cast<std::ptrdiff_t>(headrooms.size() / 10);  // stairs apart
+    const auto tenth = headrooms.begin() + static_cast<std::ptrdiff_t>(headrooms.size() / 10);  // not counting stairs
     std::ranges::nth_element(headrooms, tenth);
     told.height_m = std::min(height_, *tenth);
     floors.push_back(std::move(told));
@@ -621,7 +621,7 @@ std::vector<GroundField::ClosedPart> GroundField::low_floors(const MeshTree& tre
 std::vector<GroundField::Patch> GroundField::thin_floors() const {
   std::vector<Patch> patches;
   const auto level = static_cast<float>(0.04 * climb_);
-  // Narrow triangles that fill all columns around are a surface of slivers, which is a floor of its own.
+  // Narrow triangles that fill all columns around make a floor of slivers, not a grating.
   constexpr double kMostFilled = 0.7;
   const auto is_grating = [&](std::uint32_t sample) {
     constexpr std::int64_t kAround = 4;
@@ -641,7 +641,7 @@ std::vector<GroundField::Patch> GroundField::thin_floors() const {
   const auto wanted = [&](std::uint32_t s) {
     return (taken_[s] & kThin) && has_room(s) && access_[part_[s]] == Access::reached && is_grating(s);
   };
-  // Runs of samples in a row, and equal runs of following rows.
+  // Runs of samples in a row, merged with equal runs of the following rows.
   struct Run {
     std::uint32_t from, to, row;
     float z;

@@ -15,20 +15,20 @@ namespace vantage {
 namespace {
 
 constexpr double kLeast_m2 = 2;             // area of a sheet, seen from above
-constexpr double kMostUp = 0.01;            // share of it that faces up, as a rim does
-constexpr std::size_t kLookedAt = 200;      // triangles of a sheet
-constexpr std::size_t kLookedAtFirst = 50;  // the largest of a mesh, and as many others
-constexpr double kSkin_m = 0.01;            // rays begin so far off the sheet
-constexpr double kSlab_m = 1;               // nobody is in a gap below a sheet that is lower
-constexpr std::uint32_t kMost = 4'000'000;  // triangles of a mesh that is taken apart
+constexpr double kMostUp = 0.01;            // share of its area that faces up, as a rim does
+constexpr std::size_t kLookedAt = 200;      // triangles of a sheet that are tested
+constexpr std::size_t kLookedAtFirst = 50;  // largest triangles of a mesh that are tested, and as many others
+constexpr double kSkin_m = 0.01;            // distance of rays' origins from the sheet
+constexpr double kSlab_m = 1;               // nobody is in a lower gap below a sheet
+constexpr std::uint32_t kMost = 4'000'000;  // triangles of a mesh that is split into components
 
-// Area that a triangle shows from above, in m²; negative: it faces down.
+// Returns the area that a triangle shows from above, in m²; negative if it faces down.
 double shown_m2(const SceneData& scene, std::uint32_t triangle) {
   const auto t = corners_of(scene, triangle);
   return cross(t[1] - t[0], t[2] - t[0]).z / 2;
 }
 
-// The triangles of each connected part of a mesh.
+// Returns the triangles of each connected component of a mesh.
 std::vector<std::vector<std::uint32_t>> connected_parts(const SceneData& scene, const MeshRange& range) {
   std::vector<Float3> corners;
   corners.reserve(3 * std::size_t{range.triangle_count});
@@ -49,7 +49,7 @@ std::vector<std::vector<std::uint32_t>> connected_parts(const SceneData& scene, 
   return parts;
 }
 
-// Six times the volume that a triangle adds to a closed part, seen from `middle`; negative where it shows inwards.
+// Returns six times the volume that a triangle adds to a closed part, seen from `middle`; negative if it faces inwards.
 double volume(const SceneData& scene, std::uint32_t triangle, const glm::dvec3& middle) {
   const auto t = corners_of(scene, triangle);
   return dot(t[0] - middle, cross(t[1] - middle, t[2] - middle));
@@ -58,7 +58,7 @@ double volume(const SceneData& scene, std::uint32_t triangle, const glm::dvec3& 
 struct Shape {
   double up_m2 = 0, down_m2 = 0, volume = 0;
   Box box;
-  // Copies of a sheet that lie in one another are none.
+  // Coincident copies of a sheet do not count as a sheet.
   bool is_sheet() const { return up_m2 <= kMostUp * down_m2 && down_m2 <= (1 + kMostUp) * box.size().x * box.size().y; }
   bool is_inside_out() const { return volume < 0 && std::abs(up_m2 - down_m2) <= kMostUp * down_m2; }
 };
@@ -75,10 +75,10 @@ Shape shape_of(const SceneData& scene, const std::vector<std::uint32_t>& part) {
   return shape;
 }
 
-// True if somebody may stand on the back of a triangle that faces down. `own(triangle)`: whether that triangle,
-// straight below, may belong to the same part; `sheet`: whether that may be an open sheet. What faces up above is drawn
-// the wrong way around, too, where two sheets are a floor between storeys: the lower one is a ceiling that faces up,
-// and from a gap as low as that nobody sees the upper one.
+// Returns true if a person may stand on the back of a triangle that faces down. `own(triangle)`: true if that triangle,
+// straight below, may belong to the same part; `sheet`: true if the part may be an open sheet. A face above that looks
+// up is drawn the wrong way around, too, if two sheets make a floor between storeys: the lower one is a ceiling that
+// faces up, and nobody sees the upper one from so low a gap.
 template <class Own>
 bool carries(const SceneData& scene, const MeshTree& tree, std::uint32_t triangle, double height_m, Own own,
              bool sheet) {
@@ -108,8 +108,8 @@ bool carries(const SceneData& scene, const MeshTree& tree, const std::vector<std
   return 2 * on > all;
 }
 
-// True if any of the largest triangles that face down, or of some others, may carry a person. Most models have none,
-// and nothing has to be taken apart.
+// Returns true if any of the largest triangles that face down, or of some others, may carry a person. Most models have
+// none, and need not be split into components.
 bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& range, double height_m) {
   std::vector<std::pair<double, std::uint32_t>> down;  // by area, negative
   double all = 0;
@@ -129,7 +129,7 @@ bool may_carry(const SceneData& scene, const MeshTree& tree, const MeshRange& ra
   });
 }
 
-// Adds the triangles of a mesh that face down and have room above: they may as well face up.
+// Adds the triangles of a mesh that face down and have room above, as they may as well face up.
 void add_with_room(std::vector<std::uint32_t>& found, const SceneData& scene, const MeshTree& tree,
                    const MeshRange& range, double height_m) {
   std::vector<std::uint8_t> has_room(range.triangle_count);
@@ -138,7 +138,7 @@ void add_with_room(std::vector<std::uint32_t>& found, const SceneData& scene, co
     if (!(shown_m2(scene, triangle) < 0)) return;
     const auto t = corners_of(scene, triangle);
     const glm::dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
-    // A table may stand on its middle.
+    // Tests several points, as a table may stand on the middle.
     has_room[k] = std::ranges::any_of(std::array{middle, t[0], t[1], t[2]}, [&](const glm::dvec3& towards) {
       const auto above = tree.first((middle + towards) / 2.0 + glm::dvec3{0, 0, kSkin_m}, {0, 0, 1});
       return !above || above->distance >= height_m;

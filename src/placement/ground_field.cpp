@@ -27,9 +27,9 @@ namespace {
 
 constexpr double columns_per_passage = 12;
 constexpr double most_columns = 6e6;  // some 300 MB at three storeys
-// People walk on slopes too steep for a scanner: models often draw stairs as a slope, seldom steeper than this.
+// People walk on slopes too steep for a scanner. Models often draw stairs as a slope, seldom steeper than this.
 constexpr double walking_slope_degrees = 40;
-// No wall passes between the middles of two columns that touch at a corner while both have half this distance clear.
+// No wall passes between two diagonal columns' middles if both have half this distance clear.
 constexpr double half_diagonal = 0.7072;
 constexpr int cylinders = 3;
 constexpr double tolerance_share = 1e-3;  // of climb, height and width: rounding of the vertices
@@ -52,7 +52,7 @@ double longest_edge(const Corners& t) {
 double squared(const glm::dvec2& v) { return v.x * v.x + v.y * v.y; }
 double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Squared distance from p to a convex polygon. A polygon without area counts as its outline.
+// Returns the squared distance from p to a convex polygon. A polygon without area counts as its outline.
 double squared_distance(const glm::dvec2& p, std::span<const glm::dvec2> polygon) {
   double nearest = std::numeric_limits<double>::infinity();
   bool left = false, right = false;
@@ -68,7 +68,7 @@ double squared_distance(const glm::dvec2& p, std::span<const glm::dvec2> polygon
   return !(left && right) && std::abs(area) > 1e-12 ? 0 : nearest;
 }
 
-// Part of a triangle from height `low` to `high`, seen from above. At most five corners.
+// The part of a triangle from height `low` to `high`, seen from above, with at most five corners.
 struct Slice {
   std::array<glm::dvec2, 8> corners;
   std::size_t count = 0;
@@ -103,7 +103,7 @@ struct Grid {
     std::uint32_t first, end;
     std::uint32_t count() const { return end - first; }
   };
-  // Columns and rows whose middles lie from `low` to `high`.
+  // Return the columns or rows whose middles lie from `low` to `high`.
   Span columns_within(double low, double high) const { return within(low, high, corner.x, columns); }
   Span rows_within(double low, double high) const { return within(low, high, corner.y, rows); }
 
@@ -122,7 +122,7 @@ void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
   const double y_min = std::min({t[0].y, t[1].y, t[2].y}), y_max = std::max({t[0].y, t[1].y, t[2].y});
   const Grid::Span rows = grid.rows_within(y_min - reach, y_max + reach);
   for (std::uint32_t row = rows.first; row < rows.end; ++row) {
-    // Part of the triangle within this row, widened by `reach` on either side.
+    // The part of the triangle within this row, widened by `reach` on either side.
     const double y = grid.corner.y + (static_cast<double>(row) + 0.5) * grid.cell, low = y - reach, high = y + reach;
     double x_min = std::numeric_limits<double>::infinity(), x_max = -x_min;
     for (int e = 0; e < 3; ++e) {
@@ -154,7 +154,7 @@ void raise_to(float& top, float z) {
   }
 }
 
-// True for a closed leaf or a pane: it stops people until it is opened, or while nobody finds the door in it.
+// Returns true for a closed leaf or a pane: it stops people until opened, or while nobody finds its door.
 bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
   constexpr std::uint32_t kMostTriangles = 20'000;  // of a leaf, where nodes share meshes
   const MeshRange& range = scene.ranges[mesh];
@@ -166,7 +166,7 @@ bool is_closed_leaf(const SceneData& scene, std::size_t mesh) {
                   names_a_leaf(scene.meshes[mesh].name));
 }
 
-// Meshes of water, by their name or their material's, and those with an open surface: level and wide, as no pipe is.
+// Meshes of water, by their or their material's name; `open`: with a level surface wider than a pipe.
 enum class Water : std::uint8_t { none, some, open };
 std::vector<Water> waters_of(const SceneData& scene) {
   constexpr double kLevel = 0.996, kMostly = 0.9, kLeast_m2 = 10, kNarrowest_m = 1;  // within 5°
@@ -227,7 +227,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
   const std::size_t count = std::size_t{columns_} * rows_;
   top_.assign(count, -std::numeric_limits<float>::infinity());
   const double least_up = std::cos(slope_);
-  // Nobody stands on water.
+  // Water is no ground.
   const std::vector<Water> water = waters_of(scene);
   struct Found {
     std::vector<std::uint64_t> wide, thin, covered;  // covered: by narrow triangles at the middle
@@ -242,7 +242,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
       if (n.z == 0) continue;
       const double up = n.z < 0 && std::ranges::binary_search(turned, i) ? -n.z : n.z;
       const bool walkable = !plane && up >= least_up * length(n) && water[scene.mesh_of(i)] == Water::none;
-      // Bars of a grating lie between the middles of columns: they carry where they pass a column, at its height there.
+      // Bars of a grating lie between columns' middles; they carry a person at a column that they pass, at its height.
       const bool narrow = walkable && up < cell_ * longest_edge(t);
       if (narrow) {
         const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
@@ -330,7 +330,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
     taken_.insert(taken_.end(), taken.begin(), taken.end());
   }
   for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
-  // Nor on its bed. A tunnel below is deeper.
+  // The bed below water is no ground either; a tunnel below lies deeper.
   wet_.assign(count, 0);
   for (const Found& some : collected)
     for (const std::uint64_t key : some.water) {
@@ -384,7 +384,7 @@ void GroundField::find_room(const SceneData& scene) {
             if (blocks[mesh] == until_opened) at_leaves.local().emplace_back(s, mesh);
             continue;
           }
-          // Squared distance to what comes into the outline of a person of this height; none: nothing does.
+          // Returns the squared distance to obstacles in the outline of a person of this height; nothing without any.
           const auto distance_within = [&](double height) -> std::optional<double> {
             for (int k = cylinders - 1; k >= 0; --k) {
               const double bottom = low + k * shorter, top = height - k * shorter;
@@ -408,14 +408,14 @@ void GroundField::find_room(const SceneData& scene) {
       }
     });
   };
-  // Small triangles mark hardly anything that others have not marked. A block of them is compared with the samples
-  // near it, and those that can still change one are looked at.
+  // Small triangles mark hardly anything that others have not marked. A block of them is compared with nearby samples,
+  // and only triangles that can still change one are examined.
   constexpr std::uint32_t block = 64;
-  constexpr std::size_t most_compared = 64 * block;  // columns, with which looking at each triangle takes as long
+  constexpr std::size_t most_compared = 64 * block;  // columns, for which examining each triangle takes equally long
   struct Open {
     glm::dvec2 p;
     double low, high;
-    bool is_beside;  // something may only be over it
+    bool is_beside;  // otherwise it may only be overhead
   };
   const auto may_mark = [&](const Box& box, const Open& o) {
     const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),
@@ -468,7 +468,7 @@ void GroundField::find_room(const SceneData& scene) {
   for (const auto& some : at_leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
   parallel::sort(leaves_.begin(), leaves_.end(), std::less<>{});
   leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
-  // Nobody stands below a floor that lies on the ground to have more room over the head.
+  // Ground below a floor that lies on it offers no more headroom: nobody stands there.
   const auto lies = static_cast<float>(0.3 * climb_);
   for (std::uint32_t s = static_cast<std::uint32_t>(z_.size()); s-- > 1;) {
     const std::uint32_t below = s - 1;
@@ -479,8 +479,8 @@ void GroundField::find_room(const SceneData& scene) {
   }
 }
 
-// Whether another surface of the same part lies above within a person's height: a floor's slab below its finish, or
-// what a mattress is made of. Seen from above it is one place.
+// Returns true if another surface of the same part lies above within a person's height, such as a finish over a slab,
+// or layers of a mattress. Seen from above both are one place.
 bool GroundField::is_layer(std::uint32_t sample) const {
   const std::uint32_t above = sample + 1;
   return above < z_.size() && column_[above] == column_[sample] && part_[above] == part_[sample] &&
@@ -590,10 +590,10 @@ GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, std::uint32_t n
 }
 
 std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const {
-  // Smallest shares of the largest part. An entrance may be small beside its hall; closed parts must be of similar
+  // Least shares of the largest part. An entrance may be small compared to its hall; closed parts must be of similar
   // size.
   constexpr double large_open = 0.2, large_closed = 0.5;
-  // A room with walls around and a door sees less of what is outside; a porch or a niche more.
+  // A room with walls and a door sees less of the outside; a porch or a niche sees more.
   constexpr double most_open = 0.15;
   const double storey = 0.8 * height_;  // parts nearer in height than this are on one level
   struct Candidate {
@@ -629,7 +629,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   };
   const double largest = std::max(largest_of(open), largest_of(closed));
   only_above(open, large_open * largest);
-  // A block of terrain ends like the top of something, so that tops go only before other ground under the sky.
+  // A block of terrain ends like the top of an object, so tops are dropped only if other ground lies under the sky.
   std::vector<Candidate> ground;
   for (const Candidate& c : open)
     if (c.sky && !is_top(tree, c.part)) ground.push_back(c);
@@ -648,7 +648,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   if (open.empty()) {
     move_to_open(small, most_open);
     only_lowest(open);
-    // A closet of a closed level is no entrance: what is left closed must not dwarf what is entered.
+    // A closet of a closed level is no entrance: the parts left closed must not dwarf those that are entered.
     constexpr double least_entered = 0.1;
     double entered = 0;
     for (const Candidate& c : open) entered += c.area;
@@ -657,7 +657,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
-  // One enters from the largest ground under the sky at any height, but a building from its lowest storey.
+  // People enter from the largest ground under the sky at any height, but a building from its lowest storey.
   if (!ground.empty() && largest_of(ground) >= largest_of(open))
     choice = ground;
   else
@@ -667,7 +667,7 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   });
   std::vector<std::uint32_t> parts;
   for (const Candidate& c : choice) {
-    // Beside the largest part, what is entered from outside: dwellings of a house without the ground around it.
+    // Adds parts entered from outside to the largest one: dwellings of a house without the ground around it.
     const bool dwelling = !c.sky && !choice.front().sky && !open.empty();
     if (parts.empty() || dwelling) parts.push_back(c.part);
   }
@@ -727,7 +727,7 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
     }
   }
   const std::vector<Step> steps = steps_between_parts();
-  // Nobody stops at a gap between a slab and the ground before it, as of a threshold that is not drawn.
+  // People step over a gap between a slab and the ground before it, as at a threshold that is not drawn.
   for_parts_by_steps(steps, climb_, [&](const Step& step) { access_[step.to] = Access::reached; });
   tell_apart();
   look_beyond_high_steps(steps);
@@ -744,7 +744,7 @@ double GroundField::outline() const {
 }
 
 // Marks unreached parts as sealed if they are behind walls: under a cover, and not one step above or below a reached
-// part beside them.
+// part next to them.
 void GroundField::tell_apart() {
   // across a wall and the margins on both sides
   const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));
@@ -767,7 +767,7 @@ void GroundField::tell_apart() {
       access_[i] = Access::sealed;
 }
 
-// True if nothing but floor with room lies between a sample and a column so many columns away: there is none in a gap.
+// Returns true if no sample without room lies between a sample and a column `columns` away: a gap has none.
 bool GroundField::is_gap(std::uint32_t sample, std::uint32_t to, std::int64_t columns) const {
   const std::int64_t from = column_[sample], one = (std::int64_t{to} - from) / columns;
   for (std::int64_t k = 1; k < columns; ++k) {
@@ -822,8 +822,8 @@ void GroundField::for_parts_by_steps(std::span<const Step> steps, double highest
   }
 }
 
-// Reports steps that keep a person from a hall, but not steps onto a bed. Each tread of a stair that is too steep is a
-// part of its own, so the search goes from part to part.
+// Reports steps that bar a hall, but not steps onto a bed. Each tread of a stair that is too steep is a separate part,
+// so the search goes from part to part.
 void GroundField::look_beyond_high_steps(std::span<const Step> steps) {
   HighSteps beyond;
   for_parts_by_steps(steps, 2 * climb_, [&](const Step& step) {
@@ -871,7 +871,7 @@ std::optional<std::uint32_t> GroundField::nearest(std::uint32_t column, double z
 
 bool GroundField::is_ridge(const MeshTree& tree, const glm::dvec3& place) const {
   const double least = 0.5 / 0.3 * radius_, beyond = std::max(cell_, 0.15 * least);
-  // How far the ground goes on, and whether it then ends in the air.
+  // Width of the ground on a side, and whether it then ends in the air.
   struct Side {
     double width;
     bool in_the_air;
@@ -902,7 +902,7 @@ bool GroundField::is_ridge(const MeshTree& tree, const glm::dvec3& place) const 
     });
   };
   if (!is_narrow(place)) return false;
-  // A corner of wide ground is narrow, too, and so is what is beside it.
+  // A corner of wide ground is narrow as well, and so are places next to it.
   return std::ranges::none_of(kWays, [&](const glm::dvec2& way) {
     return std::ranges::any_of(std::array{1.0, -1.0}, [&](double sign) {
       const glm::dvec2 q = glm::dvec2(place.x, place.y) + way * (sign * 0.7 * least);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds where a person can walk: samples of the scene's surfaces on a grid seen from above, with room for a person, and
-// their connected parts.
+// Finds where a person can walk: samples of the scene's surfaces on a grid seen from above that have room for a person,
+// and their connected components.
 #pragma once
 
 #include <algorithm>
@@ -52,24 +52,24 @@ class GroundField {
               std::optional<Plane> plane = {});
 
   // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
-  // where people enter. That is the largest ground under the sky, at any height; without one, the lowest large parts
-  // that lead into the open, by a door or an opening, as several dwellings do; else the rooms that have a way out,
-  // however small; else the largest of the lowest.
+  // where people enter. That is the largest ground under the sky, at any height. Without such ground, it is the lowest
+  // large parts that lead into the open by a door or an opening, as several dwellings do; else all rooms that have a
+  // way out; else the largest of the lowest parts.
   // Throws Error invalid_argument if there is no room for a person near one of `enter`.
   void reach(const MeshTree& tree, std::span<const glm::dvec3> enter);
-  // Reaches parts that something bars the way to, too, as if one had entered them: ground under the sky, and rooms,
-  // from a tenth of the reached floor or 20 m² on. REQUIRES: reach() was called.
+  // Also reaches parts behind obstacles, as if one had entered them: ground under the sky, and rooms, from a tenth of
+  // the reached floor or 20 m² on. REQUIRES: reach() was called.
   void enter_closed(const MeshTree& tree);
 
-  // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was
-  // called.
+  // Returns the access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES:
+  // reach() was called.
   Access at(const glm::dvec3& place) const;
-  // True if the ground at this place ends in the air on both sides within half a metre (of a passage of 0.6 m), as the
-  // top of a wall or a beam does: one may cross it, and no tripod stands there.
+  // Returns true if the ground at this place ends in the air on both sides within half a metre (for a passage of 0.6
+  // m), like the top of a wall or a beam: a person may cross it, and no tripod stands there.
   bool is_ridge(const MeshTree& tree, const glm::dvec3& place) const;
-  // Entrances of the reached parts, the largest first; empty if nothing is reached.
+  // Returns the entrances of the reached parts, largest first; empty if nothing is reached.
   const std::vector<glm::dvec3>& entries() const { return entries_; }
-  // A part that something bars the way to.
+  // A part behind an obstacle.
   struct ClosedPart {
     double area_m2 = 0;
     glm::dvec3 middle{};
@@ -78,29 +78,29 @@ class GroundField {
     double height_m = 0;                    // least headroom, or highest step, on the way there
     std::vector<std::uint32_t> doors = {};  // meshes of closed leaves and panes on the way from what is reached
   };
-  // Parts that enter_closed() reached, the largest first.
+  // Returns the parts that enter_closed() reached, largest first.
   const std::vector<ClosedPart>& entered() const { return entered_; }
-  // Other sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
+  // Returns other sealed parts as large as a room, and covered ones as large as a hall beyond a step. Largest first.
   // REQUIRES: reach() was called.
   std::vector<ClosedPart> not_entered(const MeshTree& tree);
-  // Area of the reached parts.
+  // Returns the area of the reached parts.
   double reached_area() const;
-  // Area of ground under the sky, reached or not, at any height: no roof, and no top of something that stands there.
+  // Returns the area of ground under the sky, reached or not, at any height: no roof, and no top of an object.
   double open_ground_area(const MeshTree& tree) const;
-  // Floors of gratings and boards that no triangle of some width covers: rectangles at the reached samples.
+  // Floors of gratings and boards without a triangle of some width: rectangles at the reached samples.
   struct Patch {
     glm::dvec3 low;
     glm::dvec2 high;
   };
   std::vector<Patch> thin_floors() const;
-  // Area of the columns that hold anything but water on top.
+  // Returns the area of the columns whose top is not water.
   double outline() const;
-  // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
+  // Returns the area, seen from above, up to this height, of surfaces that continue reached ones, with room or not.
   double ground_area(double highest_z) const;
-  // Area of parts with room under a cover, reached or not: large in a building, small in a machine.
+  // Returns the area of parts with room under a cover, reached or not: large in a building, small in a machine.
   double covered_area() const;
-  // Area of parts as large as a hall, reached or not, no higher on average, from which one sees walls around: a site's
-  // floors, whatever steps lie between them, and not the tops of a machine.
+  // Returns the area of parts as large as a hall, reached or not, no higher on average, from which walls are in view: a
+  // site's floors, whatever steps lie between them, but not the tops of a machine.
   double walled_area(const MeshTree& tree, double highest_z) const;
   // Large parts beyond steps higher than a person takes but less than twice as high, and the highest of those steps.
   struct HighSteps {
@@ -133,8 +133,8 @@ class GroundField {
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
   void find_samples(const SceneData& scene, std::span<const std::uint32_t> turned, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
-  // The first of the samples that each one is connected with, by neighbours of which the bits of `taken` are clear;
-  // itself for those of which they are not.
+  // Returns for each sample the first of those connected with it by neighbours with the bits of `taken` clear; the
+  // sample itself if its own are not clear.
   std::vector<std::uint32_t> first_of_connected(std::uint8_t taken) const;
   void find_parts();
   bool is_layer(std::uint32_t sample) const;
@@ -145,9 +145,9 @@ class GroundField {
   };
   WaysOut ways_out(const MeshTree& tree, std::uint32_t part) const;
   std::vector<std::uint32_t> choose_parts(const MeshTree& tree) const;
-  // The sample of a part nearest to its middle.
+  // Returns the sample of a part nearest to its middle.
   glm::dvec3 middle_of(std::uint32_t part) const;
-  // How hard it is to get to a sample from what is reached: the hardest thing on the easiest way.
+  // Effort to reach a sample from the reached parts: the hardest obstacle on the easiest way.
   // Steps have a class for each tenth of a metre or so, so that the lowest is found.
   enum Effort : std::uint8_t { walk, through_door, step_over, stoop, climb, high_step, kEfforts = high_step + 8 };
   struct Ways {
@@ -156,19 +156,19 @@ class GroundField {
   };
   const Ways& ways_from_reached();
   Ways find_ways() const;
-  // Samples that are linked by rungs or steep steps, both ways, sorted.
+  // Returns pairs of samples linked by rungs or steep steps, in both directions, sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> climbs(const MeshTree& tree) const;
   std::vector<std::uint32_t> narrow_ones(std::vector<std::uint8_t>& marked) const;
   ClosedPart closed_part(const MeshTree& tree, const Ways& ways, std::uint32_t part) const;
-  // Enters what enter_closed() does, as it is seen from what is reached now; false if nothing is left. What lies beyond
-  // an entered part may be easier to get to from there.
+  // Enters parts as enter_closed() does, as seen from those reached now; returns false if none is left. Parts beyond an
+  // entered one may be easier to reach from there.
   bool enter_next_closed(const MeshTree& tree, double enough);
-  // The closed part through which the way to each closed part leads first.
+  // Returns for each closed part the first closed part on the way to it.
   std::vector<std::uint32_t> first_closed(const Ways& ways) const;
   std::vector<std::uint32_t> easiest_samples(const Ways& ways) const;
   bool is_roof(const Part& part) const { return part.under_the_sky() && 2 * part.above_others > part.samples; }
   bool is_attic(std::uint32_t part) const;
-  // True if most of it is the back of ceilings, by their names.
+  // Returns true if most of it is the back of ceilings, by their names.
   bool is_above_ceiling(const MeshTree& tree, std::uint32_t part) const;
   bool is_wide(std::uint32_t part) const;
   struct Rim {
@@ -176,37 +176,37 @@ class GroundField {
     glm::dvec3 out;
     bool bare;  // no surface goes on
   };
-  // Some samples where a part ends, of all its sides.
+  // Returns some samples at the ends of a part, on all its sides.
   std::vector<Rim> rims_of(std::uint32_t part) const;
-  // True for the top of something: steep faces lead down under most of its edge.
+  // Returns true for the top of an object: steep faces lead down below most of its edge.
   bool is_top(const MeshTree& tree, std::uint32_t part) const;
-  // True for a large part under the sky that is no top.
+  // Returns true for a large part under the sky that is no top.
   bool is_open_ground(const MeshTree& tree, std::uint32_t part) const;
-  // How far beyond a rim a rail or a wall is looked for: a metre.
+  // Returns how far beyond a rim a rail or a wall is searched: a metre.
   double beyond_rim() const { return 3.3 * radius_; }
-  // True if something stands beyond a rim at these shares of a person's height.
+  // Returns true if something stands beyond a rim at these shares of a person's height.
   bool stands_beyond(const MeshTree& tree, const Rim& rim, std::span<const double> heights) const;
   std::optional<std::uint32_t> column_beyond(const Rim& rim) const;
-  // True if one looks down on what is reached over a rail, and nobody falls off.
+  // Returns true if a person looks down on reached floor over a rail, so that nobody falls off.
   bool is_gallery(const MeshTree& tree, std::uint32_t part) const;
-  // True for a floor that ends in the air high above another, as a wing does: nobody walks on it.
+  // Returns true for a floor that ends in the air high above another, like an aircraft's wing: nobody walks on it.
   bool is_open_deck(const MeshTree& tree, std::uint32_t part) const;
-  // True if one sees what is reached, or out of the model, from it.
+  // Returns true if reached floor, or the outside of the model, is in view from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
   bool may_be_told(std::uint32_t part) const;
-  // Floors on which one gets by stooping, and stoops all over; large ones.
+  // Returns large floors that people reach, and cross, only by stooping.
   std::vector<ClosedPart> low_floors(const MeshTree& tree);
   bool has_room(std::uint32_t sample) const;
   void tell_apart();
-  // The lowest step between samples of two parts that lie as far apart as a gap in the floor is wide which a person
-  // steps across: half a passage. Both ways, sorted by their parts.
+  // The lowest step between samples of two parts, across a gap in the floor that a person steps over: half a passage.
+  // In both directions, sorted by parts.
   struct Step {
     std::uint32_t from, to;
     double rise;  // up or down
   };
   std::vector<Step> steps_between_parts() const;
   bool is_gap(std::uint32_t sample, std::uint32_t to, std::int64_t columns) const;
-  // Visits a step to each part that steps of this height lead to from what is reached, perhaps by other parts.
+  // Visits a step to each part that steps of at most this height reach, perhaps by other parts.
   template <class Visit>
   void for_parts_by_steps(std::span<const Step> steps, double highest, Visit&& visit) const;
   void look_beyond_high_steps(std::span<const Step> steps);
@@ -215,11 +215,11 @@ class GroundField {
     return {corner_.x + (column % columns_ + 0.5) * cell_, corner_.y + (column / columns_ + 0.5) * cell_};
   }
   std::optional<std::uint32_t> column_at(double x, double y) const;
-  // The sample of a column nearest in height.
+  // Returns the sample of a column nearest in height.
   std::optional<std::uint32_t> nearest(std::uint32_t column, double z, double tolerance) const;
   template <class Visit>
   void for_columns_beside(std::uint32_t column, std::int64_t far, Visit&& visit) const;
-  // Smallest area of a room, as opposed to a table: 0.9 m² for a passage of 0.6 m.
+  // Returns the smallest area of a room, as opposed to a table: 0.9 m² for a passage of 0.6 m.
   double room() const { return 10 * radius_ * radius_; }
   template <class Visit>
   void for_neighbours(std::uint32_t sample, Visit&& visit) const;
@@ -235,7 +235,7 @@ class GroundField {
   glm::dvec2 corner_{};
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> top_;             // per column: the highest surface at its middle
-  std::vector<std::uint8_t> wet_;      // per column: whether water is on top
+  std::vector<std::uint8_t> wet_;      // per column: true if water is on top
   std::vector<MeshRange> ceilings_;    // the triangles of meshes that are named as ceilings, ascending
   std::vector<std::uint32_t> first_;   // per column: its start in the samples, which ascend in z
   std::vector<std::uint32_t> column_;  // per sample

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights that keep surveyed ground, if nothing marks it, from dominating what stands on it.
+// Weights that keep unmarked surveyed ground from dominating the objects on it.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct GroundWeights {
   std::vector<std::size_t> ground;  // Meshes that one stands on, ascending.
   double share = 0;                 // Ground's share of all surveyed surface, by area.
   double weighted_share = 0;        // Ground's share with `weights`.
-  // Weight of each mesh: 1 for ground; for the others as much, up to 255, as brings the ground's share down to a
+  // Weight of each mesh: 1 for ground; for the others the weight, up to 255, that reduces the ground's share to a
   // third. All 1 if the share is that small already, or if there is nothing but ground.
   std::vector<std::uint32_t> weights;
-  bool changes = false;  // Whether any weight differs from 1.
+  bool changes = false;  // True if any weight differs from 1.
   std::string told;      // One sentence for logs: what was done and why, or why not. Empty if there was no need.
 };
 
@@ -32,7 +32,7 @@ inline constexpr double most_ground_share = 1.0 / 3;
 // the sentence says so if nothing else is surveyed.
 GroundWeights ground_weights(const Scene& scene, const SearchArea& area);
 
-// Whether the scene leaves open what is surveyed, so that ground should be weighed: the search area is derived, no
+// Returns true if nothing determines what is surveyed, so that ground should be weighed: the search area is derived, no
 // pattern or mark chose surveyed meshes, and none has a weight.
 bool ground_is_unmarked(const Scene& scene, const SearchArea& area);
 

@@ -12,12 +12,12 @@ constexpr double kPassage_m = 0.65;  // a place with walls within this on both s
 constexpr double kSwing_m = 1.0;     // from a way through, as far as the leaf of a door reaches
 constexpr double kDoor_m = 1.5;      // above the ground: over tables, below lintels
 
-// Ground that falls by a step within the first distance and by two within the second, with level treads between: a
-// slope and a bank have none.
+// Stairs fall by one step within the first distance and by two within the second, with level treads between; slopes and
+// banks have no treads.
 constexpr double kTread_m = 0.5, kTwoTreads_m = 0.9;
 constexpr double kInterval_m = 0.1, kRise_m = 0.1, kLevel_m = 0.03;  // over an interval
 constexpr double kFall_m = 0.28, kLargestFall_m = 1.1;               // over two treads
-constexpr double kOver_m = 0.5;  // above the ground, from where the ground is looked for
+constexpr double kOver_m = 0.5;  // above the ground, where the search for ground begins
 
 Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
 
@@ -32,7 +32,7 @@ bool in_passage(const ClashChecker& clash, const Vec3& at) {
   return false;
 }
 
-// The points looked at lie close enough to meet a passage through a wall of 10 cm.
+// The tested points are close enough to find a passage through a wall of 10 cm.
 bool in_swing(const ClashChecker& clash, const Vec3& at) {
   constexpr int kRings = 11;
   for (int ring = kRings; ring > 0; --ring) {

@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// What queries read: corners of triangles that Embree names.
+// Corners of triangles that Embree names, for queries.
 struct Triangles {
   const SceneData& scene;
   const SceneTree* tree;
@@ -23,9 +23,9 @@ struct Triangles {
   std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const { return corners_of(scene, triangle); }
 };
 
-// A search in a ball around a point, in which triangles are found one after the other. Embree 3.13 leaves the ball's
-// radius as it is when it enters an instance that is scaled, so the boxes of shared meshes are a geometry of their own,
-// and their meshes are searched from here, each with a ball in its own frame.
+// A search in a ball around a point, which finds triangles one after the other. Embree 3.13 does not scale the ball's
+// radius when it enters a scaled instance. The boxes of shared meshes are therefore a geometry of their own, and their
+// meshes are searched from here, each with a ball in its own frame.
 struct Search {
   Triangles triangles;
   glm::dvec3 centre;
@@ -41,7 +41,7 @@ struct Search {
     const double reach = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
     return (radius + (triangles.scene.shares() ? 32 : 4) * reach * 0x1p-23) * (1 + 0x1p-20);
   }
-  // The ball in the frame that is being searched; empty once nothing nearer matters.
+  // Returns the ball in the current frame; empty once nothing nearer matters.
   RTCPointQuery ball() const {
     const bool own = instance == RTC_INVALID_GEOMETRY_ID;
     const glm::dvec3& at = own ? centre : centre_in_mesh;
@@ -77,13 +77,13 @@ void Search::run(RTCScene scene) {
   rtcPointQuery(scene, &query, &context, visit, this);
 }
 
-// Searches the shared mesh of an instance; returns whether the radius is smaller then.
+// Searches the shared mesh of an instance; returns true if the radius shrank.
 bool Search::enter(unsigned number) {
   const SceneData& scene = triangles.scene;
   const MeshPlace& place = scene.places[scene.instances[number].place];
   const glm::dmat3 local_from_mesh(to_glm(place.x), to_glm(place.y), to_glm(place.z));
   const glm::dmat3 inverse = glm::inverse(local_from_mesh);
-  // The norm of the inverse, exact where the columns are at right angles; not finite if the place flattens space.
+  // Norm of the inverse, exact if the columns are at right angles; not finite if the place flattens space.
   const auto right = [&](int i, int j) {
     const glm::dvec3 &a = local_from_mesh[i], &b = local_from_mesh[j];
     return std::abs(dot(a, b)) <= 1e-9 * length(a) * length(b);
@@ -179,7 +179,7 @@ RTCRay ray_of(const glm::dvec3& point, const glm::dvec3& way, double from, doubl
 
 double squared(const glm::dvec3& v) { return dot(v, v); }
 
-// For two closed segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+// Returns the squared distance of two closed segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 double squared_between_segments(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 u = q - p, v = b - a, w = p - a;
   const double uu = squared(u), vv = squared(v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
@@ -200,7 +200,7 @@ double squared_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::d
   return squared(p - (a + edge * x));
 }
 
-// The scene's triangles alone.
+// Returns only the scene's triangles.
 SceneData geometry_of(const SceneData& scene) {
   SceneData geometry;
   geometry.origin = scene.origin;
@@ -217,7 +217,7 @@ SceneData geometry_of(const SceneData& scene) {
 double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = cross(b - a, c - a);
   const double area = squared(normal);
-  // Above the triangle's inside the plane is nearest; elsewhere, the outline.
+  // The plane is nearest over the triangle's inside; elsewhere the outline is.
   if (area > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
       dot(cross(a - c, p - c), normal) >= 0)
     return std::abs(dot(p - a, normal)) / std::sqrt(area);
@@ -241,7 +241,7 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
 
 namespace {
 
-// Meshes that are wound either way, as all are of a scene that is on the whole: a few faces may lie alike by chance.
+// Marks meshes whose winding tells nothing: all meshes, if so in the whole scene, as a few faces may agree by chance.
 std::vector<std::uint8_t> wound_either_way_in(const SceneData& scene) {
   std::vector<Winding> windings(scene.ranges.size());
   parallel::for_all(std::size_t{0}, windings.size(), [&](std::size_t m) {

@@ -25,7 +25,7 @@ double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 struct Piece {
   std::array<Vec3, 3> corners;
   std::array<Uv, 3> uvs;
-  double away = 0;  // of its nearest point
+  double away = 0;  // distance of its nearest point
   std::array<double, 3> nearest{};
 
   Vec3 point(const std::array<double, 3>& w) const { return corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]; }
@@ -63,7 +63,7 @@ Piece piece_of(const std::array<Vec3, 3>& corners, const std::array<Uv, 3>& uvs,
   return piece;
 }
 
-// How much too near to the meshes a station above `ground` is, at least.
+// Returns a lower bound on how much too near to the meshes a station above `ground` is.
 double intrusion(const ClashChecker& clash, const Vec3& ground, double height_m) {
   const SecurityVolume& v = clash.volume();
   double most = 0;

@@ -5,8 +5,8 @@
 
 namespace vantage {
 
-// The scene has no ground to stand on, whatever the settings of the search area are. A setting that leaves none is
-// another Error.
+// Thrown if the scene has no ground to stand on, whatever the settings of the search area. Settings that leave none
+// throw another Error.
 struct NoGround : Error {
   explicit NoGround(const std::string& what) : Error(Errc::invalid_argument, what) {}
 };

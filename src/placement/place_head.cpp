@@ -44,7 +44,7 @@ PlacedHead place_head(const SearchArea* area, const ClashChecker& clash, double 
                     .has_uv = uv.has_value()};
   if (ground) placed.station.ground = {head.x, head.y, ground->z};
   const Vec3& stands = placed.station.ground;
-  // Over ground that is reached on foot, with headroom, there is no solid, whatever side its faces show.
+  // Ground that is reached on foot, with headroom, lies in no solid, whatever side its faces show.
   const bool reached =
       footing == StationStatus::ok && area && area->derived() && head.z - stands.z <= area->options().headroom_m;
   if (!reached && clash.inside(head))

@@ -12,8 +12,8 @@ namespace {
 
 double turn(Uv a, Uv b, Uv c) { return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u); }
 
-// Drops points inside the octagon of the outermost points in eight directions; nearly all of a large mesh (Akl and
-// Toussaint, A Fast Convex Hull Algorithm, 1978).
+// Drops points inside the octagon of the outermost points in eight directions, which are nearly all of a large mesh
+// (Akl and Toussaint, A Fast Convex Hull Algorithm, 1978).
 void drop_inside(std::vector<Uv>& points) {
   if (points.size() < 100) return;
   constexpr std::array<Uv, 8> ways{{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};

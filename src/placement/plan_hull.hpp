@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// Counter-clockwise, without collinear points (Andrew, Another Efficient Algorithm for Convex Hulls in Two Dimensions,
-// 1979).
+// Returns the hull counter-clockwise, without collinear points (Andrew, Another Efficient Algorithm for Convex Hulls in
+// Two Dimensions, 1979).
 std::vector<Uv> convex_hull(std::vector<Uv> points);
 double hull_area(const std::vector<Uv>& hull);
 
@@ -21,8 +21,8 @@ struct Rectangle {
   double area() const { return (max.u - min.u) * (max.v - min.v); }
   Uv along(Uv p) const { return {cosine * p.u + sine * p.v, cosine * p.v - sine * p.u}; }
 };
-// Rectangle of least area. Axis-aligned unless another direction saves a tenth, so that u and v follow x and y where
-// possible.
+// Returns the rectangle of least area. It is axis-aligned unless another direction saves a tenth, so that u and v
+// follow x and y if possible.
 Rectangle smallest_rectangle(const std::vector<Uv>& hull);
 
 }  // namespace vantage

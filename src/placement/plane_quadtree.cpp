@@ -22,7 +22,7 @@ Uv operator-(Uv a, Uv b) { return {a.u - b.u, a.v - b.v}; }
 double cross(Uv a, Uv b) { return a.u * b.v - a.v * b.u; }
 double dot(Uv a, Uv b) { return a.u * b.u + a.v * b.v; }
 
-// Twice the signed area of (a, b, p). Exactly antisymmetric in a and b, whatever the rounding.
+// Returns twice the signed area of (a, b, p), exactly antisymmetric in a and b, whatever the rounding.
 double side_of(Uv a, Uv b, Uv p) {
   const bool turned = b.u < a.u || (b.u == a.u && b.v < a.v);
   if (turned) std::swap(a, b);
@@ -118,8 +118,8 @@ class PlaneQuadtree::Builder {
     for (std::uint32_t q = 0; q < 4; ++q) append(out, child + q, parts[q]);
   }
 
-  // Number of triangles that do not cover the whole cell; those that do would cover all its children, too. Skipped if
-  // the cell is a leaf anyway.
+  // Returns the number of triangles that do not cover the whole cell; those that do would cover all its children, too.
+  // Skipped if the cell is a leaf anyway.
   std::size_t partial(const std::vector<Item>& items, const Cell& cell) const {
     if (items.size() <= leaf_size) return 0;
     const double u_min = cell.min.u - tree_.min_.u, u_max = cell.max.u - tree_.min_.u;

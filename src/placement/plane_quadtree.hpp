@@ -22,17 +22,17 @@ struct TrianglePoint {
 
 // A quadtree over the triangles of a plane mesh. Immutable, safe to read from any thread; borrows its arrays.
 //
-// No point on an edge or a vertex is lost. Whether a point lies left of an edge is computed from the edge's end points
-// in one fixed order, so the two triangles of an edge never both reject it. A point that all reject goes to the nearest
-// triangle within `slack()`, at the nearest point of its outline. This also closes T-junctions, and covers rounding of
-// the query at the mesh's outline.
+// No point on an edge or a vertex is lost. The test if a point lies left of an edge uses the edge's end points in one
+// fixed order, so the two triangles of an edge never both reject it. A point that all triangles reject goes to the
+// nearest one within `slack()`, at the nearest point of its outline. This also closes T-junctions, and covers rounding
+// of the query at the mesh's outline.
 class PlaneQuadtree {
  public:
   // Triangles without area (to rounding), or with a coordinate that is not finite, are no candidates. REQUIRES: indices
   // below points.size(); both arrays outlive the tree.
   PlaneQuadtree(std::span<const Uv> points, std::span<const Triangle> triangles);
 
-  // Whether the tree would have a candidate.
+  // Returns true if the tree would have a candidate.
   static bool any_candidate(std::span<const Uv> points, std::span<const Triangle> triangles);
 
   bool empty() const { return candidates_ == 0; }
@@ -41,11 +41,11 @@ class PlaneQuadtree {
   Uv max() const { return max_; }
   double slack() const { return slack_; }
 
-  // The first triangle, in the order of the mesh, that contains p.
+  // Returns the first triangle, in the order of the mesh, that contains p.
   std::optional<TrianglePoint> find(Uv p) const;
-  // Every triangle that contains p (to slack), ascending.
+  // Visits every triangle that contains p (to slack), ascending.
   void find_all(Uv p, const std::function<void(const TrianglePoint&)>& found) const;
-  // Triangles of each leaf, ascending; two triangles that overlap share a leaf.
+  // Returns the triangles of each leaf, ascending; two triangles that overlap share a leaf.
   std::vector<std::span<const std::uint32_t>> leaves() const;
 
  private:
@@ -62,7 +62,7 @@ class PlaneQuadtree {
   bool covers(std::uint32_t triangle, const Cell& cell) const;
   bool holds(std::uint32_t triangle, Uv p) const;
   TrianglePoint coordinates(std::uint32_t triangle, Uv p) const;
-  // Distance from p to the triangle's outline, and the nearest point of the outline.
+  // Returns the distance from p to the triangle's outline, and the nearest point of the outline.
   double nearest(std::uint32_t triangle, Uv p, TrianglePoint& at) const;
 
   std::span<const Uv> points_;

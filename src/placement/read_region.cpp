@@ -39,8 +39,8 @@ void add_geometry(const nlohmann::json& object, PlanRegion& region) {
     for (const auto& polygon : object.at("coordinates")) add_rings(polygon, region);
 }
 
-// Corners, one x and y per line, separated by commas, semicolons, tabs or blanks. A first line without numbers is a
-// header.
+// Reads corners, one x and y per line, separated by commas, semicolons, tabs or blanks. A first line without numbers is
+// a header.
 PlanRegion read_corners(std::istream& in, const std::string& file) {
   Ring ring;
   std::size_t line_number = 0;

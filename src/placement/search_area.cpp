@@ -18,7 +18,7 @@ namespace vantage {
 
 struct SearchArea::Impl {
   SearchMesh mesh;
-  WalkableSurface how;  // but for its mesh
+  WalkableSurface how;  // without its mesh
   WalkableOptions options = {};
   AreaLimits limits = {};
   std::optional<PlaneQuadtree> in_uv;
@@ -39,7 +39,7 @@ struct SearchArea::Impl {
           throw Error(Errc::invalid_argument, "triangle " + std::to_string(t) +
                                                   " of the search area refers to position " + std::to_string(v) +
                                                   "; there are " + std::to_string(mesh.positions.size()));
-    // Positions that are not finite must not be interpolated: their triangles are no candidates.
+    // Triangles with positions that are not finite are no candidates, as these must not be interpolated.
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3& p = mesh.positions[v];
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))

@@ -5,7 +5,7 @@
 namespace vantage {
 namespace {
 
-// Regions count by their content, whatever file they came from.
+// Returns regions by their content, whatever file they came from.
 std::vector<std::vector<std::vector<std::array<double, 2>>>> rings_of(const std::vector<PlanRegion>& regions) {
   std::vector<std::vector<std::vector<std::array<double, 2>>>> rings;
   for (const PlanRegion& region : regions) rings.push_back(region.rings);

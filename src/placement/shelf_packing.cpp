@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Next-fit on shelves of the given width, highest first.
+// Packs by next-fit on shelves of the given width, highest first.
 Packing pack(const std::vector<Uv>& sizes, const std::vector<std::size_t>& order, double width, double gap) {
   Packing packing;
   packing.corner.resize(sizes.size());

@@ -13,8 +13,8 @@ struct Packing {
   Uv size;                 // of the rectangle around all
 };
 
-// Rectangles keep their orientation and stay `gap` apart. The shelf width with the least waste is taken; among equals
-// the shape nearest to a square. A single rectangle fills the whole.
+// Packs rectangles, which keep their orientation and stay `gap` apart. Takes the shelf width with the least waste;
+// among equals the shape nearest to a square. A single rectangle fills the whole.
 Packing pack_shelves(const std::vector<Uv>& sizes, double gap);
 
 }  // namespace vantage

@@ -20,14 +20,14 @@ struct SurfacePieces {
   std::vector<std::uint8_t> kind = {};  // per piece, from sort_pieces(); empty otherwise
 };
 
-// Cuts the triangles up by the kind that `kind_of` gives their places, and drops kind 0. Each is halved across its
-// longest edge until no edge exceeds `spacing_m`; the remainder has its centroid's kind; halves of one kind are merged
-// again. Parallel; `kind_of` is called from several threads and returns kinds below 255.
+// Cuts triangles up by the kind that `kind_of` gives to places, and drops kind 0. Each triangle is halved across its
+// longest edge until no edge exceeds `spacing_m`; a remaining piece has its centroid's kind, and halves of one kind are
+// merged again. Parallel; `kind_of` is called from several threads and returns kinds below 255.
 SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
                           const std::function<std::uint8_t(const glm::dvec3&)>& kind_of);
-// The pieces of one kind.
+// Returns the pieces of one kind.
 SurfacePieces pieces_of_kind(const SurfacePieces& pieces, std::uint8_t kind);
-// The clear parts of the triangles: kind 1 of clear and not clear.
+// Returns the clear parts of the triangles.
 SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
                            const std::function<bool(const glm::dvec3&)>& clear);
 

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-// Calls `take` with the middle of each part and its share of the triangle's area; all parts are of one size.
+// Calls `take` with the middle of each part and its share of the triangle's area; all parts are equally large.
 template <class Take>
 void for_triangle_parts(const Vec3& a, const Vec3& b, const Vec3& c, const Take& take) {
   constexpr double kSide_m = 0.4;

@@ -34,9 +34,9 @@ namespace {
 // Parts nearer than this share of the model's largest extent are connected.
 constexpr double weld_share = 1e-5;
 // Walkable surfaces form a ground if, in the lower half of the model, the reached ones and their continuations cover
-// this share of the model's outline seen from above. Flat parts of a machine are clear, too, but they are scattered or
-// on its top, and nobody stands there to scan it. Surfaces also form a ground if as much area, reached or not, is under
-// a cover, as in a building, or if floors with walls around them, reached or not, are this share of what is built.
+// this share of the model's outline seen from above. Flat parts of a machine are clear as well, but scattered or on its
+// top, where nobody stands to scan it. Surfaces also form a ground if as much area, reached or not, lies under a cover,
+// as in a building, or if floors with walls around them, reached or not, are this share of what is built.
 constexpr double ground_share = 0.3, floor_share = 0.5;
 constexpr double lower_half = 0.5;
 // A part without room for a disc of this radius, in sides of the smallest square part, is the top of a pipe or a rail.
@@ -71,7 +71,7 @@ double extent_of(const Box& bounds) {
   return std::max({size.x, size.y, size.z});
 }
 
-// The marked triangles of the first non-empty class: gentle and upward; gentle, either side up; not vertical.
+// Returns the marked triangles of the first non-empty class: gentle and upward; gentle, either side up; not vertical.
 std::vector<Triangle> standing_triangles(const std::vector<glm::dvec3>& points, std::span<const Triangle> triangles,
                                          double least_up) {
   std::array<std::vector<Triangle>, 3> classes;
@@ -111,7 +111,7 @@ double first_height(const Box& bounds, double headroom_m) {
   return std::max(0.01 * headroom_m, 1e-5 * extent_of(bounds));
 }
 
-// Outcome for a place, as a kind of piece.
+// Outcome at a place, used as a kind of piece.
 enum Reach : std::uint8_t { kept = 1, first_left_out };
 
 std::uint8_t kind_of(LeftOutReason reason) {
@@ -129,7 +129,7 @@ LeftOutReason reason_of(Access access) {
   return LeftOutReason::narrow;
 }
 
-// Areas of the pieces of each kind except `kept`, and of the charts that are too small.
+// Returns the areas of the pieces of each kind except `kept`, and of the charts that are too small.
 std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfacePieces& clear,
                                      const std::vector<GroundChart>& small, const Vec3& origin) {
   std::vector<LeftOut> all;
@@ -154,7 +154,7 @@ std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfaceP
   return all;
 }
 
-// Charts of at least the smallest area that are not mere strips; the others go to `small`.
+// Returns charts of at least the smallest area that are not mere strips; moves the others to `small`.
 std::vector<GroundChart> wide_charts(const SurfacePieces& pieces, std::vector<GroundChart> charts,
                                      const WalkableOptions& options, std::vector<GroundChart>& small) {
   std::vector<char> fit(charts.size());
@@ -180,8 +180,8 @@ std::string place_text(const Vec3& p) {
   throw Error(Errc::invalid_argument, "no ground to stand on lies within the given levels and regions");
 }
 
-// Surfaces with room for a scanner, from `upward` triangles at places that the field reaches. With `any_access`, also
-// at unreached places with room.
+// Returns surfaces with room for a scanner, from `upward` triangles at places that the field reaches; with
+// `any_access`, also at unreached places with room.
 WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const GroundField& field,
                             const std::vector<glm::dvec3>& points, const std::vector<Triangle>& upward,
                             const WalkableOptions& options, bool any_access) {
@@ -196,7 +196,7 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
     if (limits.any() && !limits.allow_near(to_vec3(p) + scene.origin, spacing)) return kind_of(LeftOutReason::limits);
     if (tree.covered(p, from, to)) return kind_of(LeftOutReason::headroom);
     if (field.is_ridge(tree, p)) return kind_of(LeftOutReason::narrow);
-    // No way leads into a solid, whatever side its faces show: where one gets to on foot there is none.
+    // No way leads into a solid, so reached places lie in none, whatever side its faces show.
     if (access != Access::reached && tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2}))
       return kind_of(LeftOutReason::sealed);
     return kept;
@@ -221,13 +221,13 @@ bool is_upward(const std::array<Float3, 3>& p, double least_up) {
   return unit_normal(to_glm(p[0]), to_glm(p[1]), to_glm(p[2])).z >= least_up;
 }
 
-// Has a triangle that was drawn face down show its face.
+// Turns a triangle that was drawn face down.
 template <class Corner>
 void turn_if(std::array<Corner, 3>& corners, std::uint32_t triangle, std::span<const std::uint32_t> turned) {
   if (std::ranges::binary_search(turned, triangle)) std::swap(corners[1], corners[2]);
 }
 
-// Meshes whose surfaces may be stood on.
+// Returns meshes whose surfaces may be stood on.
 std::vector<MeshRange> standing_meshes(const SceneData& scene, bool station_area) {
   std::vector<MeshRange> meshes;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
@@ -235,7 +235,7 @@ std::vector<MeshRange> standing_meshes(const SceneData& scene, bool station_area
   return meshes;
 }
 
-// Into the scene's positions. REQUIRES: it shares no meshes.
+// Returns indices into the scene's positions. REQUIRES: it shares no meshes.
 std::vector<Triangle> upward_triangles(const SceneData& scene, std::span<const std::uint32_t> turned,
                                        const WalkableOptions& options, bool station_area) {
   const double least_up = std::cos(options.max_slope.in_radians());
@@ -250,8 +250,8 @@ std::vector<Triangle> upward_triangles(const SceneData& scene, std::span<const s
   return upward;
 }
 
-// The same where nodes share meshes, with their corners in `points`. Of shared ones, only those that somebody may
-// reach, or that are as wide as the pieces that are told apart: those of many machines' tops would fill the memory.
+// Does the same if nodes share meshes, with corners in `points`. Takes only those of shared meshes that may be reached,
+// or that are wider than the pieces: the tops of many machines would fill the memory.
 std::vector<Triangle> reached_triangles(const SceneData& scene, std::span<const std::uint32_t> turned,
                                         const GroundField& field, const WalkableOptions& options, bool station_area,
                                         std::vector<glm::dvec3>& points) {
@@ -290,7 +290,7 @@ std::vector<glm::dvec3> stored_points(const SceneData& scene) {
   return points;
 }
 
-// Area of the model's convex outline seen from above.
+// Returns the area of the model's convex outline seen from above.
 double outline_area(const SceneData& scene) {
   using Hull = std::vector<Uv>;
   const auto hull_of = [](std::uint32_t count, const auto& add) {
@@ -364,7 +364,7 @@ void add_thin_floors(const GroundField& field, std::vector<glm::dvec3>& points, 
   }
 }
 
-// True if the model is what a scan saw: nothing is known beyond it, and a face shows the side that was seen.
+// Returns true for a model made from scans: nothing is known beyond it, and each face shows the side that was seen.
 bool is_scanned(const SceneData& scene) {
   const auto defaults = nlohmann::json::parse(scene.defaults_json, nullptr, false);
   const auto scanned = defaults.is_object() ? defaults.find("scanned") : defaults.end();
@@ -406,7 +406,7 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   field.reach(tree, local_entries(scene, options));
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
-  // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
+  // Inside, floor is compared with the built area, as a bent tunnel fills little of its hull.
   const auto inside = [&] { return field.covered_area() >= ground_share * field.outline(); };
   const auto around = [&] { return field.ground_area(lower_half_z) >= ground_share * outline_area(scene); };
   const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
@@ -482,7 +482,7 @@ double piece_spacing(const WalkableOptions& options, const Box& bounds) {
 }
 
 void check(const WalkableOptions& options) {
-  // Lengths as far as any position may be; beyond, floats of rays overflow.
+  // Lengths are limited to the reach of positions; beyond, floats of rays overflow.
   constexpr Interval length{.low = 0, .high = kSiteReach_m};
   check_number(whole_degrees(options.max_slope), "the largest slope of a walkable surface",
                {.low = 0, .high = 90, .high_included = false});

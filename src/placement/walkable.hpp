@@ -29,7 +29,7 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
 // Throws Error invalid_argument for a setting out of bounds.
 void check(const WalkableOptions& options);
 
-// Size of the pieces into which surfaces are cut.
+// Returns the size of the pieces into which surfaces are cut.
 double piece_spacing(const WalkableOptions& options, const Box& bounds);
 bool has_station_area(const SceneData& scene);
 

@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// Share of a voxel's goal that so many points reach: 1 if it has its goal.
+// Returns the share of a voxel's goal that this many points reach; 1 if it has its goal.
 inline double captured_share(const Simulator& simulator, std::uint32_t voxel, std::uint32_t points) {
   return std::min(points / simulator.goal_density(voxel), 1.0);
 }

@@ -12,15 +12,15 @@
 namespace vantage {
 namespace {
 
-// The first surveyed mesh with this wish; null if there is none.
+// Returns the first surveyed mesh with this wish; null if there is none.
 const MeshInfo* first_with(const SceneData& scene, double MeshInfo::*wish) {
   const auto found = std::ranges::find_if(
       scene.meshes, [&](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.*wish > 0; });
   return found == scene.meshes.end() ? nullptr : &*found;
 }
 
-// The received power of a matt surface that is larger than the beam is proportional to ρ·cos α / R² (laser radar
-// equation of extended targets). 0 if every echo is detected.
+// Returns the square of the detection distance; 0 if every echo is detected. The power received from a matt surface
+// larger than the beam is proportional to ρ·cos α / R² (laser radar equation of extended targets).
 float reach_square(const Scanner& scanner, double reflectivity) {
   constexpr float kNowhere = 1e-20f;  // a black surface: nearer than any scanner measures, and not 0
   if (scanner.detection_range_m == 0) return 0;
@@ -68,7 +68,7 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
   model.seed = config.seed;
   model.glass = scanner.detection_range_m > 0 && scene.has_glass();
   for (const MeshInfo& mesh : scene.meshes) {
-    // A mirror has no echo of its own to be too weak.
+    // A mirror has no echo of its own that could be too weak.
     model.meshes.push_back({.largest_reach_square = mesh.mirror ? 0 : reach_square(scanner, mesh.diffuse)});
     if (mesh.role != Role::surveyed) continue;
     model.meshes.back() = {least, static_cast<float>(mesh.detail_m * mesh.detail_m),

@@ -11,15 +11,15 @@
 
 namespace vantage {
 
-// True if a ray of the scanner that meets something within range may have no echo.
+// Returns true if a ray of the scanner may hit something within range without an echo.
 bool loses_echoes(const Scanner& scanner);
 
-// Largest angle between ray and normal at which a point counts; empty if points have no limits.
+// Returns the largest angle between ray and normal at which a point counts; empty if points have no limits.
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config);
 
-// Not enabled if points have no limits. `always`: enabled even then, since another scanner of the simulator limits its
-// own. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail without the scanner's beam, an accuracy
-// without its noise.
+// Returns limits that are not enabled if points have none. `always`: enabled even then, since another scanner of the
+// simulator limits its own points. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail without the
+// scanner's beam, an accuracy without its noise.
 LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config,
                             bool always = false);
 

@@ -23,7 +23,7 @@ std::string noise_line(std::string line) {
 
 constexpr Interval incidences{.low = 0, .high = 90, .high_included = false};
 
-// The reflectivity in the first cell of a header `incidence_deg@<reflectivity>`; none in another.
+// Returns the reflectivity in the first cell of a header `incidence_deg@<reflectivity>`; nothing for another header.
 std::optional<double> measured_reflectivity(std::string_view cell, const std::string& what) {
   constexpr std::string_view kBegin = "incidence_deg";
   if (!cell.starts_with(kBegin)) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<double> measured_reflectivity(std::string_view cell, const std::st
   return parse_number(rest.substr(1), what, {.low = 0, .high = 1, .low_included = false});
 }
 
-// Makes rows of reflectivities from rows of angles: the echo of a matt surface at α is that of one of R cos α.
+// Converts rows of angles to rows of reflectivities: a matt surface at α echoes like one of R cos α.
 void take_incidences(NoiseTable& table, double reflectivity) {
   for (double& row : table.reflectivities) row = reflectivity * std::cos(Angle::degrees(row).in_radians());
   std::ranges::reverse(table.reflectivities);

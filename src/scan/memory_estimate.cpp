@@ -23,8 +23,8 @@ namespace vantage {
 namespace {
 
 // Measured on processes (docs/evidence/reliability.md). Per voxel: its count, its share of a brick, and the words of
-// its mask. Per triangle: vertices and temporary data; the tree and planes of the CPU engine; per place of one that
-// nodes share, a bit.
+// its mask. Per triangle: vertices and temporary data; the tree and planes of the CPU engine. Per place of a shared
+// triangle: a bit.
 constexpr double kMebibyte = 1048576, kProgram = 24 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
                  kPlaced = 1.0 / 8, kVoxel = 6, kMaskWord = 8;
 constexpr double kVertex = 12;                      // the CPU engine's tree of glass has a copy of all
@@ -72,20 +72,20 @@ SurfaceExtent surface_of(const SceneData& scene) {
   return surface;
 }
 
-// Triangles that are long and have hardly any area: each is a row of voxels, which its area does not tell.
+// Long triangles with hardly any area: each marks a row of voxels, which its area does not show.
 struct Slivers {
   double cells_m2 = 0;            // their share of the surface's
   double voxels = 0, bricks = 0;  // that they pass through, each once
 };
 
-// Of a brick that hardly anything but a sliver passes through: itself, and its place in the hash table.
+// Bytes of a brick that hardly anything but a sliver crosses: the brick, and its place in the hash table.
 constexpr double kBrickBytes = 144;
 
 struct Sliver {
   glm::dvec3 begin, along;  // its longest edge, in voxels
 };
 
-// Those of all surveyed triangles, and their share of the surface.
+// Returns the slivers among all surveyed triangles, and their share of the surface.
 std::vector<Sliver> find_slivers(const SceneData& scene, double voxel_size, double& cells_m2) {
   constexpr double kLong = 8, kThin = 0.25;  // voxels; share of those that it passes through
   const double least = kLong * voxel_size * kLong * voxel_size;
@@ -112,7 +112,7 @@ std::vector<Sliver> find_slivers(const SceneData& scene, double voxel_size, doub
   return std::move(sum.found);
 }
 
-// The first step, from step k on, behind the brick that step k is in.
+// Returns the first step after step k that lies outside the brick of step k.
 double behind_brick(const std::array<std::int64_t, 3>& brick, const glm::dvec3& at, const glm::dvec3& step, double k) {
   constexpr double kSide = 8;
   double leaves = INFINITY;
@@ -124,7 +124,7 @@ double behind_brick(const std::array<std::int64_t, 3>& brick, const glm::dvec3& 
   return k + std::max(1.0, std::ceil(leaves));
 }
 
-// Follows every sliver, and counts the voxels that some pass through in a share of the bricks, chosen by their places.
+// Follows every sliver, and counts the crossed voxels in a share of the bricks, chosen by their places.
 Slivers slivers_of(const SceneData& scene, double voxel_size) {
   constexpr double kCounted = 0x1p20, kTooMany = 0x1p31;
   const auto steps_of = [](const Sliver& sliver) {
@@ -170,13 +170,13 @@ Slivers slivers_of(const SceneData& scene, double voxel_size) {
   return found;
 }
 
-// Equation 2: side of a voxel.
+// Returns the side of a voxel by equation 2.
 double voxel_size(double extent_m, double user_size_m) {
   if (!(extent_m > 0)) return user_size_m;
   return extent_m / std::exp2(std::max(0.0, std::ceil(std::log2(extent_m / user_size_m))));
 }
 
-// On a surface, a brick has some 64 voxels. Voxels so scattered that each has its own brick are few.
+// Number of voxels of a brick on a surface. Voxels so scattered that each has its own brick are few.
 constexpr double kVoxelsOfABrick = 64;
 
 double host_bytes(double triangles, double voxels, std::size_t stations) {
@@ -186,7 +186,7 @@ double host_bytes(double triangles, double voxels, std::size_t stations) {
 
 std::uint64_t whole(double bytes) { return static_cast<std::uint64_t>(std::min(bytes, 1e18)); }
 
-// Devices of a configuration, each once.
+// Returns the devices of a configuration, each once.
 std::vector<ChosenDevice> devices_of(const SimulatorConfig& config) {
   std::vector<ChosenDevice> devices;
   if (config.devices.empty()) devices.push_back(choose_device(config.engine, config.device_index));
@@ -228,7 +228,7 @@ class Estimator {
     double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes + textures_,
            device = 0;
     if (scene_.shares()) host += kPlaced * scene_.triangle_count();
-    // Scans follow rays off mirrors on the CPU, whatever the engine.
+    // Scans follow rays off mirrors on the CPU with every engine.
     if (follows_mirrors_) host += kTree * load_.triangles;
     const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
     if (devices.empty() || std::ranges::any_of(devices, on_cpu))

@@ -27,10 +27,10 @@ Cell cell_at(const std::vector<double>& nodes, double x) {
 
 double mix(double a, double b, double share) { return a + (b - a) * share; }
 
-// Darker surfaces are taken as this dark: the first step of the regular table above 0, where σ would not be finite.
+// Darker surfaces count as this dark: the first step above 0 of the regular table; at 0, σ would not be finite.
 constexpr double kDarkest = 1.0 / (NoiseModel::side - 1);
 
-// Reflectivity of the darkest surface that the scanner detects at a distance, at most 1.
+// Returns the reflectivity of the darkest surface that the scanner detects at a distance, at most 1.
 double darkest_detected(const Scanner& scanner, double distance_m) {
   if (scanner.detection_range_m == 0) return 0;
   const double part = distance_m / scanner.detection_range_m;
@@ -68,14 +68,14 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
       const auto distance_at = [&](double step) {
         return mix(scanner.min_range_m, scanner.max_range_m, step / intervals);
       };
-      // Surfaces that are not detected have no noise, and would make the reach large: the darkest cell that has a
-      // detected point in it is the last one, at the nearer end of its distances.
+      // Surfaces that are not detected have no noise, and would make the reach large. The darkest cell with a detected
+      // point, at the nearer end of its distances, therefore stands for all darker ones.
       const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / intervals;
       model.sigma.push_back(
           static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / intervals, darkest))));
     }
   }
-  // Rounded up: |z| stays 1.5e-5 below its limit, which is more than the look-up's own rounding.
+  // Rounds up: |z| stays 1.5e-5 below its limit, which is more than the look-up's own rounding.
   const double largest = *std::max_element(model.sigma.begin(), model.sigma.end());
   model.reach = std::nextafter(static_cast<float>(normal_limit * largest), HUGE_VALF);
   if (largest == 0) {  // a table of zeros is no noise

@@ -7,18 +7,18 @@
 
 namespace vantage {
 
-// σ of the maker's table at any distance and reflectivity: linear between its values, extrapolated along the outermost
-// ones, never below zero. Below its lowest reflectivity σ grows from that row as R^−½, as the noise of a detector does
-// while the echo fades; below R = 0.01 it stays. A table of one row or column is constant along it. 0 for an empty
+// Returns σ of the maker's table at any distance and reflectivity: linear between its values, extrapolated along the
+// outermost ones, never below zero. Below its lowest reflectivity σ grows from that row as R^−½, as a detector's noise
+// does while the echo fades; below R = 0.01 it stays. A table of one row or column is constant along it. 0 for an empty
 // table.
 double table_sigma(const NoiseTable& table, double distance_m, double reflectivity);
 
-// `table_sigma` at 101 × 101 steps of normalised distance and reflectivity; darker surfaces than the scanner detects at
-// a distance have the σ of about the darkest that it does. Not enabled if the scanner has no table. REQUIRES:
-// scanner.check() passes.
+// Evaluates `table_sigma` at 101 × 101 steps of normalised distance and reflectivity. Surfaces darker than the scanner
+// detects at a distance have about the σ of the darkest that it detects. Not enabled if the scanner has no table.
+// REQUIRES: scanner.check() passes.
 NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed);
 
-// Bilinear look-up in double, as engines do in float; tests compare engines with it.
+// Interpolates bilinearly in double, as engines do in float; tests compare engines with it.
 double model_sigma(const NoiseModel& model, double range_m, double reflectivity);
 
 }  // namespace vantage

@@ -9,10 +9,10 @@
 
 namespace vantage {
 
-// Direction tables of a scanner; each entry is computed in double and rounded once. REQUIRES: scanner.check() passes.
+// Returns a scanner's direction tables, each entry rounded once from double. REQUIRES: scanner.check() passes.
 RayPattern make_pattern(const Scanner& scanner);
 
-// Rotation of a setup, rounded once; empty if it does not turn.
+// Returns the rotation of a setup, rounded once; empty if it does not turn.
 std::optional<Turn> make_turn(const StationSetup& setup);
 
 }  // namespace vantage

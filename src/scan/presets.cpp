@@ -70,7 +70,7 @@ class Node {
     }
     return found;
   }
-  // Every figure has its source beside it, or says that it is assumed. The other members are its values.
+  // Every figure has its source beside it, or is marked as assumed. The other members are its values.
   const Node& sourced() const {
     const Node source = member("source");
     if (source.text() != "assumed" && !sources_->contains(source.text()))
@@ -89,7 +89,7 @@ class Node {
   const std::set<std::string>* sources_;
 };
 
-// Step angle of a setting ("3mm", "1/4"), from the maker's figures.
+// Returns the step angle of a setting ("3mm", "1/4"), from the maker's figures.
 Angle step_of(const Node& setting) {
   const bool by_angle = setting.has("step_deg"), by_spacing = setting.has("spacing_mm"),
              by_turn = setting.has("pixels_per_turn");
@@ -100,7 +100,7 @@ Angle step_of(const Node& setting) {
   return Angle::radians(setting.member("spacing_mm").number() * 1e-3 / setting.member("at_m").number());
 }
 
-// Of rows that are listed by their elevations, from the top or from the bottom.
+// Returns the zeniths of rows that are listed by elevation, from the top or from the bottom.
 std::vector<Angle> zeniths_of(const Node& node) {
   node.only({"value", "source", "note"});
   std::vector<double> elevations = node.sourced().member("value").numbers();
@@ -121,7 +121,7 @@ NoiseTable noise_of(const Node& node) {
   node.sourced();
   NoiseTable table;
   table.distances_m = node.member("distances_m").numbers();
-  // Without reflectivities in the file: one row for all of them.
+  // A file without reflectivities gives one row for all of them.
   table.reflectivities =
       node.has("reflectivities") ? node.member("reflectivities").numbers() : std::vector<double>{0.5};
   const Node sigma = node.member("sigma_mm");
@@ -164,7 +164,7 @@ struct Document {
   static std::string text_of(const std::filesystem::path& path) { return read_file(path); }
 };
 
-// The presets of a file, then the built-in ones.
+// Returns the presets of a file, then the built-in ones.
 std::vector<Document> documents(const std::filesystem::path& more) {
   std::vector<Document> all;
   if (!more.empty()) all.emplace_back(more);
@@ -179,7 +179,7 @@ std::string names_of(const Object& object) {
   return names;
 }
 
-// Directions along a line that turns and nods evenly, up and down between two elevations.
+// Returns directions along a line that turns and nods evenly, up and down between two elevations.
 DirectionTable swept(const Node& sweep, double seconds, double points_per_second) {
   sweep.only({"turns_per_second", "nods_per_second", "elevations_deg", "source", "note"});
   sweep.sourced();
@@ -204,7 +204,7 @@ DirectionTable swept(const Node& sweep, double seconds, double points_per_second
   return table;
 }
 
-// Field and steps of a setting: a grid, uneven rows or a list of directions.
+// Sets the field and steps of a setting: a grid, uneven rows or a list of directions.
 void set_pattern(Scanner& scanner, const Document& document, const Node& node, const Node& chosen) {
   const auto leave_out = [&](std::initializer_list<const char*> names, const std::string& why) {
     for (const char* name : names)
@@ -234,7 +234,7 @@ void set_pattern(Scanner& scanner, const Document& document, const Node& node, c
   }
 }
 
-// The scanner `key` at `setting`; empty: its default setting.
+// Reads the scanner `key` at `setting`; empty: its default setting.
 Scanner read_scanner(const Document& document, const std::string& key, std::string setting) {
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of scans that are followed on the processor, for all engines alike: off mirrors, and those of a wide beam.
+// Rays of scans that the processor follows for all engines alike: off mirrors, and those of a wide beam.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace vantage {
 
-// Direction of a ray in the local frame, to the bit as engines have it.
+// Returns a ray's direction in the local frame, bit for bit as engines compute it.
 Float3 direction_of(const RayPattern& pattern, const TraceStation& station, std::uint64_t ray);
 
 // Safe to use from any thread.
@@ -23,23 +23,23 @@ class RayFollower {
   // Shares ownership of `scene`.
   explicit RayFollower(std::shared_ptr<const SceneData> scene);
 
-  // What a ray meets, with its distance along the whole way.
+  // The surface that a ray meets, with its distance along the whole way.
   struct Seen {
     std::uint32_t triangle;  // RayBundle::no_hit: nothing, or mirrors without end
     float t, reflectivity;
     double cosine;  // of incidence
-    Float3 normal;  // as it looks in the mirrors
+    Float3 normal;  // as seen in the mirrors
     Float2 weights;
-    double passed = 1;  // share of the echo that panes on the way let pass; 0 also if one returns the beam
+    double passed = 1;  // share of the echo that panes on the way let pass; 0 also if one reflects the beam
   };
-  // A hit as it looks.
+  // Returns a hit as seen.
   Seen seen(const Float3& origin, const Float3& direction, float t, std::uint32_t triangle) const;
-  // The surface that a ray from start to end meets. Mirrors send it on. Glass counts from the origin on.
+  // Returns the surface that a ray from start to end meets, also by way of mirrors. Glass counts from the origin on.
   Seen follow(const Float3& origin, const Float3& direction, float start, float end) const;
 
-  // Puts the points of rays that met a mirror where the scanner does: along the ray, as far as the way was long. Takes
-  // out those whose echo is too weak, and those of rays that meet nothing. Sets `ghost` to 1 for the others. REQUIRES:
-  // raw.primitive is filled.
+  // Moves the points of rays that met a mirror to where the scanner sees them: along the ray, at the length of the
+  // whole way. Removes points whose echo is too weak, and those of rays that meet nothing. Sets `ghost` to 1 for the
+  // others. REQUIRES: raw.primitive is filled.
   void show_ghosts(const TraceScanner& scanner, const TraceStation& station, std::uint64_t first_ray,
                    Tracer::RawChunk& raw, std::span<std::uint8_t> ghost) const;
 

@@ -57,7 +57,7 @@ Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghos
       std::plus<>());
 }
 
-// One element per ray and output; arrays not asked for stay empty.
+// Makes one element for each ray and output; arrays that are not wanted stay empty.
 template <class To, class Make>
 void fill(std::vector<To>& to, std::size_t count, Make make) {
   to.resize(count);
@@ -129,7 +129,7 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::
       }
     });
   }
-  // The other arrays are passed on. Swapped, so that both sides keep their memory from chunk to chunk.
+  // Passes on the other arrays by swapping, so that both sides keep their memory between chunks.
   if (outputs & scan_ids) {
     chunk.primitive.swap(raw.primitive);
     chunk.primitive.resize(count);

@@ -43,7 +43,7 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
   if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
 }
 
-// Azimuth from the middle of the sweep, within half a turn.
+// Returns the azimuth from the middle of the sweep, within half a turn.
 double from_middle(const RayAngles& angles) {
   const double azimuth = angles.azimuth.in_radians();
   return std::abs(azimuth) <= std::numbers::pi ? azimuth : std::remainder(azimuth, 2 * std::numbers::pi);
@@ -63,9 +63,9 @@ ListedField field_of(const std::vector<RayAngles>& directions) {
   return field;
 }
 
-// Step of a grid with as many rays in the same field.
+// Returns the step of a grid with as many rays in the same field.
 double listed_step(const std::vector<RayAngles>& directions) {
-  constexpr double kNarrowest = 1e-4;  // radians; of fields that are a line or a point
+  constexpr double kNarrowest = 1e-4;  // radians; for fields that are a line or a point
   const ListedField field = field_of(directions);
   const double tall = std::max(field.last - field.first, kNarrowest), wide = std::max(2 * field.aside, kNarrowest);
   return std::min({std::sqrt(tall * wide / static_cast<double>(directions.size())), tall, wide});
@@ -107,7 +107,7 @@ void check_directions(const Scanner& scanner) {
     throw Error(Errc::invalid_argument, "scanner: directions must lie in the field, which set_directions() sets");
 }
 
-// Of rows that are not all one step apart.
+// Returns the mean step of rows that are not all one step apart.
 double mean_step(const std::vector<Angle>& rows) {
   return (rows.back().in_radians() - rows.front().in_radians()) / static_cast<double>(rows.size() - 1);
 }

@@ -37,7 +37,7 @@ Settings settings(const Scanner& scanner) {
     list.add("angle_accuracy_arcsec", scanner.angle_accuracy.in_degrees() * 3600, {"calibration"})
         .add("range_accuracy_mm", scanner.range_accuracy_m * 1e3, {"calibration"})
         .add("range_accuracy_ppm", scanner.range_accuracy_ppm, {"calibration"});
-  // It enters a plan by the registration's own setting.
+  // It enters a plan through registration's own setting.
   if (scanner.tilt_accuracy.in_radians() > 0)
     list.add("tilt_accuracy_arcsec", scanner.tilt_accuracy.in_degrees() * 3600, {.decides = false});
   if (scanner.battery_min > 0 || scanner.battery_scans > 0)

@@ -47,19 +47,19 @@
 namespace vantage {
 namespace {
 
-// Points of a voxel after which counting may stop; 0: never.
+// Returns the number of points of a voxel at which counting may stop; 0: never.
 std::uint32_t stop_at(CountTo count_to, double goal) {
   return count_to == CountTo::all ? 0 : count_to == CountTo::one ? 1 : static_cast<std::uint32_t>(std::ceil(goal));
 }
 
 constexpr std::uint32_t sample_groups = 20;
 constexpr std::uint64_t kSampleGrowth = 4;  // of the voxels that registration is summed over
-// Voxels up to which the planes of all are kept, some 700 MB; larger fields are registered by parts.
+// Most voxels for which all planes are kept, some 700 MB; larger fields are registered in parts.
 constexpr std::uint64_t kKeptPlanes = std::uint64_t{1} << 23, kPlanesAtOnce = std::uint64_t{1} << 22;
 constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
                                         scan_colour | scan_voxel | scan_ghost | scan_returns;
 
-// Six digits, rounded up: as a user size, the text still gives the voxel size that it states.
+// Rounds up to six digits, so that the text, used as a user size, gives the voxel size that it states.
 std::string rounded_up(double metres) {
   const double digit = std::pow(10.0, std::floor(std::log10(metres)) - 5);
   std::ostringstream text;
@@ -68,7 +68,7 @@ std::string rounded_up(double metres) {
   return text.str();
 }
 
-// Wanted spacing of points on each mesh, metres.
+// Returns the wanted spacing of points on each mesh, metres.
 std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& config) {
   std::vector<double> spacings;
   for (const MeshInfo& mesh : scene.meshes)
@@ -88,15 +88,15 @@ std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& c
   throw Error(Errc::invalid_argument, what.str());
 }
 
-// Makes the voxels of a user size, without point weights. None if stopped.
+// Makes the voxels of a user size, without point weights. Empty if stopped.
 using MakeGrid = std::function<std::optional<VoxelGrid>(double user_size_m)>;
 
-// Null if stopped.
+// Returns null if stopped.
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
                                             std::span<const double> spacings_m, const MakeGrid& make,
                                             const Progress& progress) {
   check_number(config.point_spacing_m, "the point spacing in metres", measurable);
-  // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a size that works.
+  // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a working size.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
   auto grid = make(too_small ? finest : config.user_size_m);
@@ -156,7 +156,7 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
     throw Error(Errc::invalid_argument, "registration is summed from station masks, and so needs overlap");
 }
 
-// The surfaces of the voxels that were asked for last: tables and reports of an answer look at the same sample.
+// Surfaces of the voxels requested last, since tables and reports of an answer use the same sample.
 class KnownPatches {
  public:
   std::optional<std::vector<VoxelPatch>> find(std::span<const std::uint32_t> voxels) const {
@@ -214,14 +214,14 @@ struct Simulator::Impl {
                   "a simulator that works over other processes takes no " + other + "; make another simulator");
   }
 
-  // As Simulator::set_scene().
+  // Implements Simulator::set_scene().
   bool set_scene(const Scene& later) {
     refuse_if_fixed("other scene");
     const SceneData& data_then = later.data();
     const std::vector<double> spacings = spacings_of(data_then, config);
     const std::optional<SceneDifference> differs = difference(data(), data_then);
     bool kept = differs.has_value();
-    // Few changed meshes are added to the estimate; otherwise, or if the sum does not fit, all are looked at.
+    // Adds few changed meshes to the estimate; otherwise, or if the sum does not fit, examines all meshes.
     std::uint64_t needed_then = differs ? needed_bytes + bytes_of_new(data_then, *differs) : 0;
     bool all_looked_at = false;
     const auto look_at_all = [&] {
@@ -231,7 +231,7 @@ struct Simulator::Impl {
     const std::shared_ptr<const VoxelGrid> grid_then =
         build_grid(data_then, config, spacings,
                    [&](double user_size_m) -> std::optional<VoxelGrid> {
-                     // The grid before was made for this user size, unless it was refused.
+                     // The grid before was made for this user size, unless that was refused.
                      if (differs && user_size_m == config.user_size_m) {
                        if (auto changed = grid->changed(data(), data_then, *differs, user_size_m)) return changed;
                      }
@@ -261,7 +261,7 @@ struct Simulator::Impl {
     return kept;
   }
 
-  // As Simulator::set_scanners().
+  // Implements Simulator::set_scanners().
   void set_scanners(std::vector<Scanner> later) {
     refuse_if_fixed("other scanners");
     check_scanners(later);
@@ -308,7 +308,7 @@ struct Simulator::Impl {
             .validation = config.validation,
             .sample_triangles = std::move(triangles)};
   }
-  // On this process's devices.
+  // Makes a tracer on this process's devices.
   std::unique_ptr<Tracer> make_own_tracer(const TraceScene& shared) const {
     return config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
                                   : make_tracer(config.devices, shared, config.warn);
@@ -363,7 +363,7 @@ struct Simulator::Impl {
     return active;
   }
 
-  // Weight of every `step`-th voxel of a sample.
+  // Returns the weight of every `step`-th voxel of a sample.
   std::uint64_t weight_of(std::span<const std::uint32_t> voxel_indices, std::size_t first, std::size_t step) const {
     std::uint64_t sum = 0;
     for (std::size_t i = first; i < voxel_indices.size(); i += step) sum += grid->demands().weight(voxel_indices[i]);
@@ -388,7 +388,7 @@ struct Simulator::Impl {
                        });
   }
 
-  // The mesh of each voxel of a sample, or of all voxels, which is the one from 0.
+  // The mesh of each voxel of a sample, or of all voxels, which is the sample from 0.
   struct VoxelMeshes {
     std::uint64_t from;
     std::vector<std::uint32_t> mesh;
@@ -407,7 +407,7 @@ struct Simulator::Impl {
              })
         .mesh;
   }
-  // Counts by mesh of each of some interleaved groups of voxels, with so many points in each voxel.
+  // Returns counts by mesh for each of some interleaved groups of voxels, given the points in each voxel.
   std::vector<std::vector<MeshVoxels>> count_meshes(std::span<const std::uint32_t> points,
                                                     std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
                                                     std::size_t groups) {
@@ -423,7 +423,7 @@ struct Simulator::Impl {
     }
     return counts;
   }
-  // The same of every voxel.
+  // Does the same for every voxel.
   std::vector<MeshVoxels> count_meshes(std::span<const std::uint32_t> points) {
     std::vector<std::uint32_t> voxel_indices = first_numbers<std::uint32_t>(grid->size());
     return std::move(count_meshes(points, voxel_indices, 0, 1).front());
@@ -439,7 +439,7 @@ struct Simulator::Impl {
     for (std::size_t g = 0; g < counts.groups.size(); ++g) counts.groups[g].meshes = groups[g];
   }
 
-  // Empty if stopped: planes of millions of voxels take seconds.
+  // Returns nothing if stopped, as planes of millions of voxels take seconds.
   Patches patches_of(std::span<const std::uint32_t> voxel_indices, const RegistrationModel& model,
                      const std::stop_token& stop) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
@@ -451,7 +451,7 @@ struct Simulator::Impl {
     done.planes += voxel_indices.size();
     return make_patches(*surfaces, *grid, voxel_indices, make_pattern(registered.front()), model, stop);
   }
-  // Their range noise counts, whether it is simulated or not.
+  // Returns the scanners with their range noise, whether it is simulated or not.
   const std::vector<PatchScanner>& scanners_of_patches() {
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
@@ -467,7 +467,7 @@ struct Simulator::Impl {
     return patch_scanners;
   }
 
-  // Planes of a sample, or of all voxels, which is the one from 0. None if stopped.
+  // Returns the planes of a sample, or of all voxels, which is the sample from 0. Empty if stopped.
   std::optional<RegistrationJob> registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
                                                  const RegistrationModel& model, bool groups,
                                                  const std::stop_token& stop) {
@@ -481,7 +481,7 @@ struct Simulator::Impl {
     if (own.patches->patches.size() < voxel_indices.size()) return std::nullopt;
     return RegistrationJob{own.patches, scanners_of_patches(), groups};
   }
-  // Fills the sums of every voxel. False if stopped.
+  // Fills the sums of every voxel. Returns false if stopped.
   bool register_field(std::span<const TraceStation> stations, NetworkCounts& counts, const StationMasks& masks,
                       const RegistrationModel& model, const std::stop_token& stop) {
     const bool kept = grid->size() <= kKeptPlanes;
@@ -500,7 +500,7 @@ struct Simulator::Impl {
     counts.registration = std::move(*sums);
     return true;
   }
-  // Fills the sums of a sample that grows until they are known well enough, or of every voxel. False if stopped.
+  // Fills the sums of a growing sample until they are known well enough, or of every voxel. Returns false if stopped.
   bool register_enough(std::span<const TraceStation> stations, NetworkCounts& counts, const StationMasks& masks,
                        const EveryRayOptions& options, std::size_t network, const std::stop_token& stop) {
     for (std::uint64_t voxels = options.registration_voxels; voxels < grid->size(); voxels *= kSampleGrowth) {
@@ -518,8 +518,8 @@ struct Simulator::Impl {
     return register_field(stations, counts, masks, *options.registration, stop);
   }
 
-  // Runs `work` alone. The isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call
-  // of the same simulator.
+  // Runs `work` alone. Isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call of
+  // the same simulator.
   template <class Work>
   auto alone(const Work& work) {
     if (caller.load(std::memory_order_relaxed) == std::this_thread::get_id())
@@ -536,7 +536,7 @@ struct Simulator::Impl {
   void follow_beams() {
     if (!wide_beam) wide_beam.emplace(share_scene(), grid);
   }
-  // As Tracer::count() for a beam that has a width, of any number of stations. Fills `field`.
+  // Works as Tracer::count() for a wide beam and any number of stations. Fills `field`.
   NetworkCounts count_beams(std::span<const TraceStation> stations, std::uint32_t station_count,
                             const BeamOptions& beam, bool masks, VoxelField& field, const Progress& progress);
   // `place`: the network's number among those of the caller.
@@ -546,7 +546,7 @@ struct Simulator::Impl {
                                            const Progress& progress);
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                               const Progress& progress);
-  // For populations with a large network: its masks are merged on the host, and several at once would not fit.
+  // Evaluates populations with a large network: its masks are merged on the host, and several at once would not fit.
   std::vector<NetworkCounts> evaluate_one_by_one(std::span<const Network> networks, const SampleOptions& options,
                                                  const Progress& progress);
 
@@ -564,7 +564,7 @@ struct Simulator::Impl {
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
   std::optional<SurfaceFinder> surfaces;
-  std::optional<VoxelPlanes> planes;  // set if stations share a voxel only from one side of these
+  std::optional<VoxelPlanes> planes;  // set if stations share a voxel only from one side of them
   LruCache<Sample> samples;
   LruCache<SamplePatches> patches;
   LruCache<VoxelMeshes> voxel_meshes;
@@ -573,7 +573,7 @@ struct Simulator::Impl {
   std::optional<RayFollower> mirrors;  // made for the first scan, if the scene has some
   std::optional<WideBeam> wide_beam;   // made for the first beam with one
   std::unique_ptr<Tracer> tracer;
-  Work done;  // but for what the tracer tells
+  Work done;  // without the tracer's own figures
   std::mutex running;
   std::atomic<std::thread::id> caller;  // holds `running`
 };
@@ -964,7 +964,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
       return all;
     }
   }
-  // Sharing from one side, to be put into the counts.
+  // Sharing from one side, which then goes into the counts.
   std::vector<NetworkCounts> sharing(planes && options.overlap ? tracing.size() : 0);
   const auto share = [&](std::size_t first, std::span<const std::uint64_t> masks) {
     const std::size_t words = sample.size() * (large ? mask_words(sizes.front()) : 1);

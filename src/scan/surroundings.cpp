@@ -12,7 +12,7 @@ namespace {
 // Voxels of a hundredth to a two-hundredth of the site distinguish a door from a desk, but not bolts. Above half a
 // metre, rooms of a large site would merge.
 constexpr double extent_share = 0.01, largest_voxel_m = 0.5;
-// Two rays across a voxel at the far end of the site. Near surfaces get more; oblique ones get fewer, as in a survey.
+// Two rays cross a voxel at the far end of the site. Near surfaces get more; oblique ones get fewer, as in a survey.
 constexpr double rays_across = 2, fewest_rays = 16;
 
 double extent_of(const Scene& scene) {
@@ -20,7 +20,7 @@ double extent_of(const Scene& scene) {
   return std::max({size.x, size.y, size.z});
 }
 
-// Returns so many directions of a list that they are a step apart on average, or all if they are no denser.
+// Returns directions of a list that are a step apart on average, or all if they are no denser.
 std::vector<RayAngles> thinned(const Scanner& scanner, Angle step) {
   const double part = step.in_radians() / scanner.azimuth_step.in_radians();
   const auto stride = static_cast<std::size_t>(std::max(part * part, 1.0));

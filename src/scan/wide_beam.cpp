@@ -23,15 +23,15 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kMostSubRays = 19, kMostReturns = 15;  // of LAS
-// A point farther than this from the planes of all surfaces that it was made of is mixed, in metres.
+// A point is mixed if it is farther than this, in metres, from the planes of all surfaces that contributed to it.
 constexpr double kMixed_m = 0.005;
-// How much brighter than a white surface a pane returns the beam near its normal: enough to outshine all else.
+// Brightness of a pane that reflects the beam near its normal, relative to a white surface: it outshines all else.
 constexpr double kPaneGleam = 100;
 constexpr std::uint32_t kTwistStream = 3;
 constexpr std::uint64_t kPart = 1024;  // rays that a task follows
 
 // Places of sub-rays over the footprint, in units of its radius at 1/e², and their shares of the power of a Gaussian
-// beam: a hexagon's cell each, which together have the footprint's area.
+// beam. Each stands for a hexagonal cell; all cells together have the footprint's area.
 struct SubRays {
   std::array<double, kMostSubRays> x, y, share;
 };
@@ -82,12 +82,12 @@ class WideBeam::Follower {
         noise_(traced.noise),
         judge_(traced.limits) {}
 
-  // The wanted returns of a ray, until the next call. If the scanner detects none, the strongest one, not `detected`.
+  // Returns the wanted returns of a ray, until the next call. If none is detected, the strongest one, not `detected`.
   std::span<const Return> returns_of(std::uint64_t ray);
 
  private:
   void find_echoes(std::uint64_t ray);
-  // Makes a return of the echoes from begin to end.
+  // Merges the echoes from begin to end into one return.
   Return merged(std::uint64_t ray, std::size_t begin, std::size_t end, double strength) const;
 
   const WideBeam& beam_;
@@ -98,7 +98,7 @@ class WideBeam::Follower {
   std::uint64_t seed_;
   RangeNoise noise_;
   PointJudge judge_;
-  // Of the present ray.
+  // State of the current ray.
   Float3 axis_{};
   std::vector<Echo> echoes_;
   std::vector<Return> found_;
@@ -111,10 +111,10 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
   axis_ = direction_of(pattern_, station_, ray);
   const Vec3 d = widen(axis_);
   const Vec3 u = unit(cross(std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0}, d)), v = cross(d, u);
-  // Lines through the exit that are skewed sideways make the surface of a Gaussian beam, of radius √(exit² + (spread
+  // Lines through the exit that are skewed sideways form the surface of a Gaussian beam, of radius √(exit² + (spread
   // t)²).
   const double exit = scanner_.exit_diameter_m / 2, spread = scanner_.beam_divergence.in_radians() / 2;
-  // Each footprint is turned by chance, so that no edge meets the same places everywhere.
+  // Each footprint is turned randomly, so that no edge meets the same places everywhere.
   const std::uint32_t chance = random_bits(seed_, ray, station_.place, kTwistStream);
   const double twist = 2 * pi * chance / 4294967296.0, c = std::cos(twist), s = std::sin(twist);
   std::array<Float3, kMostSubRays> from;

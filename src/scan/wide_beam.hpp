@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A beam that has a width: sub-rays over its footprint, whose echoes merge into returns (docs/method.md).
+// A beam with a width: sub-rays over its footprint, whose echoes merge into returns (docs/method.md).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace vantage {
 
-// The same for all engines: everything is traced here, on the processor. Safe to use from any thread.
+// Works alike for all engines, since the processor traces everything here. Safe to use from any thread.
 class WideBeam {
  public:
   // Shares ownership of both.
@@ -28,16 +28,16 @@ class WideBeam {
     std::uint8_t number, of;  // from 1
     bool detected;            // false: all echoes of the ray are too weak, and there is no point
     bool ghost;
-    bool mixed;              // off all surfaces that it was made of
+    bool mixed;              // away from all surfaces that contributed to it
     bool wrong_voxel;        // mixed, and in a surveyed voxel that none of its echoes came from
     float t, reflectivity;   // t with noise
     std::uint32_t triangle;  // of the strongest echo in it
     std::uint32_t voxel;     // no_voxel if the point does not count
-    DroppedPoints dropped;   // limits for which alone it does not count
+    DroppedPoints dropped;   // limits that alone keep it from counting
     Float3 point, normal;
     Float2 weights;
   };
-  // Wanted returns of `ray_count` rays that the scanner detects, in order of ray and number.
+  // Returns the wanted returns of `ray_count` rays that the scanner detects, in order of ray and number.
   std::vector<Return> returns(const Scanner& scanner, const TraceScanner& traced, const TraceStation& station,
                               const BeamOptions& options, std::uint64_t first_ray, std::uint64_t ray_count) const;
 

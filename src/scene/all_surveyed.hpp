@@ -5,9 +5,9 @@
 
 namespace vantage {
 
-// The same triangles with every mesh surveyed and all voxels weighing alike. Glass stops rays: what is seen through a
-// pane, bent and weakened, holds no scan. With `through_glass` it does not. Data that only affects colours or
-// directions of points is left out: normals, textures, the search area. Positions and triangles are copied.
+// Returns the same triangles with every mesh surveyed and all voxels of equal weight. Glass stops rays, since a pane
+// bends and weakens rays; with `through_glass` it does not. Data that affect only colours or directions of points are
+// left out: normals, textures, the search area. Positions and triangles are copied.
 Scene all_surveyed(const Scene& scene, bool through_glass = false);
 
 }  // namespace vantage

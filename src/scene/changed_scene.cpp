@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// A cube's six faces: towards which neighbour, and corners (bit 0: x, 1: y, 2: z), counter-clockwise from outside.
+// A cube's face: the neighbour behind it, and corners (bit 0: x, 1: y, 2: z), counter-clockwise from outside.
 struct CellFace {
   SolidCell towards;
   std::array<int, 4> corners;
@@ -20,7 +20,7 @@ constexpr std::array kCellFaces{CellFace{{-1, 0, 0}, {0, 4, 6, 2}}, CellFace{{1,
                                 CellFace{{0, -1, 0}, {0, 1, 5, 4}}, CellFace{{0, 1, 0}, {2, 6, 7, 3}},
                                 CellFace{{0, 0, -1}, {0, 2, 3, 1}}, CellFace{{0, 0, 1}, {4, 5, 7, 6}}};
 
-// Appends the faces between cells and what is free, as `mesh`.
+// Appends the faces between solid cells and free space, as `mesh`.
 void add_cells(SceneData& data, const SolidCells& solid, MeshInfo mesh) {
   const auto first_triangle = static_cast<std::uint32_t>(data.triangles.size());
   const Vec3 corner = solid.corner - data.origin;

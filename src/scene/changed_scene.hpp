@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as it was found: with what stands on site and is not in the model, and without what is in the model alone.
+// A scene as found on site: with objects that the model lacks, and without those that only the model has.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ struct SolidCells {
 };
 
 // Returns the scene without the triangles of the meshes `removed`, and with a blocking mesh, the outside of these
-// cells. That of `unknown` cells is surveyed, with a weight. It keeps its local origin, weights and search area. Throws
-// Error: malformed_file if nothing is left to survey; out_of_memory if meshes that nodes share do not fit at each
-// place.
+// cells. The outside of `unknown` cells is surveyed, with a weight. The scene keeps its local origin, weights and
+// search area. Throws Error: malformed_file if nothing is left to survey; out_of_memory if meshes that nodes share do
+// not fit when stored at each place.
 Scene changed_scene(const Scene& scene, const SolidCells& cells, std::span<const std::uint32_t> removed,
                     const SolidCells& unknown = {}, std::uint32_t unknown_weight = 1);
 

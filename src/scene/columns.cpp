@@ -16,10 +16,10 @@
 namespace vantage {
 namespace {
 
-// Triangles may lie on each other by the thousand; columns are fewer then. 8 bytes each.
+// Thousands of triangles may lie on each other; there are fewer columns then. 8 bytes each.
 constexpr double kMostCrossings = 4'000'000;
 constexpr double kMostColumns = 160'000, kFewestColumns = 2000, kColumnsPerTriangle = 1000;
-constexpr double kBeside = 0.38196601125;  // where the first column stands in its cell: models are drawn on round lines
+constexpr double kBeside = 0.38196601125;  // offset of the first column: models are drawn on round lines
 
 // Heights in 2^-29 of the whole, and three bits below them.
 constexpr double kSteps = 1 << 29;
@@ -34,7 +34,7 @@ struct WallAt {
   auto key() const { return std::tie(edge, wall.low, wall.high); }
 };
 
-// The part of a triangle on the line where axis `k` (0 or 1) has the value `at`: from one (along, z) to another.
+// Returns the part of a triangle on the line where axis `k` (0 or 1) equals `at`: from one (along, z) to another.
 bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
   int found = 0;
   for (int e = 0; e < 3; ++e) {
@@ -51,7 +51,7 @@ bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
 }  // namespace
 
 Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out, bool either_way) {
-  // Broken vertices count for nothing. But in a site in millimetres, all may lie as far out as broken ones.
+  // Ignores broken vertices. In a site in millimetres, however, all vertices may lie as far out.
   constexpr double kFarthest = 1e12;
   const auto within = [&](const Triangle& t, double limit) {
     return std::ranges::all_of(t, [&](std::uint32_t v) {
@@ -85,7 +85,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
     in_squares += extent.x * extent.y, in_lines += extent.x + extent.y;
   }
   cell_ *= std::max({1.0, std::sqrt(in_squares / kMostCrossings), in_lines / kMostCrossings});
-  // One more on each side, outside of everything.
+  // Adds one column on each side, outside the model.
   nx_ = static_cast<std::uint32_t>(width / cell_) + 3, ny_ = static_cast<std::uint32_t>(depth / cell_) + 3;
   low.x -= cell_, low.y -= cell_;
   const auto column_near = [&](double x) { return static_cast<std::int64_t>(std::floor(x / cell_ - kBeside)); };
@@ -165,7 +165,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
   for (const WallAt& wall : walls) ++first_wall_[wall.edge + 1], walls_.push_back(wall.wall);
   for (std::size_t e = 1; e < first_wall_.size(); ++e) first_wall_[e] += first_wall_[e - 1];
 
-  // Levels above which there is air. What a solid holds is none, unless nearly all is: then faces point anywhere.
+  // Finds levels with air above them. Those inside a solid are none, unless nearly all are: then faces point anywhere.
   const auto find_levels = [&](bool facing) {
     first_.assign(std::size_t{count()} + 1, 0);
     levels_.clear();
@@ -205,7 +205,7 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
 }
 
 bool Columns::faces_outwards(const std::vector<std::uint64_t>& crossings, double tall) const {
-  // A column of a shell seen from outside has a floor that faces down and above it a ceiling that faces up.
+  // In a shell seen from outside, a column has a floor that faces down and, above it, a ceiling that faces up.
   constexpr double kMostShell = 0.6, kFewCovered = 0.05;
   constexpr std::size_t kFewestOpen = 4;  // columns at an open side
   const auto covered = std::ranges::count_if(levels_, [](const Level& level) { return !std::isinf(level.free); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene along a few hundred thousand upright lines: level surfaces, the free height above each, and the walls between
-// neighbouring lines. In the file's lengths, so that one pass serves every unit.
+// A scene along a few hundred thousand vertical lines: level surfaces, the free height above each, and walls between
+// neighbouring lines. Lengths are in the file's unit, so that one pass serves every unit.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,13 @@ class Columns {
     float z = 0;     // above the lowest point
     float free = 0;  // free height; infinite under the sky
   };
-  // Part of something steep that stands between two neighbouring columns.
+  // Part of a steep surface between two neighbouring columns.
   struct Wall {
     float low = 0, high = 0;
   };
 
-  // `raw`: read by glTF's rule. Triangles whose `left_out` is not 0 are not there; it may be empty. `either_way`: faces
-  // are wound as they came, and all count as floors. Deterministic.
+  // `raw`: read by glTF's rule. Triangles whose `left_out` is not 0 are ignored; it may be empty. `either_way`: the
+  // winding of faces tells nothing, and all count as floors. Deterministic.
   Columns(const RawScene& raw, UpAxis up, const std::vector<std::uint8_t>& left_out = {}, bool either_way = false);
 
   bool empty() const { return outline_ == 0; }
@@ -36,14 +36,14 @@ class Columns {
   std::uint32_t count() const { return nx_ * ny_; }
   glm::dvec3 size() const { return size_; }
   double outline() const { return static_cast<double>(outline_) * cell_ * cell_; }  // area seen from above
-  // Share of steep faces that are upright and lie along neither horizontal axis: columns, tanks, turned walls.
+  // Returns the share of steep faces that are vertical but along no horizontal axis: columns, tanks, turned walls.
   double upright() const { return upright_; }
-  // Whether the model is a shell of sheets that is open at its sides and shows its faces to the outside, as a tunnel
-  // may be. Then its floor faces down.
+  // Returns true for a shell of sheets, such as a tunnel, that is open at its sides and shows its faces to the outside.
+  // The floor of such a model faces down.
   bool inside_out() const { return inside_out_; }
   const std::vector<Level>& levels() const { return levels_; }
   std::uint32_t first(std::uint32_t column) const { return first_[column]; }  // ascending in z; up to `count()`
-  // Whether a wall stands between a column and the next along x (0) or y (1), somewhere from `low` to `high`.
+  // Returns true if a wall stands between a column and its neighbour along x (0) or y (1), somewhere in [low, high].
   bool wall(std::uint32_t column, int axis, float low, float high) const;
 
  private:

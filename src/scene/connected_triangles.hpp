@@ -16,13 +16,13 @@
 
 namespace vantage {
 
-// Triangles of a mesh, by connected parts.
+// Triangles of a mesh, grouped by connected components.
 struct Connected {
   std::vector<std::uint32_t> triangles;
-  std::vector<std::uint32_t> begin;  // of each part in `triangles`, and their end
+  std::vector<std::uint32_t> begin;  // of each component in `triangles`, and their end
 };
 
-// Triangles that share a corner, by its position, are connected.
+// Groups triangles. Two are connected if they share the position of a corner.
 template <class Position>
 Connected connect(std::span<const Triangle> triangles, std::span<const Position> positions) {
   constexpr std::uint32_t none = 0xFFFFFFFFu;

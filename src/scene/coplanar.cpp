@@ -67,7 +67,7 @@ bool lies_in_plane(const Corners& t, const Corners& other, const glm::dvec3& nor
   return std::ranges::all_of(t, [&](const glm::dvec3& p) { return std::abs(dot(normal, p - other[0])) <= slack; });
 }
 
-// Whether, seen along `normal`, all of `b` lies beyond an edge of `a`, or closer to it than `slack`.
+// Returns true if, seen along `normal`, `b` lies beyond an edge of `a`, or overlaps that edge by less than `slack`.
 bool edge_parts(const Corners& a, const Corners& b, const glm::dvec3& normal, double slack) {
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec3 edge = a[(k + 1) % 3] - a[k];

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-// Two triangles that overlap in one plane, to the rounding of float coordinates; rounding decides which of them a ray
-// hits. Triangles that only touch are no such pair.
+// Two triangles that overlap in one plane, within the rounding of float coordinates, which decides which of them a ray
+// hits. Triangles that only touch are no pair.
 struct CoplanarPair {
   std::uint32_t blocking = 0, surveyed = 0;
   friend auto operator<=>(const CoplanarPair&, const CoplanarPair&) = default;

@@ -93,7 +93,7 @@ std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Fr
   return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
-// Runs of pairs with the same blocking triangle, which has in the scene the number of the pair.
+// Returns runs of pairs with the same blocking triangle. `numbers`: its number in the scene, for each pair.
 std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs, std::span<const std::uint32_t> numbers) {
   std::vector<Covered> runs;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
@@ -110,7 +110,7 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
   return static_cast<std::size_t>(std::unique(surveyed.begin(), surveyed.end()) - surveyed.begin());
 }
 
-// Takes the triangles with these numbers out of shared meshes, at all places that have one of them. Returns whether
+// Removes the triangles with these numbers from shared meshes, at all places that have one of them. Returns true if
 // there are any. Throws Error out_of_memory.
 bool take_out_cut(RawScene& raw, std::vector<Float3>& positions, const Vec3& origin,
                   const std::vector<std::uint32_t>& cut) {
@@ -151,8 +151,8 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions, const Ve
     return std::ranges::any_of(raw.meshes, [&](const MeshInfo& mesh) { return !mesh.glass && mesh.role == role; });
   };
   if (!has(Role::surveyed) || !has(Role::blocking)) return {};
-  // A pair is listed while the list grows, and a part is a polygon, corners and triangles. A triangle of a shared mesh
-  // is listed with its corners, and leaves of two trees.
+  // Bytes of a pair while the list grows; of a part, which is a polygon, corners and triangles; and of a listed
+  // triangle of a shared mesh, with corners and leaves of two trees.
   constexpr std::uint64_t kPair = 3 * sizeof(CoplanarPair), kPart = 400, kNear = 200;
   const std::uint64_t most_pairs = std::min(std::uint64_t{1} << 25, raw.spare_bytes / 2 / kPair);
   const bool shares = std::ranges::any_of(raw.placed, [](const auto& placed) { return !placed.empty(); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages that keep the share of a mask: Castaño, "Computing alpha mipmaps", 2010.
+// Averages of a mask that keep its filled share: Castaño, "Computing alpha mipmaps", 2010.
 #include "scene/cut_masks.hpp"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kBlock = 64;             // triangles cut by one task
-constexpr double kThinnest_m = 2e-5;           // parts that are thinner are left out; no beam is
-constexpr double kMostCells = 0x1p28;          // of textures, looked at in all triangles together; some seconds
+constexpr double kThinnest_m = 2e-5;           // thinner parts are left out; no beam is so thin
+constexpr double kMostCells = 0x1p28;          // of textures, visited in all triangles together; some seconds
 constexpr double kMostRepeats = 1000;          // of a texture along a triangle
 constexpr std::uint64_t kTriangleBytes = 400;  // of a new triangle: three vertices with all attributes, twice
 
@@ -60,10 +60,10 @@ class AlphaLevels {
 
   std::size_t count() const { return levels_.size(); }
   const Level& level(std::size_t k) const { return levels_[k]; }
-  // Whether the texture is filled everywhere or nowhere.
+  // Returns true if the texture is filled everywhere or nowhere.
   bool uniform() const { return uniform_; }
 
-  // Alpha at the middle of a texel; the texture goes on beyond its edges.
+  // Returns alpha at the middle of a texel; the texture continues beyond its edges.
   double at(const Level& level, std::int64_t x, std::int64_t y) const {
     return static_cast<double>(
         level.alpha[place(y, level.height, repeat_v_) * level.width + place(x, level.width, repeat_u_)]);
@@ -89,7 +89,7 @@ class AlphaLevels {
     return coarse;
   }
 
-  // Share of a level on which alpha reaches a cut-off; alpha is linear on each half of a cell.
+  // Returns the share of a level on which alpha reaches a cut-off; alpha is linear on each half of a cell.
   double share_filled(const Level& level, double cutoff) const {
     double filled = 0;
     for (std::uint32_t y = 0; y < level.height; ++y)
@@ -100,7 +100,7 @@ class AlphaLevels {
     return filled / (2.0 * level.width * level.height);
   }
 
-  // Share of a triangle on which a linear function of these values at its corners is at least `least`.
+  // Returns the share of a triangle on which a linear function, given at its corners, is at least `least`.
   static double share_above(double low, double middle, double high, double least) {
     if (low > middle) std::swap(low, middle);
     if (middle > high) std::swap(middle, high);
@@ -111,7 +111,7 @@ class AlphaLevels {
     return (high - least) * (high - least) / ((high - middle) * (high - low));
   }
 
-  // The cut-off that fills this share of a level, to the steps in which textures state alpha.
+  // Returns the cut-off that fills this share of a level, to the steps in which textures state alpha.
   double cutoff_for(const Level& level, double share) const {
     double low = 0, high = 1;
     while (high - low > 1.0 / 1024) {
@@ -127,7 +127,7 @@ class AlphaLevels {
 
 using Polygon = std::vector<glm::dvec2>;
 
-// The part of a convex polygon where inside(p) >= 0, which is linear.
+// Clips a convex polygon to the part with inside(p) >= 0, a linear function.
 template <class Inside>
 void clip(Polygon& polygon, Polygon& spare, Inside&& inside) {
   spare.clear();
@@ -136,7 +136,7 @@ void clip(Polygon& polygon, Polygon& spare, Inside&& inside) {
     const double da = inside(a), db = inside(b);
     if (da >= 0) spare.push_back(a);
     if ((da >= 0) == (db >= 0)) continue;
-    // From the end inside, so that neighbours find the same point.
+    // Interpolates from the inner end, so that neighbours find the same point.
     const bool from_a = da >= 0;
     const glm::dvec2 &p = from_a ? a : b, &q = from_a ? b : a;
     const double dp = from_a ? da : db, dq = from_a ? db : da;
@@ -145,7 +145,7 @@ void clip(Polygon& polygon, Polygon& spare, Inside&& inside) {
   std::swap(polygon, spare);
 }
 
-// What is left of one triangle, as triangles of barycentric coordinates: weights of its second and third corner.
+// Remaining parts of one triangle, as triangles of barycentric coordinates: weights of its second and third corner.
 struct Cutout {
   bool whole = false;
   std::vector<glm::dvec2> corners;
@@ -162,7 +162,7 @@ class TriangleCut {
     }
   }
 
-  // Cells of the texture around the triangle.
+  // Returns the number of texture cells around the triangle.
   double cells(double texel_m) const {
     const AlphaLevels::Level& level = levels_.level(level_for(texel_m));
     const auto wide = [&](double a, double b, double c, std::uint32_t size) {
@@ -185,7 +185,7 @@ class TriangleCut {
       out.whole = alpha * mean >= level_->cutoff;
       return out;
     }
-    // In texels, whose middles have whole coordinates.
+    // Texel coordinates, with whole numbers at the middles of texels.
     for (std::size_t c = 0; c < 3; ++c)
       texel_[c] = uv_[c] * glm::dvec2(level_->width, level_->height) - glm::dvec2(0.5);
     const auto bound = [&](int axis, bool high) {
@@ -201,7 +201,7 @@ class TriangleCut {
     struct Run {
       std::int64_t x0, x1, y0;
     };
-    std::vector<Run> open, next;  // of full cells, that go on from row to row
+    std::vector<Run> open, next;  // runs of full cells that continue from row to row
     bool all = true;
     for (std::int64_t y = low_y_; y < high_y_; ++y, std::swap(below, above)) {
       fill_row(y + 1, above);
@@ -243,7 +243,7 @@ class TriangleCut {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
 
-  // Whether one decision does for the whole triangle: its texture has no area, is one colour or is absurdly repeated.
+  // Returns true if the triangle is kept or dropped as a whole: no texture area, one colour, or absurd repetition.
   bool plain() const {
     const double area = std::abs(cross_of(uv_[0], uv_[1], uv_[2]));
     const bool tinted = vertex_[0] != vertex_[1] || vertex_[0] != vertex_[2];
@@ -254,7 +254,7 @@ class TriangleCut {
     return !(area > 1e-18) || (levels_.uniform() && !tinted);
   }
 
-  // The coarsest level whose texels are at most `texel_m` wide on the surface.
+  // Returns the coarsest level whose texels are at most `texel_m` wide on the surface.
   std::size_t level_for(double texel_m) const {
     const double area = cross_of(uv_[0], uv_[1], uv_[2]);
     if (!(std::abs(area) > 1e-18)) return 0;
@@ -269,7 +269,7 @@ class TriangleCut {
     return level;
   }
 
-  // By how much alpha exceeds the cut-off at the middles of a row of texels.
+  // Fills a row with alpha minus the cut-off, at the middles of texels.
   void fill_row(std::int64_t y, std::vector<double>& row) const {
     for (std::int64_t x = low_x_; x <= high_x_; ++x) {
       double alpha = levels_.at(*level_, x, y);
@@ -285,7 +285,7 @@ class TriangleCut {
 
   void half_cell(const std::array<glm::dvec2, 3>& corner, const std::array<double, 3>& excess, Cutout& out) {
     polygon_.assign(corner.begin(), corner.end());
-    // The excess as a linear function of the place: a right triangle with sides of one texel.
+    // The excess is linear over a right triangle with sides of one texel.
     const glm::dvec2 a = corner[1] - corner[0], b = corner[2] - corner[0];
     const double turn = a.x * b.y - a.y * b.x;
     clip(polygon_, spare_, [&](const glm::dvec2& p) {
@@ -330,7 +330,7 @@ class TriangleCut {
   std::array<glm::dvec2, 3> uv_{}, texel_{};
   std::array<double, 3> vertex_{1, 1, 1};
   std::int64_t low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
-  double area_ = 0;  // twice that in texels, signed
+  double area_ = 0;  // twice the area in texels, signed
   Polygon polygon_, spare_;
 };
 
@@ -376,7 +376,7 @@ class MaskCutter {
   static std::optional<AlphaLevels> levels_of(RawScene& raw, const Material& material, double cutoff,
                                               const LoadBudget& budget) {
     const Image* image = material.image < 0 ? nullptr : &raw.images[static_cast<std::size_t>(material.image)];
-    // Its alpha, the averages, and a copy of one that is sorted.
+    // Memory: its alpha, the averages, and a sorted copy of one of them.
     if (!image || std::uint64_t{8} * image->width * image->height <= budget.left())
       return AlphaLevels(image, material, cutoff);
     raw.notes.push_back("the holes of a texture of " + std::to_string(image->width) + " × " +
@@ -384,7 +384,7 @@ class MaskCutter {
     return std::nullopt;
   }
 
-  // Null if the mesh is opaque.
+  // Returns null if the mesh is opaque.
   const AlphaLevels* levels(const MeshRange& range) const {
     const auto found = levels_.find(range.material);
     return found != levels_.end() && found->second ? &*found->second : nullptr;
@@ -402,7 +402,7 @@ class MaskCutter {
     return cells <= kMostCells;
   }
 
-  // Makes all cutouts; false if they have too many triangles.
+  // Makes all cutouts; returns false if they have too many triangles.
   bool make(double texel_m, std::size_t most) {
     cutouts_.assign(raw_.triangles.size(), {});
     std::atomic<std::size_t> made = 0;
@@ -430,7 +430,7 @@ class MaskCutter {
     return std::ranges::all_of(t, [&](std::uint32_t v) { return sound(raw_.positions[v]); });
   }
 
-  // Puts the cutouts in place of the triangles.
+  // Replaces the triangles by the cutouts.
   void put(double asked_m, double texel_m) {
     std::vector<Triangle> triangles;
     std::size_t made = 0;

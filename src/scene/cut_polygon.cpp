@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// Up to this many holes are cut out of every part one by one; with more, the polygon is first halved.
+// Up to this many holes are subtracted one by one; with more, the polygon is first halved.
 constexpr std::size_t kFewHoles = 16;
 
 // A line, with the signed distance of points to its left.
@@ -26,7 +26,7 @@ struct Line {
   Line turned() const { return {at, -normal}; }
 };
 
-// Part of a convex polygon left of the line, or right of it by at most `reach`.
+// Returns the part of a convex polygon left of the line, or right of it by at most `reach`.
 ConvexPolygon clip(const ConvexPolygon& polygon, const Line& line, double reach) {
   ConvexPolygon kept;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -41,7 +41,7 @@ ConvexPolygon clip(const ConvexPolygon& polygon, const Line& line, double reach)
   return kept;
 }
 
-// Least distance between two parallel lines that enclose the polygon; one of them runs along an edge.
+// Returns the least distance between two parallel lines that enclose the polygon; one runs along an edge.
 double width(const ConvexPolygon& polygon) {
   if (polygon.size() < 3) return 0;
   double least = std::numeric_limits<double>::infinity();
@@ -114,7 +114,7 @@ class Cut {
     std::ranges::move(parts, std::back_inserter(parts_));
   }
 
-  // Cuts each half of the polygon with the holes that it meets. Returns false if a half would keep nearly all of them.
+  // Cuts each half of the polygon with the holes that it meets. Returns false if a half would keep nearly all holes.
   bool halve(const ConvexPolygon& polygon, const Bounds& bounds, const std::vector<const Hole*>& holes) {
     const bool along_x = bounds.max.x - bounds.min.x > bounds.max.y - bounds.min.y;
     std::vector<double> centres;
@@ -137,7 +137,7 @@ class Cut {
     return true;
   }
 
-  // Cuts off the part beyond each edge of the hole in turn; the remainder is the hole's.
+  // Cuts off the part beyond each edge of the hole in turn; the remainder lies in the hole.
   void subtract(ConvexPolygon part, const ConvexPolygon& hole, std::vector<ConvexPolygon>& left) const {
     if (misses(part, hole)) {
       left.push_back(std::move(part));
@@ -151,7 +151,7 @@ class Cut {
     }
   }
 
-  // Whether all of the part lies beyond an edge of the hole, so that it need not be divided.
+  // Returns true if the whole part lies beyond an edge of the hole, so that it need not be divided.
   bool misses(const ConvexPolygon& part, const ConvexPolygon& hole) const {
     for (std::size_t k = 0; k < hole.size(); ++k) {
       const Line edge = Line::through(hole[k], hole[(k + 1) % hole.size()]);

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Of those that no name tells.
+// Sizes of leaves that are recognised without a name.
 constexpr double kLowestPlain = 1.85, kHighestPlain = 2.6, kNarrowestPlain = 0.6, kWidestPlain = 1.3,
                  kThickestPlain = 0.12;
 
@@ -38,7 +38,7 @@ std::optional<DoorLeaf> leaf_around(std::size_t triangles,
   for_points([&](const glm::dvec3& p) {
     xx += (p.x - mean.x) * (p.x - mean.x), xy += (p.x - mean.x) * (p.y - mean.y), yy += (p.y - mean.y) * (p.y - mean.y);
   });
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);  // of the longer axis
+  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);  // angle of the longer axis
   leaf.along = {std::cos(angle), std::sin(angle), 0}, leaf.through = {-std::sin(angle), std::cos(angle), 0};
   double from = std::numeric_limits<double>::infinity(), to = -from, before = from, behind = -from;
   for_points([&](const glm::dvec3& p) {

@@ -30,7 +30,7 @@ void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
 
 namespace {
 
-// Shared ones counted at each of their places.
+// Counts triangles, those of shared meshes at each of their places.
 std::size_t count_triangles(const RawScene& raw) {
   std::size_t count = raw.triangles.size();
   for (const auto& range : raw.placed)
@@ -58,8 +58,8 @@ std::uint64_t hash(const std::array<Float3, 3>& corners) {
   return h;
 }
 
-// Drops all but the first of several triangles over the same points, with surveyed ones before blocking ones: a ray
-// meets them at the same distance, and its point counts.
+// Drops all but the first of several triangles over the same points. Surveyed ones come before blocking ones, since a
+// ray meets them at the same distance and its point counts.
 std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions) {
   struct Entry {
     std::uint64_t hash;
@@ -104,7 +104,7 @@ void compact(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
-// Returns the numbers of used vertices, ascending, and renumbers the triangles to them.
+// Renumbers the triangles to the used vertices, and returns these vertices' old numbers, ascending.
 std::vector<std::uint32_t> renumber(std::vector<Triangle>& triangles, std::size_t vertices) {
   std::vector<std::uint32_t> place(vertices, 0);
   for (const Triangle& t : triangles)

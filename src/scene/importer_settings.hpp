@@ -11,8 +11,8 @@ namespace vantage {
 
 bool takes_setting(const importers::Format& format, const std::string& name);
 
-// The settings among `options` that the importer of `format` takes, as words NAME=VALUE. Throws Error invalid_argument
-// for given settings of floor plans if it is none; messages begin with `name`.
+// Returns the settings among `options` that the importer of `format` takes, as words NAME=VALUE. Throws Error
+// invalid_argument if settings of floor plans are given for another format; messages begin with `name`.
 std::vector<std::string> importer_settings(const SceneOptions& options, const importers::Format& format,
                                            const std::string& name);
 

@@ -11,7 +11,7 @@
 
 namespace vantage {
 
-// Meshes of one name are one element to a reader.
+// Meshes of one name, which a reader takes for one element.
 struct MeshesByName {
   std::vector<std::string> names;    // in the order of their first meshes
   std::vector<std::size_t> of_mesh;  // the name of each mesh; 0 for those that are left out

@@ -22,7 +22,7 @@ Box box_of(const FloatCorners& corners) {
   return box;
 }
 
-// Cells over a box, and the roles of what meets each. Boxes that are no farther apart than `reach_m` share a cell.
+// Cells over a box, with the roles that meet each. Boxes no farther apart than `reach_m` share a cell.
 class RoleCells {
  public:
   RoleCells(const Box& box, double reach_m) : box_(box), reach_m_(reach_m), roles_(kSide * kSide * kSide, 0) {}
@@ -44,7 +44,7 @@ class RoleCells {
  private:
   static constexpr std::size_t kSide = 256;
 
-  // Until `visit` returns false.
+  // Visits cells until `visit` returns false.
   template <class Visit>
   void for_cells(const Box& box, const Visit& visit) const {
     const auto cell = [&](double x, double least, double size) {
@@ -64,7 +64,7 @@ class RoleCells {
   std::vector<std::uint8_t> roles_;
 };
 
-// A mesh has one of these roles, but glass has none: it neither counts nor hides.
+// Returns the role of a mesh as a bit; 0 for glass, which neither counts nor hides.
 constexpr std::uint8_t kSurveyed = 1, kBlocks = 2;
 std::uint8_t role_of(const MeshInfo& mesh) {
   return mesh.glass ? 0 : mesh.role == Role::surveyed ? kSurveyed : kBlocks;
@@ -91,7 +91,7 @@ NearPlaced near_placed(const RawScene& raw, const std::vector<Float3>& positions
   double farthest = 0;
   for (const double c : {all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z})
     farthest = std::max(farthest, std::abs(c));
-  const double reach_m = 0x1p-18 * farthest;  // more than find_coplanar() takes for one plane
+  const double reach_m = 0x1p-18 * farthest;  // above the slack of find_coplanar()
 
   const auto mark_own = [&](RoleCells& cells) {
     for (std::size_t m = 0; m < raw.ranges.size(); ++m) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of shared meshes that come near one of the other role, where they stand.
+// Triangles of shared meshes near triangles of the other role, after placement.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace vantage {
 
-// A scene's own triangles, and those of shared meshes that come near one of the other role, in the order that they have
-// if all meshes are stored where they stand. Glass is near nothing.
+// A scene's own triangles, and those of shared meshes near triangles of the other role, in the order that they would
+// have if all meshes were stored in place. Glass is near nothing.
 struct NearPlaced {
   std::vector<Float3> positions;  // local frame
   std::vector<Triangle> triangles;
@@ -19,8 +19,8 @@ struct NearPlaced {
   Box surveyed;                        // all shared meshes that are surveyed, near or not
 };
 
-// `positions`: of the scene's own triangles, local frame. Throws Error out_of_memory if more than `most` triangles of
-// shared meshes are near.
+// Finds them. `positions`: of the scene's own triangles, local frame. Throws Error out_of_memory if more than `most`
+// triangles of shared meshes are near.
 NearPlaced near_placed(const RawScene& raw, const std::vector<Float3>& positions, const Vec3& origin,
                        std::uint64_t most);
 

@@ -23,19 +23,19 @@
 namespace vantage {
 namespace {
 
-constexpr double kFree = 0.65;             // what is clear before and behind a door; a cabinet is less deep
-constexpr double kAside = 0.08;            // how far beside the leaf its wall is looked for
-constexpr double kWallHalf = 0.8;          // and how far before and behind
-constexpr double kThicker = 0.04;          // by which a wall is thicker than a leaf
-constexpr double kNear = 0.02;             // what is as near to a leaf is of it
-constexpr double kGap = 0.03;              // between two leaves of one door
+constexpr double kFree = 0.65;             // free space before and behind a door; a cabinet is less deep
+constexpr double kAside = 0.08;            // how far beside the leaf a wall is searched
+constexpr double kWallHalf = 0.8;          // how far before and behind it
+constexpr double kThicker = 0.04;          // least by which a wall is thicker than a leaf
+constexpr double kNear = 0.02;             // parts this near to a leaf belong to it
+constexpr double kGap = 0.03;              // between leaves of one door
 constexpr double kApart = 0.15;            // between the planes of two leaves that slide
-constexpr double kWidestOpening = 6;       // that several leaves fill
-constexpr std::size_t kMostLeaves = 2000;  // leaves that are looked at
+constexpr double kWidestOpening = 6;       // filled by several leaves
+constexpr std::size_t kMostLeaves = 2000;  // leaves that are examined
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-// The model, or what it would be in another unit and with another axis up: metres, z up. Shared meshes are looked at by
-// glTF's rule alone.
+// The model as it is, or in another unit and with another axis up: metres, z up. Shared meshes are examined only by
+// glTF's rule.
 struct Reading {
   const RawScene& raw;
   double metres = 1;
@@ -53,7 +53,7 @@ struct Reading {
     const Triangle& t = run.shared->triangles[triangle - run.first];
     return {run.at(t[0]), run.at(t[1]), run.at(t[2])};
   }
-  // Numbers of the runs of a mesh: from, to.
+  // Returns the first and the end of the runs of a mesh.
   std::pair<std::size_t, std::size_t> runs_of(std::size_t mesh) const {
     const auto of = std::ranges::equal_range(runs, mesh, {}, &PlacedRun::range);
     return {static_cast<std::size_t>(of.begin() - runs.begin()), static_cast<std::size_t>(of.end() - runs.begin())};
@@ -70,15 +70,15 @@ std::vector<Box> boxes_of(std::span<const PlacedRun> runs) {
   return boxes;
 }
 
-// The leaf that a mesh may be, or a connected part of one, and its triangles, ascending.
+// A leaf: a mesh or a connected part of one, with its triangles, ascending.
 struct Leaf : DoorLeaf {
   std::size_t mesh = 0;
   bool named = false;
   std::vector<std::uint32_t> triangles;
-  // The panel alone, without a frame and its trims: from and to, through the leaf, from its middle. None, if a pane of
-  // another mesh fills the leaf.
+  // The panel without frame and trims: its range through the leaf, from the leaf's middle. Empty if a pane of another
+  // mesh fills the leaf.
   std::optional<std::pair<double, double>> panel;
-  // As thick as the panel.
+  // Returns the leaf with the panel's thickness.
   DoorLeaf alone() const {
     DoorLeaf leaf = *this;
     if (panel) leaf.middle += through * ((panel->first + panel->second) / 2);
@@ -87,7 +87,7 @@ struct Leaf : DoorLeaf {
   }
 };
 
-// The connected parts of a mesh where it stands, and the boxes around them and around all.
+// The connected parts of a mesh in place, with their boxes and the box around all.
 struct MeshParts {
   std::shared_ptr<const Connected> connected;
   std::uint32_t first = 0;  // triangle
@@ -112,7 +112,7 @@ MeshParts parts_from(const Reading& model, std::uint32_t first, std::shared_ptr<
   return parts;
 }
 
-// Of each of the model's meshes: of its own triangles, and of what it shares, of which `wanted` says whether to look.
+// Returns the parts of each mesh that `wanted` marks: of its own triangles, and of the meshes that it shares.
 std::vector<std::vector<MeshParts>> parts_of(const Reading& model, const std::vector<std::uint8_t>& wanted) {
   const RawScene& raw = model.raw;
   std::vector<std::shared_ptr<const Connected>> shared(raw.shared.size());
@@ -136,8 +136,8 @@ std::vector<std::vector<MeshParts>> parts_of(const Reading& model, const std::ve
   return parts;
 }
 
-// The model's own triangles by squares in plan view, so that those beside a leaf are found. Of shared meshes, those
-// that stand there are searched.
+// Indexes the model's own triangles by squares in plan view, to find those beside a leaf. Shared meshes are searched by
+// their placed boxes.
 class PlanIndex {
  public:
   explicit PlanIndex(const Reading& model) : model_(model) {
@@ -163,7 +163,7 @@ class PlanIndex {
     }
   }
 
-  // Triangles that may come within `reach` of a place in plan view, but none of `leaf`, ascending.
+  // Returns triangles that may come within `reach` of a place in plan view, without those of `leaf`, ascending.
   std::vector<std::uint32_t> beside(const Leaf& leaf, double reach) const {
     std::vector<std::uint32_t> near = large_;
     const glm::dvec2 middle(leaf.middle.x, leaf.middle.y);
@@ -189,7 +189,7 @@ class PlanIndex {
  private:
   static constexpr double kCell = 2;  // metres
   static constexpr double kMostCells = 1000;
-  static constexpr std::size_t kMany = 64;  // cells of a triangle that is kept apart
+  static constexpr std::size_t kMany = 64;  // a triangle with more cells is kept apart
 
   std::optional<std::pair<glm::dvec2, glm::dvec2>> box_of(std::uint32_t triangle) const {
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
@@ -228,11 +228,11 @@ class PlanIndex {
   std::vector<std::uint32_t> first_, items_, large_;
 };
 
-// Distances along a line, from its point, to triangles within `far` either way: nearest on each side.
+// Distances along a line to the nearest triangle on each side of its point; infinite beyond `far`.
 struct Sight {
   double before = std::numeric_limits<double>::infinity(), behind = before;
 };
-// Visits how far along a level line, from its point, it meets each of some triangles.
+// Visits the signed distances at which a level line meets each of some triangles.
 template <class Visit>
 void for_hits(const Reading& model, std::span<const std::uint32_t> triangles, const glm::dvec3& from,
               const glm::dvec3& way, const Visit& visit) {
@@ -260,12 +260,12 @@ Sight look(const Reading& model, std::span<const std::uint32_t> triangles, const
   return sight;
 }
 
-// Where a leaf is looked at: beside the middle, where handles and bars are few.
+// Returns the point through which a leaf is probed: beside the middle, where handles and bars are few.
 glm::dvec3 face_of(const DoorLeaf& leaf) {
   return leaf.middle + leaf.along * (0.17 * leaf.width) + glm::dvec3{0, 0, 0.13 * leaf.height};
 }
 
-// Where the line through a leaf meets triangles within it.
+// Returns the range in which the line through a leaf meets triangles within it.
 std::optional<std::pair<double, double>> panel_among(const Reading& model, std::span<const std::uint32_t> triangles,
                                                      const Leaf& leaf) {
   const double half = leaf.thickness / 2 + kNear;
@@ -277,7 +277,7 @@ std::optional<std::pair<double, double>> panel_among(const Reading& model, std::
   return std::pair{from, to};
 }
 
-// The leaf that triangles may be, if they have the size of one.
+// Returns the leaf of these triangles, if they have the size of one.
 std::optional<Leaf> leaf_of(const Reading& model, std::size_t mesh, std::vector<std::uint32_t> triangles) {
   const auto box = leaf_around(triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); });
   if (!box) return std::nullopt;
@@ -287,7 +287,7 @@ std::optional<Leaf> leaf_of(const Reading& model, std::size_t mesh, std::vector<
   return leaf;
 }
 
-// The gate that they may be, or one leaf of several.
+// Returns the gate of these triangles, or one leaf of several.
 std::optional<Leaf> gate_of(const Reading& model, std::size_t mesh, std::vector<std::uint32_t> triangles) {
   const auto box = leaf_around(
       triangles.size(), [&](std::uint32_t k) { return model.corners(triangles[k]); }, kGateSizes);
@@ -304,8 +304,8 @@ bool leads_through(const Reading& model, std::span<const std::uint32_t> others, 
   return clear(sight.before) && clear(sight.behind);
 }
 
-// Surroundings of a panel: a wall that is thicker, in the plane of one of whose faces it may lie, or anything, such
-// as posts and panes.
+// Surroundings of a panel: a thicker wall, whose face the panel may be flush with; or a frame of anything, such as
+// posts and panes.
 struct Around {
   bool wall_beside = false, wall_above = false, frame = false;
 };
@@ -320,7 +320,7 @@ Around around(const Reading& model, std::span<const std::uint32_t> others, const
   const Sight left = sight(panel.middle - aside), right = sight(panel.middle + aside), above = sight(panel.middle + up);
   return {wall(left) && wall(right), wall(above), any(left) && any(right) && any(above)};
 }
-// True if side walls run past a panel on both sides, as those of a passage do past a shutter.
+// Returns true if side walls run past a panel on both sides, as walls of a passage run past a shutter.
 bool in_a_passage(const Reading& model, std::span<const std::uint32_t> others, const DoorLeaf& panel) {
   const double half = panel.width / 2, off = panel.thickness / 2 + 0.25;
   const auto ends = [&](double distance) { return distance >= half - kAside && distance <= half + kAside; };
@@ -334,7 +334,7 @@ bool in_a_wall(const Reading& model, std::span<const std::uint32_t> others, cons
   return found.wall_beside && found.wall_above;
 }
 
-// True for two leaves side by side in one opening.
+// Returns true for two leaves side by side in one opening.
 bool side_by_side(const DoorLeaf& a, const DoorLeaf& b) {
   const glm::dvec3 between = b.middle - a.middle;
   const double gap = std::abs(dot(between, a.along)) - (a.width + b.width) / 2;
@@ -342,7 +342,7 @@ bool side_by_side(const DoorLeaf& a, const DoorLeaf& b) {
          std::abs(gap) <= kGap && std::abs(between.z) <= kGap && std::abs(a.height - b.height) <= kGap;
 }
 
-// The box that several leaves make up.
+// Returns the box around several leaves.
 DoorLeaf together(std::span<const Leaf> leaves) {
   DoorLeaf all = leaves.front().alone();
   double from = std::numeric_limits<double>::infinity(), to = -from, before = from, behind = -from;
@@ -358,7 +358,7 @@ DoorLeaf together(std::span<const Leaf> leaves) {
   return all;
 }
 
-// Doors of several leaves, and gates, which nothing but the opening around all leaves tells.
+// Finds doors of several leaves, and gates, which only the opening around all leaves shows.
 std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, const std::vector<Leaf>& leaves) {
   std::vector<Leaf> gates;
   std::vector<std::uint8_t> done(leaves.size(), 0);
@@ -385,7 +385,7 @@ std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, cons
     const bool named = std::ranges::all_of(door, &Leaf::named);
     const bool leaf_named =
         std::ranges::all_of(door, [&](const Leaf& leaf) { return names_a_leaf(model.raw.meshes[leaf.mesh].name); });
-    // Panels of a façade between its columns are wider.
+    // Wider panels are those of a façade between columns.
     constexpr std::size_t kMostLeavesOfOne = 4;
     constexpr double kWidestLeaf = 1.6, kWidestGate = 4.2;
     const bool several = door.size() > 1;
@@ -398,7 +398,7 @@ std::vector<Leaf> gates_among(const Reading& model, const PlanIndex& index, cons
   return gates;
 }
 
-// Of a mesh that has the height of a leaf; else none.
+// Returns the triangles of a mesh that has the height of a leaf; else none.
 std::vector<std::uint32_t> triangles_of(const Reading& model, std::size_t mesh) {
   const MeshRange& range = model.raw.ranges[mesh];
   Box box;
@@ -414,7 +414,7 @@ std::vector<std::uint32_t> triangles_of(const Reading& model, std::size_t mesh) 
   return all;
 }
 
-// Whether a part lies in the box of a leaf, as handles do, which stand out.
+// Returns true if a part lies in the box of a leaf, enlarged for handles, which stand out.
 bool lies_in(const Box& part, const Leaf& leaf) {
   constexpr double kHandle = 0.12;
   const glm::dvec3 size{leaf.width / 2 + kNear, leaf.thickness / 2 + kHandle, leaf.height / 2 + kNear};
@@ -428,21 +428,21 @@ bool lies_in(const Box& part, const Leaf& leaf) {
   return true;
 }
 
-// Leaves among the meshes, and with `parts` among the connected parts of larger ones, with what lies in these; at most
-// so many that look like one are looked at.
+// Finds leaves among the meshes, and with `parts` also among the connected parts of larger ones, with smaller parts
+// inside them. Examines at most `most` candidates.
 std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t>& candidate, std::size_t most,
                             bool parts) {
   std::vector<Leaf> leaves;
   std::vector<Leaf> of_several;
   std::optional<PlanIndex> index;
   std::size_t looked = 0;
-  // Free on both sides, so that it may be one of several.
+  // Collects a gate that is free on both sides, so that it may be one leaf of several.
   const auto look_at_gate = [&](std::optional<Leaf> gate) {
     if (!gate || of_several.size() >= most) return;
     if (!index) index.emplace(model);
     const auto others = index->beside(*gate, gate->width / 2 + gate->thickness / 2 + kFree + kAside);
     if (!gate->panel) gate->panel = panel_among(model, others, *gate);
-    // A line passes between the bars of a grille.
+    // The line may pass between the bars of a grille.
     if ((gate->panel || gate->named) && leads_through(model, others, *gate)) of_several.push_back(std::move(*gate));
   };
   const auto is_door = [&](Leaf& leaf) {
@@ -496,7 +496,7 @@ std::vector<Leaf> leaves_of(const Reading& model, const std::vector<std::uint8_t
           leaf.triangles.insert(leaf.triangles.end(), own.begin(), own.end());
         }
       }
-  // A pane in its frame is no door of its own.
+  // A pane in a frame is no separate door.
   std::vector<Leaf> doors;
   for (const Leaf& leaf : leaves)
     if (std::ranges::none_of(leaves, [&](const Leaf& other) {
@@ -538,7 +538,7 @@ std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_
     if (names.empty() || names.back() != name || last == leaf.mesh) names.push_back(name);
     last = leaf.mesh;
   }
-  // In the order in which they are stored: a run that loses triangles at its place is stored there.
+  // Goes in the order of storage: a run that loses triangles at its place is stored there.
   std::vector<std::uint8_t> kept;
   for (std::size_t m = 0; m < raw.meshes.size(); ++m) {
     const auto first = keep.begin() + raw.ranges[m].first_triangle;
@@ -546,7 +546,7 @@ std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_
     for (auto [k, end] = model.runs_of(m); k < end; ++k) kept.insert(kept.end(), keep_of[k].begin(), keep_of[k].end());
   }
   const bool left = std::ranges::count(lose, 0) > 0 || std::ranges::count(kept, 1) > 0;
-  if (names.empty() || !left) return {};  // a model of doors alone
+  if (names.empty() || !left) return {};  // a model that consists only of doors
   store_placed(raw, lose);
   keep_triangles(raw, kept);
   return names;

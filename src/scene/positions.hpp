@@ -15,20 +15,20 @@ inline Float3 to_float3(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// Corners of a triangle of the scene, local frame.
+// Returns the corners of a triangle of the scene, local frame.
 inline std::array<glm::dvec3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
   const auto p = scene.corners(triangle);
   return {to_glm(p[0]), to_glm(p[1]), to_glm(p[2])};
 }
 
-// The box around two others, of which either may be empty.
+// Returns the box around two others, of which either may be empty.
 inline Box united(Box a, const Box& b) {
   if (!b.empty()) a.extend(b.min), a.extend(b.max);
   return a;
 }
 
-// The survey frame's (x, y, z) of a vector that was read by glTF's rule (Y up), if another axis of the file is up. X up
-// is COLLADA's: −y is to the right, z towards the viewer.
+// Returns the survey frame's (x, y, z) of a vector that was read by glTF's rule (Y up), if another axis of the file is
+// up. X up is as in COLLADA: −y is to the right, z towards the viewer.
 inline glm::dvec3 with_up(UpAxis up, const glm::dvec3& v) {
   switch (up) {
     case UpAxis::x: return {-v.z, v.y, v.x};

@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-// A mesh that several nodes share, in its own frame. Every position belongs to a triangle.
+// A mesh that several nodes share, in its own frame. Every position is used by a triangle.
 struct SharedMesh {
   std::vector<Float3> positions;
   std::vector<Float3> normals;         // empty, or one per position
@@ -35,8 +35,8 @@ struct RawScene {
   std::vector<Triangle> triangles;
   std::vector<MeshRange> ranges;
   std::vector<MeshInfo> meshes;
-  // Meshes that are stored once, beside the arrays above, and where they stand: what each range has of them besides its
-  // own triangles. Empty if nothing is shared.
+  // Meshes that are stored once, beside the arrays above, and their places: for each range, what it has besides its own
+  // triangles. Empty if nothing is shared.
   std::vector<SharedMesh> shared;
   std::vector<std::vector<PlacedShared>> placed;
   std::vector<Material> materials;
@@ -47,7 +47,7 @@ struct RawScene {
   std::vector<Room> rooms;
   // Coarsest spacing, in metres, of the float32 values of the file's positions; 0 if they were exact.
   double coarsest_input_spacing_m = 0;
-  // Memory that cleaning may take beyond what these arrays make it take.
+  // Memory that cleaning may use beyond what these arrays require.
   std::uint64_t spare_bytes = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
@@ -57,11 +57,11 @@ struct RawScene {
 // Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), subtracts
 // the local origin in double, rounds to float, cuts blocking triangles back from surveyed ones in their plane, and
 // removes unused vertices. Notes report what was dropped. Throws Error, prefixed with `source`: malformed_file if no
-// surveyed triangle is left; out_of_memory if more blocking triangles lie in one plane with surveyed ones than can be
+// surveyed triangle is left; out_of_memory if too many blocking triangles lie in one plane with surveyed ones to be
 // cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
-// Keeps the triangles whose `keep` is not 0, one for each, and removes meshes that have none left.
+// Keeps the triangles whose entry in `keep` is not 0, and removes meshes that have none left.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep);
 
 // Removes meshes without triangles, shared ones counted; sets the other meshes' counts from their ranges.

@@ -31,21 +31,21 @@ constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLo
 constexpr double kLeastRise = 0.12, kMostRise = 0.215, kLeastGoing = 0.2, kMostGoing = 0.45;
 constexpr int kFewestRises = 3;
 
-// What the features of a hypothesis count, in their order. Fitted, as a multinomial logit, to sites whose truth is
-// known
-// (`hypotheses --features`), and rounded.
+// Weights of the features of a hypothesis, in their order. They were fitted, as a
+// multinomial logit, to sites of known truth (`hypotheses --features`), and
+// rounded.
 constexpr std::array<double, kFeatures> kWeights{4, 3.5, 5, 3, 3.5, 5, 2, 4, 0.7, 0.5};
-// By how much the best must lead: glTF's rule, and any other.
+// Least lead of the best hypothesis: with glTF's rule, and with any other.
 constexpr double kRuleLead = 0.3, kLead = 1.3;
 constexpr std::size_t kMostChoices = 3;
 
 constexpr double kNoSite_m = 1, kNoSiteEither_m = 10'000;
-// No ground lies higher or deeper; national coordinates are larger, both of them.
+// Limits: ground lies within kNoHeight_m; national coordinates exceed kNational_m on both axes.
 constexpr double kNoHeight_m = 10'000, kNational_m = 50'000;
 
 double extent_of(const Hypothesis& h) { return std::max({h.size.x, h.size.y, h.size.z}); }
 
-// 1 in a range, falling to 0 at its outer limits, by the logarithm.
+// Returns 1 in a range, falling to 0 at its outer limits, by the logarithm.
 double within(double x, double none_below, double low, double high, double none_above) {
   if (!(x > none_below) || !(x < none_above)) return 0;
   if (x < low) return std::log(x / none_below) / std::log(low / none_below);
@@ -53,7 +53,7 @@ double within(double x, double none_below, double low, double high, double none_
   return 1;
 }
 
-// Where one gets to in a unit.
+// Places that a person can reach, if lengths are in this unit.
 class Walk {
  public:
   Walk(const Columns& columns, double metres)
@@ -114,7 +114,7 @@ class Walk {
         h.flights += begins_flight(at, axis) ? cell / kDoorWidth : 0;
       }
     });
-    // Doors are runs of places under a lintel, as wide as doors.
+    // Counts doors: runs of places under a lintel, as wide as doors.
     for_places([&](const Place& at) {
       for (int axis = 0; axis < 2; ++axis) {
         const auto& under = lintel[static_cast<std::size_t>(axis)];
@@ -144,7 +144,7 @@ class Walk {
     return column + step;
   }
 
-  // Whether a person takes the step between levels of a column and the next.
+  // Returns true if a person can step between levels of a column and the next.
   bool linked(std::uint32_t column, int axis, std::uint32_t a, std::uint32_t b) const {
     const Columns::Level &p = c_.levels()[a], &q = c_.levels()[b];
     if (p.free < tall_ || q.free < tall_ || std::abs(p.z - q.z) > climb_) return false;
@@ -164,7 +164,7 @@ class Walk {
   float free(const Place& at) const { return c_.levels()[at.level].free; }
   float z(const Place& at) const { return c_.levels()[at.level].z; }
 
-  // Whether one comes from more headroom to that of a door here, and to more again behind a wall's thickness.
+  // Returns true if headroom drops to that of a door here, and rises again behind a wall's thickness.
   bool begins_door(const Place& here, int axis) const {
     const double high = free(here) * metres_;
     if (high < kLowestDoor || high > kHighestDoor) return false;
@@ -180,7 +180,7 @@ class Walk {
     return false;
   }
 
-  // Whether a stair begins here: rises of one height, each behind a tread.
+  // Returns true if a stair begins here: equal rises, each behind a tread.
   bool begins_flight(const Place& from, int axis) const {
     const double cell = c_.cell() * metres_;
     if (cell > kLeastGoing) return false;
@@ -212,8 +212,8 @@ class Walk {
   DisjointSets parts_;
 };
 
-// The unit that a model's drawing grid is of: most faces across an axis lie at multiples of 8 where it is drawn in
-// inches, of 10 where in parts of a metre.
+// Unit of a model's drawing grid. Most faces across an axis lie at multiples of 8 if drawn in inches, of 10 if in parts
+// of a metre.
 struct DrawingGrid {
   bool inches = false, parts_of_a_metre = false;
 };
@@ -271,7 +271,7 @@ std::string meaning(const Hypothesis& h) {
          (h.flights > kSome ? ", stairs" : "") + ")";
 }
 
-// A closed leaf hides its opening. Triangles of leaves in any of the units that are possible.
+// Returns triangles of leaves in any possible unit, since a closed leaf hides its opening.
 std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional<Unit>& unit, UpAxis up) {
   std::array<std::vector<std::size_t>, kUnits.size()> leaves;
   parallel::for_all(std::size_t{0}, kUnits.size(), [&](std::size_t i) {
@@ -286,7 +286,7 @@ std::vector<std::uint8_t> leaves_in_any(const RawScene& raw, const std::optional
   return out;
 }
 
-// The place of a model by a reading: one of its vertices, in metres.
+// Returns the place of a model in a unit and axis: one of its vertices, in metres.
 glm::dvec3 place_by(const RawScene& raw, Unit unit, UpAxis up) {
   const auto some = std::ranges::find_if(raw.positions, [](const glm::dvec3& p) { return sound(p); });
   return some == raw.positions.end() ? glm::dvec3(0) : with_up(up, *some) * metres_in(unit);
@@ -321,7 +321,7 @@ std::array<double, kFeatures> features_of(const Hypothesis& h) {
 }
 
 namespace {
-// True if the faces of a model, by some hundreds of its meshes, are wound as they came.
+// Returns true if the winding of a model's faces, by some hundreds of its meshes, tells nothing.
 bool wound_either_way(const RawScene& raw) {
   constexpr std::size_t kLookedAt = 500;
   Winding winding;
@@ -358,7 +358,7 @@ std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optiona
       Walk(columns, metres).measure(all[i]);
     });
   }
-  // Pitched roofs stand upright along their ridge: X counts beside the other two, and does not count against them.
+  // Pitched roofs are vertical along their ridge, so X is compared with the other two, which ignore it.
   double upright = 0.01, with_x = 0.01;  // less than this says nothing
   for (const UpAxis axis : kAxes)
     if (const auto h = std::ranges::find(all, axis, &Hypothesis::up); h != all.end())
@@ -375,7 +375,7 @@ std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optiona
 namespace {
 constexpr double kSize = 0.3;  // least share of a plausible extent
 
-// Where neither a door nor a stair nor a drawing grid tells, headroom alone does, and halls have any.
+// Returns true if only headroom decides, without doors, stairs or a drawing grid; halls have any headroom.
 bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
   constexpr double kPlausible = 0.2;
   const bool told = best.doors >= 1 || best.flights >= 1 || best.grid > 0;
@@ -383,15 +383,15 @@ bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
          other.rooms >= kPlausible * best.rooms;
 }
 
-// Whether round columns and turned walls stand along the other axis, and no door is along this one.
+// Returns true if round columns and turned walls stand along the other axis, and no door is along this one.
 bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
   constexpr double kMostUpright = 0.5;
   return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.up != UpAxis::x &&
          other.upright >= kMostUpright;
 }
 
-// Nobody draws on another unit's grid: doors and stairs may be a coincidence of sizes then. A site in metres has no
-// such grid.
+// Returns true if the drawing is on another unit's grid: doors and stairs may then fit by coincidence. A site in metres
+// has no such grid.
 bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
   return best.unit != Unit::metre && best.grid == 0 && other.grid > 0 && other.up == best.up &&
          features_of(other)[0] >= kSize;
@@ -399,15 +399,15 @@ bool drawn_otherwise(const Hypothesis& best, const Hypothesis& other) {
 
 bool has_ways(const Hypothesis& h) { return h.doors >= 1 || h.flights >= 1; }
 
-// Among rooms of a person's height with doors, the same drawing read larger has rooms that nobody builds.
+// Returns true if the other unit makes rooms that nobody builds out of rooms of a person's height with doors.
 bool is_for_giants(const Hypothesis& best, const Hypothesis& other) {
   constexpr double kLowestRoom_m = 2, kHighestRoom_m = 6, kNoRoom_m = 20;
   return other.up == best.up && best.doors >= 1 && best.headroom_m >= kLowestRoom_m &&
          best.headroom_m <= kHighestRoom_m && other.headroom_m > kNoRoom_m;
 }
 
-// A tower that lies on its side has floors, too, and few models have X up: without a door or a stair along it, X gives
-// way to another axis that has one, and is never taken unasked.
+// Returns true for X up without a door or a stair. A tower on its side has floors, too, and few models have X up, so X
+// yields to an axis with doors or stairs, and is never taken without asking.
 bool is_doubtful(const Hypothesis& h, const std::optional<UpAxis>& up) {
   return !up && h.up == UpAxis::x && !has_ways(h);
 }
@@ -433,11 +433,11 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
                                     : "the setting unit and the setting up";
   const bool national = best.unit == Unit::metre && is_national(place_by(raw, best.unit, best.up));
   const auto rivals = [&](const Hypothesis& other) {
-    // They are in metres nearly everywhere: only doors and stairs tell otherwise.
+    // National coordinates are in metres nearly everywhere; only doors and stairs can show otherwise.
     if (national && other.unit != best.unit && (has_ways(best) || !has_ways(other))) return false;
     if (is_doubtful(best, up) && other.up != UpAxis::x) return true;
     if (is_for_giants(best, other)) return false;
-    // A rule that a file may break says less than doors and stairs that only the other reading has.
+    // A rule that files may break weighs less than doors and stairs that only the other hypothesis has.
     const bool by_rule = rule && keeps_rule && (has_ways(best) || !has_ways(other));
     return best.score - other.score < (by_rule ? kRuleLead : kLead) ||
            (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other) || drawn_otherwise(best, other)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides a file's unit and up axis by what a person could do in the model: how much ground one reaches, under what
-// headroom, through what openings and over what steps. glTF says metres and Y up; many exporters do not keep to that.
+// Decides a file's unit and up axis by what a person could do in the model: the ground in reach, the headroom, the
+// openings, the steps. glTF prescribes metres and Y up; many exporters ignore that.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace vantage {
 
-// What the model would be in one unit and with one axis up. Lengths in metres.
+// The model in one unit and with one axis up. Lengths in metres.
 struct Hypothesis {
   Unit unit = Unit::metre;
   UpAxis up = UpAxis::y;
@@ -27,7 +27,7 @@ struct Hypothesis {
   double doors = 0;         // openings as wide and high as doors, on the way
   double flights = 0;       // stairs on the way, in doors' widths
   double upright = 0;       // Columns::upright(), as a share of that with either axis up
-  double grid = 0;          // 1 if the unit is that of the model's drawing grid
+  double grid = 0;          // 1 if the model's drawing grid is in this unit
   bool inside_out = false;  // Columns::inside_out()
   double score = 0;
 };
@@ -35,24 +35,24 @@ struct Hypothesis {
 constexpr std::size_t kFeatures = 10;
 std::array<double, kFeatures> features_of(const Hypothesis& h);
 
-// Best first. Values that are given are not doubted. `raw`: read by glTF's rule, in the survey frame.
+// Returns hypotheses, best first. Given values are not doubted. `raw`: read by glTF's rule, in the survey frame.
 std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optional<Unit>& unit,
                                          const std::optional<UpAxis>& up);
 
 struct Recognised {
   Unit unit = Unit::metre;
   UpAxis up = UpAxis::y;
-  bool inside_out = false;                // whether its faces are to be turned
+  bool inside_out = false;                // true if its faces must be turned
   std::string note = {};                  // one line; empty if glTF's rule holds
   std::string question = {};              // not empty: no hypothesis wins clearly
-  std::vector<std::string> choices = {};  // then, what the best ones would mean
+  std::vector<std::string> choices = {};  // if not empty: the best hypotheses
 };
 
-// `keeps_rule`: the file's format says metres and Y up, as glTF does; then that needs less of a lead.
+// `keeps_rule`: the file's format prescribes metres and Y up, as glTF does; that reading then needs a smaller lead.
 Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up,
                      bool keeps_rule = true);
 
-// Makes every face show its other side.
+// Flips every face.
 void turn_faces(RawScene& raw);
 
 // Converts a scene read as metres with Y up to the survey frame, by its true unit and axis.

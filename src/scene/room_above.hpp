@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// The room that a place on the ground is in: a floor's own height may be in the room below.
+// Returns the room above a place on the ground, whose own height may be in the room below.
 inline std::optional<std::size_t> room_above(std::span<const Room> rooms, const Vec3& ground) {
   constexpr double kKnee_m = 0.5;
   return room_at(rooms, ground + Vec3{0, 0, kKnee_m});

@@ -15,13 +15,13 @@ namespace vantage {
 namespace {
 
 constexpr double kCell_m = 0.1;
-constexpr double kMostFloorCells = 4e6, kMostWork = 2e8;  // of one level; coarser cells keep to them
+constexpr double kMostFloorCells = 4e6, kMostWork = 2e8;  // of one level; cells are coarser if needed
 constexpr double kLevel_m = 0.02;                         // rooms whose bottoms differ by less share a level
-constexpr double kNear_m = 0.35;                          // between a floor and the bottom of its room: finishes
+constexpr double kNear_m = 0.35;                          // between a floor and the bottom of its room, for finishes
 constexpr double kWall_m = 0.3;                           // thickest wall with a doorway between two rooms
 constexpr double kStep_m = 0.05, kHeadroom_m = 2.2;       // over a stair
 constexpr double kLeastFloor = 0.5;                       // share of a room
-constexpr double kLargest_m = 1e4;                        // what is larger is no room
+constexpr double kLargest_m = 1e4;                        // larger ones are no rooms
 
 bool is_sound(const Box& box) {
   const Vec3 size = box.size();
@@ -31,7 +31,7 @@ bool is_sound(const Box& box) {
 
 bool is_stair(const std::string& name) { return name.starts_with("IfcStair") || name.starts_with("IfcRamp"); }
 
-// Rooms with one bottom, in cells seen from above.
+// Rooms with the same bottom height, in cells seen from above.
 class Level {
  public:
   Level(const RawScene& raw, std::vector<std::size_t> rooms) : raw_(raw), rooms_(std::move(rooms)) {
@@ -53,7 +53,7 @@ class Level {
     rows_ = static_cast<std::size_t>(std::ceil(size.y / cell_));
   }
 
-  // Rooms without a floor.
+  // Returns the rooms without a floor.
   std::vector<std::size_t> find_floorless() const {
     const std::vector<char> surface =
         cells_with(kWalkableUp, z_ - kNear_m, z_ + kNear_m, [](const MeshInfo&) { return true; });
@@ -71,7 +71,7 @@ class Level {
     return floorless;
   }
 
-  // Rectangles (x, y, x, y) that make up the floors of these rooms.
+  // Returns rectangles (x, y, x, y) that make up the floors of these rooms.
   std::vector<std::array<double, 4>> floors(const std::vector<std::size_t>& floorless) const {
     const std::vector<char> stair =
         cells_with(0, z_ - kHeadroom_m, z_ - kStep_m, [](const MeshInfo& mesh) { return is_stair(mesh.name); });
@@ -96,7 +96,7 @@ class Level {
     return {x_of(column) + cell_ / 2, y_of(row) + cell_ / 2};
   }
 
-  // The first and last cells, plus one, whose middles may be from low to high.
+  // Returns the first cell whose middle may lie between low and high, and the end.
   std::array<std::size_t, 2> range(double low, double high, double corner, std::size_t count) const {
     const auto most = static_cast<double>(count);
     return {static_cast<std::size_t>(std::clamp(std::ceil((low - corner) / cell_ - 0.5), 0.0, most)),
@@ -116,7 +116,7 @@ class Level {
       }
   }
 
-  // Cells over whose middles a triangle of these meshes, as level as that, is from low to high.
+  // Marks cells over whose middles a triangle of these meshes, at least as level as that, lies between low and high.
   template <class Wanted>
   std::vector<char> cells_with(double least_up, double low, double high, Wanted&& wanted) const {
     std::vector<char> cells(columns_ * rows_, 0);
@@ -143,7 +143,7 @@ class Level {
     return cells;
   }
 
-  // Equal runs of cells in consecutive rows are one rectangle.
+  // Merges equal runs of cells in consecutive rows into rectangles.
   std::vector<std::array<double, 4>> merge(const std::vector<char>& floor) const {
     std::vector<std::array<double, 4>> rectangles;
     std::vector<Run> open, next;
@@ -181,7 +181,7 @@ class Level {
   std::size_t columns_ = 0, rows_ = 0;
 };
 
-// The mesh comes before those of glass, which are the last.
+// Inserts the mesh before those of glass, which come last.
 void append(RawScene& raw, const std::vector<glm::dvec3>& corners) {
   const auto first = static_cast<std::uint32_t>(raw.positions.size());
   raw.positions.insert(raw.positions.end(), corners.begin(), corners.end());

@@ -31,7 +31,7 @@ double to_segment(double x, double y, const std::array<double, 2>& a, const std:
 
 double floor_area(const Room& room) {
   if (room.outline.empty()) return room.box.size().x * room.box.size().y;
-  // Loops within others are holes: their corners tell.
+  // Subtracts loops within others as holes, by their corners.
   double area = 0;
   for (const Loop& loop : room.outline) {
     double twice = 0;

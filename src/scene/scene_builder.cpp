@@ -154,7 +154,7 @@ struct SceneBuilder::Impl {
     return data;
   }
 
-  // Null if everything must be built.
+  // Returns null if everything must be built.
   std::shared_ptr<const SceneData> from_changes(const std::vector<Role>& roles) const {
     if (!last || !whole || roles != last_roles || changed.size() > kMostSpliced) return nullptr;
     Box bounds;

@@ -23,7 +23,7 @@ std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> t
 
 namespace {
 
-// In line, since every pass over a scene that shares meshes places each corner.
+// Inlined, since every pass over a scene that shares meshes places each corner.
 [[gnu::always_inline]] inline Float3 position_at(const MeshPlace& place, const Float3& stored, const Vec3& origin) {
   const Float3 p = narrow(place(stored) - origin);
   return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};

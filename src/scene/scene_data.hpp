@@ -29,7 +29,7 @@ inline Float3 narrow(const Vec3& p) {
 }
 using Triangle = std::array<std::uint32_t, 3>;  // indices into SceneData::positions
 inline Triangle turned(const Triangle& t, bool mirrored) { return mirrored ? Triangle{t[0], t[2], t[1]} : t; }
-// The least and the largest index of triangles' corners.
+// Returns the least and the largest index of the triangles' corners.
 std::pair<std::uint32_t, std::uint32_t> corner_range(std::span<const Triangle> triangles);
 
 // Base colour only, for the colours of points.
@@ -46,7 +46,7 @@ struct MeshRange {  // triangles by their numbers in the scene
   std::uint32_t material = 0;  // index into SceneData::materials
 };
 
-// Where a node puts a mesh that several nodes share.
+// Place at which a node puts a mesh that several nodes share.
 struct MeshPlace {
   Vec3 x, y, z, origin;               // columns of survey_from_mesh, affine
   Vec3 normal_x, normal_y, normal_z;  // of the map of normals, up to a positive length
@@ -55,10 +55,10 @@ struct MeshPlace {
   friend bool operator==(const MeshPlace&, const MeshPlace&) = default;
 };
 
-// Position of a shared mesh where it stands, in the local frame around `origin`. It is computed in double and rounded
-// once; −0 becomes 0, so that equal positions have equal bits.
+// Returns the position of a shared mesh's corner in place, in the local frame around `origin`. It is computed in double
+// and rounded once; −0 becomes 0, so that equal positions have equal bits.
 Float3 placed_position(const MeshPlace& place, const Float3& stored, const Vec3& origin);
-// Normal of a shared mesh where it stands; unit, or (0, 0, 0) if the file has none.
+// Returns the normal of a shared mesh in place; unit, or (0, 0, 0) if the file has none.
 Float3 placed_normal(const MeshPlace& place, const Float3& normal);
 
 // A run of the scene's triangles that are stored elsewhere: number t is stored as t − first_triangle + first_stored.
@@ -72,7 +72,7 @@ struct MeshInstance {
 struct SceneData {
   Vec3 origin;  // survey frame; local = survey − origin, subtracted in double before rounding to float
   // Surveyed and blocking meshes. Triangle number = the scene's primitive id. Read positions and normals by corners()
-  // and corner_normals(): what several nodes share is stored once, in the mesh's own frame, behind everything else.
+  // and corner_normals(): meshes that nodes share are stored once, in their own frame, behind everything else.
   std::vector<Float3> positions;        // local frame
   std::vector<Float3> normals;          // empty, or one per position; (0,0,0) if the file has none
   std::vector<Float2> texcoords;        // empty, or one per position
@@ -103,28 +103,28 @@ struct SceneData {
     return shares() ? instances.back().first_triangle + instances.back().triangle_count
                     : static_cast<std::uint32_t>(triangles.size());
   }
-  std::uint32_t opaque_count() const;                  // triangles that stop rays: all but the last, of glass
+  std::uint32_t opaque_count() const;                  // triangles that stop rays: all but the last ones, of glass
   std::span<const Triangle> opaque_triangles() const;  // REQUIRES: !shares()
   bool has_glass() const { return opaque_count() < triangle_count(); }
 
-  // Local frame. A shared mesh is placed in double and rounded once, as any other when it is loaded, so that a corner
-  // has the same bits whether its mesh is shared or not.
+  // Returns corners in the local frame. A shared mesh is placed in double and rounded once, as any other on loading, so
+  // that a corner has the same bits whether its mesh is shared or not.
   std::array<Float3, 3> corners(std::uint32_t triangle) const {
     if (shares()) [[unlikely]]
       return placed_corners(triangle);
     const Triangle& v = triangles[triangle];
     return {positions[v[0]], positions[v[1]], positions[v[2]]};
   }
-  // Local frame; unit, or (0, 0, 0) if the file has none. REQUIRES: !normals.empty().
+  // Returns normals in the local frame; unit, or (0, 0, 0) if the file has none. REQUIRES: !normals.empty().
   std::array<Float3, 3> corner_normals(std::uint32_t triangle) const;
-  // Indices of its corners' texture coordinates and colours.
+  // Returns the indices of its corners' texture coordinates and colours.
   Triangle attributes(std::uint32_t triangle) const;
   const MeshInstance& instance_of(std::uint32_t triangle) const;  // REQUIRES: shares()
-  // Triangles of a run as they are stored.
+  // Returns the triangles of a run as they are stored.
   std::span<const Triangle> stored(const MeshInstance& run) const {
     return std::span(triangles).subspan(run.first_stored, run.triangle_count);
   }
-  // Corner of a stored triangle, local frame.
+  // Returns a corner of a stored triangle, local frame.
   Float3 placed(const MeshPlace& place, const Float3& stored) const { return placed_position(place, stored, origin); }
 
   // REQUIRES: consecutive from triangle 0 on.
@@ -132,10 +132,10 @@ struct SceneData {
   std::array<Float3, 3> placed_corners(std::uint32_t triangle) const;  // of corners(). REQUIRES: shares()
 };
 
-// Copies the scene, with every mesh stored where it stands, for those who need flat arrays. Throws Error out_of_memory
-// if that does not fit.
+// Copies the scene with every mesh stored in place, for callers that need flat arrays. Throws Error out_of_memory if
+// that does not fit.
 std::shared_ptr<SceneData> flat_copy(const SceneData& scene);
-// The same, but shares `scene` if it is flat already.
+// Does the same, but shares `scene` if it is flat already.
 std::shared_ptr<const SceneData> flattened(std::shared_ptr<const SceneData> scene);
 
 }  // namespace vantage

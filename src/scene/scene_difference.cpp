@@ -12,8 +12,8 @@
 namespace vantage {
 namespace {
 
-// Whether two meshes have the same role and, triangle by triangle, the same corners. Their indices may differ by a
-// constant alone, as they do where meshes before them changed; a mesh that is stored otherwise counts as another.
+// Returns true if two meshes have the same role and, triangle by triangle, the same corners. Indices may differ by a
+// constant, as after a change of meshes before them; a mesh that is stored in another way counts as another.
 bool alike(const SceneData& before, std::size_t b, const SceneData& after, std::size_t a) {
   const MeshInfo &was = before.meshes[b], &is = after.meshes[a];
   const MeshRange &from = before.ranges[b], &to = after.ranges[a];
@@ -45,7 +45,7 @@ bool alike(const SceneData& before, std::size_t b, const SceneData& after, std::
                                     (std::size_t{all.high} - all.low + 1) * sizeof(Float3)) == 0;
 }
 
-// Key by which meshes that may be alike are found.
+// Returns the key by which meshes that may be alike are found.
 std::string key_of(const SceneData& scene, std::size_t mesh) {
   return std::to_string(scene.ranges[mesh].triangle_count) + ' ' + scene.meshes[mesh].name;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two scenes have in common, mesh by mesh.
+// Meshes that two scenes have in common.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +19,23 @@ struct KeptRun {
 
 struct SceneDifference {
   static constexpr std::uint32_t kNew = 0xFFFFFFFFu;
-  // Of each mesh of the later scene: the one of the earlier scene with the same role, corners and normals, or kNew.
-  // Ascending but for kNew.
+  // For each mesh of the later scene: the mesh of the earlier one with the same role, corners and normals, or kNew.
+  // Ascending, apart from kNew.
   std::vector<std::uint32_t> mesh_before;
   std::vector<std::uint32_t> gone;  // meshes of the earlier scene that the later one lacks, ascending
-  // Triangles of both, by their numbers in the earlier scene, ascending; `other`: in the later one, ascending, too.
+  // Triangles of both, by their numbers in the earlier scene, ascending; `other`: in the later one, also ascending.
   std::vector<KeptRun> kept;
-  bool shifted() const;  // whether a triangle of both has different numbers
+  bool shifted() const;  // true if a triangle of both has different numbers
 };
 
-// Empty if nothing of an earlier scene could serve the later one: their local origins differ, or nodes share meshes.
-// Meshes of both are found if they have the same order. Parallel.
+// Compares two scenes. Empty if their local origins differ or nodes share meshes, as no part of the earlier one serves
+// the later one then. Finds meshes that both have in the same order. Parallel.
 std::optional<SceneDifference> difference(const SceneData& before, const SceneData& after);
 
-// Triangles of the later scene below `end` that no run has; numbers alone.
+// Returns the triangles of the later scene below `end` that are in no run; by number only.
 std::vector<KeptRun> not_kept(std::span<const KeptRun> kept, std::uint32_t end);
 
-// Follows `first` and then `then`: runs by the numbers before both.
+// Joins `first` and then `then`: runs by the numbers before both.
 std::vector<KeptRun> joined(std::span<const KeptRun> first, std::span<const KeptRun> then);
 
 }  // namespace vantage

@@ -40,7 +40,7 @@ SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::uint32_t fir
 SceneTree::SceneTree(RTCDevice device, const SceneData& scene, std::span<const KeptRun> runs, const Filters& filters,
                      const std::string& what)
     : scene_(scene), first_(0), tree_(embree::new_scene(device)) {
-  // One geometry with the corners of these triangles alone.
+  // Makes one geometry with only the corners of these triangles.
   std::uint32_t low = 0xFFFFFFFFu, high = 0, count = 0;
   for (const KeptRun& run : runs) {
     const auto [first, last] = corner_range(std::span(scene.triangles).subspan(run.first, run.count));
@@ -89,7 +89,7 @@ std::uint32_t SceneTree::number_of_own(std::uint32_t primitive) const {
   return stored - run.first_stored + run.first_triangle;
 }
 
-// Those stored from `first` on.
+// Adds triangles that are stored from `first` on.
 void SceneTree::add_triangles(RTCDevice device, RTCScene to, std::uint32_t first, std::uint32_t count, unsigned id,
                               const Filters& filters) {
   const auto triangles = std::span(scene_.triangles).subspan(first, count);
@@ -162,7 +162,7 @@ void SceneTree::add_boxes(RTCDevice device) {
           out.lower_x = 1, out.upper_x = -1;
           return;
         }
-        // Its corners are floats, since those of triangles are.
+        // The box's corners are floats, since those of triangles are.
         const Box& box = tree.scene_.instances[arguments->primID].bounds;
         out.lower_x = static_cast<float>(box.min.x), out.upper_x = static_cast<float>(box.max.x);
         out.lower_y = static_cast<float>(box.min.y), out.upper_y = static_cast<float>(box.max.y);

@@ -5,7 +5,7 @@
 namespace vantage {
 
 Settings settings(const SceneOptions& options) {
-  // In the format of the program's options; numbers to the last bit.
+  // Writes in the format of the program's options, with numbers to the last bit.
   const auto listed = [](const auto& values) {
     std::vector<std::string> texts;
     for (const auto& [pattern, value] : values) texts.push_back(pattern + "=" + nlohmann::json(value).dump());

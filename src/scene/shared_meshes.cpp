@@ -19,17 +19,17 @@ namespace {
 
 glm::dvec3 survey(const MeshPlace& place, const Float3& p) { return to_glm(place(p)); }
 
-// True if a ray keeps most of its precision when it is moved into the mesh's frame and back. The axes must have similar
-// lengths, and must not lie nearly in one plane.
+// Returns true if a ray keeps most of its precision when it is moved into the mesh's frame and back. The axes must have
+// similar lengths, and must not lie nearly in one plane.
 bool moves_rays(const MeshPlace& place) {
-  constexpr double kMostCondition = 24;  // 3 where axes are equal and upright; some 23 where one is 16 times the others
+  constexpr double kMostCondition = 24;  // 3 for equal, perpendicular axes; some 23 if one is 16 times the others
   constexpr double kLeastScale = 1e-6, kMostScale = 1e4;
   const double size = std::sqrt(dot(place.x, place.x) + dot(place.y, place.y) + dot(place.z, place.z));
   return size >= kLeastScale && size <= kMostScale && condition(place.x, place.y, place.z) <= kMostCondition;
 }
 
-// Appends the vertices of a placed mesh. An array of attributes is as long as the positions as soon as one mesh has
-// that attribute.
+// Appends attributes of a placed mesh's vertices. The array gets as long as the positions once one mesh has that
+// attribute.
 template <class T, class Value>
 void append(std::vector<T>& values, bool any, std::size_t before, std::size_t count, T fallback, const Value& value) {
   if (!any && values.empty()) return;
@@ -90,8 +90,8 @@ MeshPlace place_of(const glm::dmat4& m) {
   place.y = to_vec3(glm::dvec3(m[1]));
   place.z = to_vec3(glm::dvec3(m[2]));
   place.origin = to_vec3(glm::dvec3(m[3]));
-  // Normals map by the inverse transpose. The cofactors, with the sign of the determinant, equal it up to a factor, and
-  // are defined even if the matrix flattens space.
+  // Normals map by the inverse transpose. The cofactors, signed by the determinant, equal it up to a factor, and stay
+  // defined if the matrix flattens space.
   place.mirrored = dot(place.x, cross(place.y, place.z)) < 0;
   const double sign = place.mirrored ? -1 : 1;
   place.normal_x = cross(place.y, place.z) * sign;
@@ -161,7 +161,7 @@ void store_placed(RawScene& raw, const std::vector<std::uint8_t>& stored) {
 
 void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
               const std::vector<std::vector<std::uint8_t>>& taken) {
-  // `rest` is, for each mesh, the mesh without the taken triangles. It takes the mesh's own number if no run keeps the
+  // `rest` holds for each mesh the mesh without the taken triangles. It gets the mesh's own number if no run keeps the
   // whole mesh.
   const std::size_t count = raw.shared.size();
   std::vector<std::uint32_t> rest(count), part(count);
@@ -181,7 +181,7 @@ void take_out(RawScene& raw, const std::vector<std::uint8_t>& runs,
     if (whole[m]) raw.shared.push_back(SharedMesh(raw.shared[m]));
     keep(raw.shared[rest[m]], left);
   }
-  // The taken triangles form a mesh of their own until they are stored.
+  // The taken triangles form a separate mesh until they are stored.
   const std::size_t left = raw.shared.size();
   raw.shared.insert(raw.shared.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   std::vector<std::uint8_t> stored;
@@ -285,7 +285,7 @@ void SharedCleaner::drop_without_area(const Vec3& origin) {
 }
 
 void SharedCleaner::drop_duplicates() {
-  // Whole meshes at one place, surveyed ones kept.
+  // Drops repeated meshes at one place; surveyed ones are kept first.
   using Key = std::pair<std::uint32_t, std::array<std::uint64_t, 12>>;
   std::map<Key, int> known;
   const auto key = [](const PlacedShared& placed) {

@@ -13,14 +13,14 @@
 
 namespace vantage {
 
-constexpr double kFarthest_m = 1e9;  // the spacing of float32 is 64 m there: broken vertices reach so far, sites do not
+constexpr double kFarthest_m = 1e9;  // float32 steps by 64 m there; only broken vertices are so far
 
 inline bool sound(const glm::dvec3& p) {
   return std::abs(p.x) <= kFarthest_m && std::abs(p.y) <= kFarthest_m && std::abs(p.z) <= kFarthest_m;
 }
 
 // A triangle has area if its normal can be formed in float. Differences of floats and their products are exact in
-// double, or nearly so; hence collinear corners give exactly 0.
+// double, or nearly so; collinear corners therefore give exactly 0.
 inline bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 n = cross(b - a, c - a);
   return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());
@@ -30,8 +30,8 @@ inline bool comes_before(const Float3& a, const Float3& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-// Corners in ascending order, so that triangles over the same three points compare equal whatever their first corner
-// and winding.
+// Returns corners in ascending order, so that triangles over the same three points compare equal whatever their first
+// corner and winding.
 inline std::array<Float3, 3> sorted_corners(std::span<const Float3> positions, const Triangle& t) {
   std::array<Float3, 3> c{positions[t[0]], positions[t[1]], positions[t[2]]};
   if (comes_before(c[1], c[0])) std::swap(c[0], c[1]);

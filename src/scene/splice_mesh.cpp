@@ -25,7 +25,7 @@ bool in_range(const MeshRange& range, std::size_t triangle) {
   return triangle >= range.first_triangle && triangle < std::size_t{range.first_triangle} + range.triangle_count;
 }
 
-// Whether a triangle of the piece may overlap one of another role in its plane. Wider than the search of
+// Returns true if a triangle of the piece may overlap one of another role in its plane. The test is wider than
 // find_coplanar(), so that a piece which passes here would not be cut there.
 bool may_be_coplanar(const SceneData& scene, std::size_t m, std::span<const Float3> positions, const MeshPiece& piece,
                      const Box& piece_box, double reach) {
@@ -58,7 +58,7 @@ bool may_be_coplanar(const SceneData& scene, std::size_t m, std::span<const Floa
   return false;
 }
 
-// Whether two triangles of the piece, or one of it and one of the rest, have identical corners.
+// Returns true if two triangles of the piece, or one of it and one of the rest, have identical corners.
 bool repeats(const SceneData& scene, std::size_t m, std::span<const Float3> positions, const MeshPiece& piece,
              const Box& piece_box) {
   std::vector<std::array<Float3, 3>> corners;

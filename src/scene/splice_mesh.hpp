@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// Replacement of a mesh. Every position belongs to a triangle.
+// Replacement of a mesh. Every position is used by a triangle.
 struct MeshPiece {
   std::vector<glm::dvec3> positions;  // survey frame
   std::vector<Triangle> triangles;    // into `positions`
@@ -19,7 +19,7 @@ struct MeshPiece {
 };
 
 // Returns `before` with mesh `m` changed, exactly as finish_scene() would build it from all meshes. Null if only a full
-// build can tell: another local origin, triangles to drop, or some in one plane with those of another role. REQUIRES:
+// build can decide: another local origin, triangles to drop, or some in one plane with those of another role. REQUIRES:
 // nothing of `before` was dropped or cut, it has no attributes except positions, and a material for each mesh.
 // `bounds`: of all current meshes, survey frame.
 std::shared_ptr<const SceneData> splice_mesh(const SceneData& before, std::size_t m, const MeshPiece& piece,

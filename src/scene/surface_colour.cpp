@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-// The two texels around x, and the position of x between them. x in texels, whose centres are whole numbers.
+// The two texels around x, and the position of x between them. x is in texels, with whole numbers at their centres.
 struct Texels {
   std::uint32_t first, second;
   float share;

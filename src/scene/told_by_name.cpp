@@ -22,7 +22,7 @@ class Words {
   bool has(std::initializer_list<std::string_view> words) const {
     return std::ranges::any_of(words, [&](std::string_view word) { return low_.find(word) != std::string::npos; });
   }
-  // In lower case.
+  // Returns the words in lower case.
   std::vector<std::string> all() const {
     std::vector<std::string> words;
     bool goes_on = false;
@@ -33,7 +33,7 @@ class Words {
     }
     return words;
   }
-  // Between what are no letters, or a word of its own by its capital, as in CellGate.
+  // Finds a whole word: between other characters than letters, or set off by its capital, as in CellGate.
   bool has_whole(std::initializer_list<std::string_view> words) const { return has_whole(std::span(words)); }
   bool has_whole(std::span<const std::string_view> words) const {
     return std::ranges::any_of(words, [&](std::string_view word) {
@@ -47,7 +47,7 @@ class Words {
   bool letter(std::size_t at) const {
     return at < low_.size() && (std::isalpha(static_cast<unsigned char>(low_[at])) || (low_[at] & 0x80));
   }
-  // A capital after a small letter.
+  // Returns true at a capital after a small letter.
   bool begins(std::size_t at) const {
     return at > 0 && at < name_.size() && std::isupper(static_cast<unsigned char>(name_[at])) &&
            std::islower(static_cast<unsigned char>(name_[at - 1]));
@@ -124,7 +124,7 @@ bool names_a_leaf(const std::string& name) {
 
 bool names_a_ceiling(const std::string& name) {
   const Words words(name);
-  // In other languages the word for a ceiling is also that for a slab, and only what hangs is named.
+  // Many languages use one word for ceiling and slab, so only suspended ceilings are listed.
   return words.has({"ceiling", "plafond", "soffitto", "sufit", "unterdecke", "akustikdecke", "rasterdecke",
                     "deckensegel", "abhangdecke", "abgehängte", "abgehaengte", "falso techo", "falso_techo",
                     "forro_falso", "loftplade", "undertak", "подвесной потолок", "天井", "天花"}) &&
@@ -133,7 +133,7 @@ bool names_a_ceiling(const std::string& name) {
 
 bool names_water(const std::string& name) { return Words(name).has_whole(kWater); }
 
-// Rocks, tiles and paints are called after rivers and lakes.
+// Rocks, tiles and paints are also named after rivers and lakes.
 bool is_water(const std::string& material) {
   bool any = false;
   for (const std::string& word : Words(material).all()) {

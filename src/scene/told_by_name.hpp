@@ -6,14 +6,14 @@
 
 namespace vantage {
 
-// True for the name of a door or a gate, and of no part of furniture.
+// Returns true for the name of a door or a gate, but not of a part of furniture.
 bool names_a_door(const std::string& name);
-// True for that, and for the name of a leaf, which may be a plant's, too.
+// Returns true also for the name of a leaf, which may be a plant's.
 bool names_a_leaf(const std::string& name);
-// True for the name of a ceiling that hangs below a roof or a slab: nobody walks on it.
+// Returns true for the name of a ceiling that hangs below a roof or a slab: nobody walks on it.
 bool names_a_ceiling(const std::string& name);
 bool names_water(const std::string& name);
-// True for the name of a material that says nothing else.
+// Returns true for the name of a material that is nothing but water.
 bool is_water(const std::string& material);
 
 }  // namespace vantage

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the winding of a mesh's triangles says which of their sides is the front: sketching tools leave each face as
-// it was drawn.
+// Decides if the winding of a mesh's triangles shows their front side: sketching tools leave each face as it was
+// drawn.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace vantage {
 
-// Edges that two triangles share, and those of them that both pass in one direction, so that one shows its back beside
-// the other's front.
+// Edges that two triangles share, and those that both pass in the same direction, so that one shows its back beside the
+// other's front.
 struct Winding {
   std::size_t edges = 0, against = 0;
 
@@ -25,13 +25,13 @@ struct Winding {
     edges += other.edges, against += other.against;
     return *this;
   }
-  // Where each face is wound as it came, half of the edges between faces are such, and none of those within a face. Few
-  // edges tell nothing.
+  // If each face is wound as drawn, half of the edges between faces are passed in the same direction, and none of those
+  // within a face. Few edges tell nothing.
   bool either_way() const { return edges >= 12 && static_cast<double>(against) > 0.15 * static_cast<double>(edges); }
 };
 
-// Returns the winding of the first of `count` triangles, but for those that are not finite. `corners(k)` has the
-// positions of triangle k, which are the same to the bit where triangles meet.
+// Returns the winding of the first of `count` triangles, without non-finite ones. `corners(k)` has the positions of
+// triangle k, which are equal to the bit if triangles meet.
 template <class Corners>
 Winding winding_of(std::uint32_t count, const Corners& corners) {
   constexpr std::uint32_t kLookedAt = 2000;

@@ -57,7 +57,7 @@ class Changing {
     if (!triangles.empty()) {
       const auto [low, high] = corners_[m];
       std::uint32_t first = low;
-      if (!alone(m)) {  // other meshes have corners between: it gets copies of its own
+      if (!alone(m)) {  // other meshes have corners between: copy its own
         first = copy(low, high);
         for (Triangle& t : triangles)
           for (std::uint32_t& v : t) v += first - low;
@@ -113,7 +113,7 @@ class Changing {
   std::span<const Triangle> triangles_of(const MeshRange& range) const {
     return std::span(before_.triangles).subspan(range.first_triangle, range.triangle_count);
   }
-  // Whether no other mesh has corners between its first and its last.
+  // Returns true if no other mesh has corners between its first and its last.
   bool alone(std::size_t m) const {
     for (std::size_t other = 0; other < corners_.size(); ++other)
       if (other != m && corners_[other].first <= corners_[m].second && corners_[m].first <= corners_[other].second)
@@ -124,7 +124,7 @@ class Changing {
     if (positions > 0xFFFFFFFFu)
       throw Error(Errc::out_of_memory, "the changed scene has more than 2^32 positions; make it smaller");
   }
-  // Number of the first copy.
+  // Copies corners; returns the number of the first copy.
   std::uint32_t copy(std::uint32_t low, std::uint32_t high) {
     const std::size_t first = data_->positions.size(), count = std::size_t{high} - low + 1;
     require_numbers(first + count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a scan saw in each direction.
+// Depth that a scan saw in each direction.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class DepthPicture {
  public:
   explicit DepthPicture(const TakenScan& scan);
 
-  // Metres that the scan saw beyond a place, along the ray to it; below 0: something stands before it, or no point
-  // tells.
+  // Returns how far, in metres, the scan saw beyond a place, along the ray to it; below 0 if something stands before
+  // it, or if there is no point.
   double beyond(const glm::dvec3& place) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scan is fitted to the model by point-to-plane iterations (Chen, Medioni: Object modelling by registration of
-// multiple range images, 1992), on some thousand of its points, with Tukey's weights. A weak prior on the pose decides
-// what the points leave open, such as the place along an even corridor.
+// Fits a scan to the model by point-to-plane iterations (Chen, Medioni: Object modelling by registration of multiple
+// range images, 1992), on some thousand of its points, with Tukey's weights. A weak prior on the pose decides what the
+// points leave open, such as the place along an even corridor.
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kFitPoints = 4000;
 constexpr int kIterations = 40;
-// Points this far from the model take part at first; then ever nearer ones.
+// Points this far from the model take part at first; the limit then shrinks.
 constexpr double kFirstReach_m = 0.5, kReachShrinks = 0.8;
 constexpr double kStepEnds = 1e-6;  // metres, and radians
 // The prior: a point's distance against a rough pose.
 constexpr double kPoint_m = 0.01, kPosition_m = 0.05, kTurn_rad = 0.01;
-// Larger corrections are those of a wrong site or frame.
+// Larger corrections mean a wrong site or frame.
 constexpr double kMostShift_m = 0.75, kMostTurn_rad = 0.08, kLeastNear = 0.25;
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

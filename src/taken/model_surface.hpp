@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surfaces of a scene that stop rays, as points of scans meet them.
+// The surfaces of a scene that stop rays, for comparison with points of scans.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class ModelSurface {
     double distance;    // from the point to the surface
     double height;      // and to the plane of the triangle, along `normal`
     glm::dvec3 normal;  // unit
-    // Whether the surface is straight below or above the point, and not an edge beside it.
+    // Returns true if the surface is straight below or above the point, not an edge beside it.
     bool inside() const;
     glm::dvec3 foot(const glm::dvec3& point) const { return inside() ? point - height * normal : point; }
   };
@@ -33,7 +33,7 @@ class ModelSurface {
     glm::dvec3 normal;
   };
   std::optional<Met> first(const glm::dvec3& from, const glm::dvec3& way) const;
-  // Whether nothing stops a ray from a to b.
+  // Returns true if nothing stops a ray from a to b.
   bool passes(const glm::dvec3& a, const glm::dvec3& b) const;
 
  private:

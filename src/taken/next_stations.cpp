@@ -19,10 +19,10 @@ namespace vantage {
 namespace {
 
 constexpr std::uint64_t kOverlapVoxels = 10'000;
-// Points of scans that fill a voxel to a share below this leave something to get there.
+// A voxel that scans fill to less than this share still has something to capture.
 constexpr double kFilled = 0.999;
 
-// Share of what is attainable that amounts capture.
+// Returns the share of the attainable coverage that amounts capture.
 double captured_of(const CoverageMatrix& matrix, std::span<const double> amounts) {
   double sum = 0;
   for (std::size_t e = 0; e < amounts.size(); ++e)
@@ -43,7 +43,7 @@ struct Table {
   std::size_t scans = 0, planned = 0, candidates = 0;
 };
 
-// Points as amounts of a column.
+// Converts points to amounts of a column.
 std::vector<std::uint32_t> amounts_of(std::vector<std::uint32_t> points, const Simulator& simulator,
                                       const SampledCoverage& sampled) {
   const auto full = static_cast<std::uint64_t>(std::ceil(sampled.matrix().goal()));
@@ -100,7 +100,7 @@ std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, s
   return table;
 }
 
-// The fewest stations: grown from what is there, or from the planned ones that are left; those if they are as few.
+// Returns the fewest stations, grown from the scans, or from the remaining planned ones, which win if they are as few.
 CoverSolution choose(const Table& table, const CoverProblem& problem, std::span<const PlannedStation> planned,
                      const std::stop_token& stop) {
   CoverSolution there = evaluate_cover(problem, problem.existing);
@@ -115,7 +115,7 @@ CoverSolution choose(const Table& table, const CoverProblem& problem, std::span<
   return of_plan.chosen.size() <= grown.chosen.size() ? of_plan : grown;
 }
 
-// The first of the stations `there` that station `k` ties to `linked_to`, since no chain of links did.
+// Returns the first of the stations `there` that station `k` connects to `linked_to`, as no chain of links did.
 std::optional<std::size_t> tied(const Table& table, std::span<const std::size_t> there, std::size_t k,
                                 std::size_t linked_to, double link) {
   const Components parts = components(
@@ -125,7 +125,7 @@ std::optional<std::size_t> tied(const Table& table, std::span<const std::size_t>
   return {};
 }
 
-// Orders what was chosen: next is what adds most of what is linked to stations before it, or of all if nothing is.
+// Orders the chosen stations: next is the largest gain among those linked to earlier ones, or among all if none is.
 void order(const Table& table, const std::vector<std::size_t>& chosen, double link, NextAnswer& answer) {
   std::vector<std::size_t> there(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(table.scans));
   std::vector<std::size_t> left(chosen.begin() + static_cast<std::ptrdiff_t>(table.scans), chosen.end());

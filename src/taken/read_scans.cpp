@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files of scans in a folder, by their names; else the file itself.
+// Returns the files of scans in a folder, sorted by name; else the file itself.
 std::vector<fs::path> scan_files(const fs::path& path) {
   std::error_code failure;
   if (!fs::exists(path, failure)) throw Error(Errc::io, path.string() + ": there is no such file or folder of scans");

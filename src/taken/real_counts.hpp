@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of scans that were taken, in surveyed voxels.
+// Counts the points of scans that were taken, in surveyed voxels.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace vantage {
 
-// Counts as the simulator counts its own points: those on surveyed surfaces, and not too flatly. A point near a surface
-// counts where it meets the model, so that a wall built some centimetres off is captured all the same.
+// Counts as the simulator counts its own points: those on surveyed surfaces, and not at too flat an angle. A point near
+// a surface counts at the surface, so that a wall built some centimetres off is captured as well.
 class RealCounts {
  public:
   // `voxels`: those that are counted. Borrows the simulator.
   RealCounts(const Simulator& simulator, std::span<const std::uint32_t> voxels, double tolerance_m);
 
-  // Points in each of these voxels.
+  // Returns the points in each of these voxels.
   std::vector<std::uint32_t> of(const TakenScan& scan) const;
 
  private:

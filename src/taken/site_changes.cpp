@@ -20,15 +20,15 @@
 namespace vantage {
 namespace {
 
-// Fewer points in a cell are stray ones; smaller things hide little.
+// Fewer points in a cell are strays; smaller things hide little.
 constexpr std::uint64_t kLeastPoints = 3;
 constexpr std::size_t kLeastCells = 5;
-constexpr std::int32_t kReach = 2;  // cells so far apart are of one thing: flat sides have few points
+constexpr std::int32_t kReach = 2;  // cells this far apart belong to one thing: flat sides have few points
 constexpr double kLeastThing_m = 0.3, kLeastOpening_m2 = 0.25;
-// A surface was seen through by a ray that goes on behind it for some tolerances, meets it no nearer to the scanner
-// than this, and not too flatly.
+// A ray sees through a surface if it continues behind it for some tolerances, meets it no nearer to the scanner than
+// this, and not at too flat an angle.
 constexpr double kBehind = 2, kFromScanner_m = 0.3, kLeastCosine = 0.3;
-// A mesh is not there if its extent was seen through by so much in its two longest directions.
+// A mesh is missing if this share of its extent was seen through in its two longest directions.
 constexpr double kWholeMesh = 0.6;
 // Shift of the grid, in cells: planes of models mostly lie at round coordinates, and cells' faces must not.
 constexpr double kGridShift = 0.37;
@@ -68,7 +68,7 @@ class FoundCells {
   bool has(const SolidCell& cell) const { return cells_.contains(cell); }
   const CellContent& content(const SolidCell& cell) const { return cells_.at(cell); }
 
-  // Calls `use(cells)` for each group of cells that touch or have one cell between them, by the least of their cells.
+  // Calls `use(cells)` for each group of cells that touch or have one cell between them, ordered by their least cell.
   template <class Use>
   void for_clusters(Use&& use) const {
     std::vector<SolidCell> all;
@@ -97,7 +97,7 @@ class FoundCells {
 
 double longest(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
 
-// What one point says.
+// Verdict of one point.
 struct PointSays {
   std::optional<std::uint32_t> near = {};  // the nearest mesh, if it is near
   bool through = false;
@@ -188,7 +188,7 @@ class ChangeFinder {
     for (auto& [size, thing] : things) changes.things.push_back(thing);
   }
 
-  // Whether other scans saw well behind most of a thing that is of one scan, a number modulo 64.
+  // Returns true if other scans saw well behind most of a thing seen by one scan, a number modulo 64.
   bool others_saw_through(const std::vector<SolidCell>& cluster, std::size_t scan) const {
     std::size_t through = 0;
     for (const SolidCell& cell : cluster) {
@@ -202,8 +202,8 @@ class ChangeFinder {
     return 2 * through > cluster.size();
   }
 
-  // Points of a thing that lie near the model, as those of a closed door beside its frame, pass for the model's. Cells
-  // there close the seam.
+  // Adds a cell, and cells near the model that close the seam. Points of a thing near the model, such as a closed door
+  // beside its frame, pass for the model's.
   void add_with_seam(const SolidCell& cell, std::vector<SolidCell>& cells) const {
     cells.push_back(cell);
     for (std::int32_t x = -1; x <= 1; ++x)
@@ -240,7 +240,7 @@ class ChangeFinder {
     });
   }
 
-  // Whether a part reaches over most of the whole in its two longest directions.
+  // Returns true if a part reaches over most of the whole in its two longest directions.
   static bool most_of(const Box& whole, const Box& part) {
     std::array<std::pair<double, double>, 3> sizes{
         std::pair{whole.size().x, part.size().x}, {whole.size().y, part.size().y}, {whole.size().z, part.size().z}};
@@ -273,7 +273,7 @@ Site changed_site(Site& site, const SiteChanges& changes) {
   SiteOptions options = site.options();
   options.weigh_ground = false;  // the scene has the weights
   options.log = {};              // all is said
-  // What the site chose stays: lengths may depend on the bounds, and the density on the meshes.
+  // Keeps the site's choices: lengths may depend on the bounds, and the density on the meshes.
   options.scanners.assign(site.scanners().begin(), site.scanners().end());
   options.user_size_m = site.simulator_config().user_size_m;
   options.spacing_m = site.simulator_config().point_spacing_m;

@@ -21,7 +21,7 @@ namespace {
 constexpr double kUnknownCell_m = 0.25;
 // Above ground: the space of a person, without what lies on the floor and hangs from the ceiling.
 constexpr double kFromGround_m = 0.4, kToHead_m = 1.9;
-// A place is free if a scan saw so far beyond it, and known if one saw to within this before it.
+// A place is free if a scan saw this far beyond it, and known if one saw to within this distance before it.
 constexpr double kSeenBeyond_m = 0.1, kSeenBefore_m = 0.2;
 // The crew stood around the tripod, where the scanner itself sees nothing.
 constexpr double kTripod_m = 1.2;

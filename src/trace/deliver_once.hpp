@@ -16,7 +16,7 @@ class DeliverOnce {
   DeliverOnce(const Tracer::SampleJob& job, std::size_t networks)
       : job_(job), points_(job.points ? networks : 0), masks_(job.station_masks ? networks : 0) {}
 
-  // Returns the job over the networks from `first` on. It delivers through `ask`, which calls on the caller's thread.
+  // Returns the job for the networks from `first` on. It delivers by `ask`, which calls on the caller's thread.
   using OnCaller = std::function<void(const std::function<void()>&)>;
   Tracer::SampleJob chunk(std::size_t first, const OnCaller& ask) {
     Tracer::SampleJob part = job_;

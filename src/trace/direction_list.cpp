@@ -11,7 +11,7 @@ DirectionList::DirectionList(std::span<const double> zeniths, std::span<const do
   const std::size_t rays = zeniths.size();
   const auto [low, high] = std::ranges::minmax_element(zeniths);
   const double tall = *high - *low;
-  // As many bands as make their parts with one ray about square, on a full turn.
+  // Chooses the number of bands so that a band's part with one ray is about square, on a full turn.
   constexpr double kMostBands = 65'536;
   const double many = std::clamp(std::round(std::sqrt(static_cast<double>(rays) * tall / kTurn)), 1.0, kMostBands);
   first_zenith_ = *low;

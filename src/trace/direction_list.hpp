@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions of a scanner whose rays form no grid, such as a rosette, and those of them that lie near a direction: the
-// rays are sorted into bands of zenith, and in each band by azimuth.
+// Directions of a scanner whose rays form no grid, such as a rosette, and a search for those near a direction. Rays are
+// sorted into bands of zenith, and by azimuth in each band.
 #pragma once
 
 #include <algorithm>
@@ -12,21 +12,21 @@
 
 namespace vantage {
 
-// Zeniths between two, and azimuths in [azimuth, azimuth + width], in radians; all azimuths from a width of a full turn
-// on.
+// A range of zeniths, and the azimuths in [azimuth, azimuth + width], in radians; all azimuths if the width is a full
+// turn or more.
 struct AngleWindow {
   double least_zenith = 0, most_zenith = 0, azimuth = 0, width = 0;
 };
 
 class DirectionList {
  public:
-  // Angles of each ray, radians. REQUIRES: at least one and fewer than 2^32 rays; finite angles.
+  // Takes the angles of each ray, radians. REQUIRES: at least one and fewer than 2^32 rays; finite angles.
   DirectionList(std::span<const double> zeniths, std::span<const double> azimuths);
 
-  // Of each ray, computed in double and rounded once, as RayPattern has them of rows and columns.
+  // Sine and cosine for each ray, computed in double and rounded once, as in RayPattern for rows and columns.
   std::vector<float> sin_azimuth, cos_azimuth;
 
-  // Calls visit(rays) with spans of rays. Each ray in the window is in exactly one of them; so may others be.
+  // Calls visit(rays) with spans of rays. Each ray in the window is in exactly one span; other rays may be, too.
   template <class Visit>
   void each_near(const AngleWindow& window, const Visit& visit) const {
     const double first = band_at(window.least_zenith), last = band_at(window.most_zenith);
@@ -47,8 +47,8 @@ class DirectionList {
     }
   }
 
-  // For engines that look rays up themselves: rays by band, then by azimuth; their azimuths in a full turn from 0;
-  // where each band begins among them, and an end; the zenith at which the first band begins, and the height of all.
+  // Tables for engines that search rays themselves: rays by band, then azimuth; their azimuths in a full turn from 0;
+  // where each band begins among them, and an end; the zenith at which the first band begins, and the height of each.
   std::span<const std::uint32_t> sorted_rays() const { return rays_; }
   std::span<const double> sorted_azimuths() const { return azimuth_; }
   std::span<const std::size_t> band_offsets() const { return offset_; }
@@ -62,7 +62,7 @@ class DirectionList {
   static double turned_once(double azimuth) { return azimuth - std::floor(azimuth / kTurn) * kTurn; }
   std::size_t bands() const { return offset_.size() - 1; }
   double band_at(double zenith) const { return std::floor((zenith - first_zenith_) / band_); }
-  // Place in rays_ of the first ray of a band at the azimuth or above it; `beyond`: above it.
+  // Returns the place in rays_ of a band's first ray at the azimuth or above; `beyond`: only above.
   std::size_t place_of(std::size_t band, double azimuth, bool beyond) const {
     const auto begin = azimuth_.begin() + static_cast<std::ptrdiff_t>(offset_[band]),
                end = azimuth_.begin() + static_cast<std::ptrdiff_t>(offset_[band + 1]);

@@ -8,14 +8,14 @@
 
 namespace vantage {
 
-// 1 / x by Newton's iteration from an integer guess; relative error below 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
+// Returns 1 / x by Newton's iteration from an integer guess, to 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
 inline float exact_reciprocal(float x) {
   float y = std::bit_cast<float>(0x7EF311C7u - std::bit_cast<std::uint32_t>(x));
   for (int i = 0; i < 4; ++i) y = y * (2.0f - x * y);
   return y;
 }
 
-// 1 / √x, by the same method. REQUIRES: 2^-100 < x < 2^100.
+// Returns 1 / √x by the same method. REQUIRES: 2^-100 < x < 2^100.
 inline float exact_inverse_sqrt(float x) {
   float y = std::bit_cast<float>(0x5F375A86u - (std::bit_cast<std::uint32_t>(x) >> 1));
   const float half_x = 0.5f * x;

@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// atan2 to 2e-8, or to a few ulp of float, for y >= 0 (Abramowitz, Stegun: Handbook of Mathematical Functions, 1964,
-// 4.4.49). The C library's atan2 would take most of the time of a sampled voxel. Branch-free, for loops over many.
+// Returns atan2 for y >= 0 to 2e-8, or a few ulp of float (Abramowitz, Stegun: Handbook of Mathematical Functions,
+// 1964, 4.4.49). The C library's atan2 would take most of the time of a sampled voxel. Branch-free, for loops.
 template <class Real>
 [[gnu::always_inline]] inline Real fast_atan2(Real y, Real x) {
   constexpr Real half_turn = std::numbers::pi_v<Real>;

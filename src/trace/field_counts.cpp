@@ -42,7 +42,7 @@ void transpose(std::array<std::uint64_t, block>& rows) {
   }
 }
 
-// For up to 64 stations.
+// Counts pairs of up to 64 stations.
 VANTAGE_TARGET_CLONES
 void add_few_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
                    std::uint64_t* shared) {
@@ -67,8 +67,8 @@ void add_few_pairs(const std::uint64_t* masks, std::size_t n, std::size_t statio
   }
 }
 
-// For more stations: pairs only those that see any voxel of the block. `words`: of the n voxels, a span for each 64
-// stations, empty if it is 0 for all of them.
+// Counts pairs of more stations, but only of those that see any voxel of the block. `words`: for each 64 stations a
+// span of n voxels, empty if it is 0 for all of them.
 VANTAGE_TARGET_CLONES
 void add_many_pairs(std::span<const std::span<const std::uint64_t>> words, std::size_t n, std::size_t stations,
                     std::uint64_t* seen, std::uint64_t* shared) {
@@ -100,19 +100,19 @@ void add_many_pairs(std::span<const std::span<const std::uint64_t>> words, std::
   }
 }
 
-// Masks word after word of all voxels.
+// Masks stored word by word, each for all voxels.
 struct DenseMasks {
   std::span<const std::uint64_t> masks;
   std::size_t voxels;
 
   bool empty() const { return masks.empty(); }
-  // Word w of voxels [first, end).
+  // Returns word w of voxels [first, end).
   std::span<const std::uint64_t> words(std::size_t w, std::size_t first, std::size_t end) const {
     return masks.subspan(w * voxels + first, end - first);
   }
 };
 
-// Those that a voxel field keeps.
+// Masks kept by a voxel field.
 struct KeptMasks {
   const StationMasks& masks;
 

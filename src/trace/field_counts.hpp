@@ -20,8 +20,8 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
 NetworkCounts reduce_field(const VoxelField& field, std::uint32_t stations, double goal_density,
                            const VoxelDemands& demands = {});
 
-// Adds to `seen` and `shared` the pairs of stations within n masks of all stations. `words`: a span of n for each 64
-// stations, empty if it is 0 for all of them.
+// Adds to `seen` and `shared` the pairs of stations in n masks of all stations. `words`: for each 64 stations a span of
+// n, empty if it is 0 for all of them.
 void add_pairs(std::span<const std::span<const std::uint64_t>> words, std::size_t n, std::size_t stations,
                std::span<std::uint64_t> seen, std::span<std::uint64_t> shared);
 

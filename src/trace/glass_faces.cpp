@@ -9,7 +9,7 @@
 namespace vantage {
 
 std::vector<Triangle> glass_triangles(const SceneData& scene) {
-  std::vector<Triangle> glass;  // nodes share none, so all of it is stored where it stands
+  std::vector<Triangle> glass;  // nodes share no glass, so all of it is stored in place
   for (std::uint32_t t = scene.opaque_count(); t < scene.triangle_count(); ++t) glass.push_back(scene.attributes(t));
   return glass;
 }

@@ -7,11 +7,11 @@
 
 namespace vantage {
 
-// The triangles of glass, in their order, by indices into SceneData::positions.
+// Returns the triangles of glass, in order, as indices into SceneData::positions.
 std::vector<Triangle> glass_triangles(const SceneData& scene);
 
-// For each triangle of glass, whether it belongs to a closed surface. A beam passes two faces of such a solid; any
-// other triangle stands for a whole pane.
+// Returns for each triangle of glass true if it belongs to a closed surface. A beam passes two faces of such a solid;
+// any other triangle stands for a whole pane.
 std::vector<bool> faces_of_solids(const SceneData& scene);
 
 }  // namespace vantage

@@ -37,7 +37,7 @@ DeviceChoice resolved(Engine engine, std::optional<std::uint32_t> device_index) 
   return {chosen.engine, device_index};
 }
 
-// Null: the processor. Throws Error: no_suitable_device, invalid_argument.
+// Returns null for the processor. Throws Error: no_suitable_device, invalid_argument.
 const vulkan::VulkanEngine* vulkan_engine_of(const DeviceChoice& device) {
   if (device.engine == Engine::embree) {
     if (device.index.value_or(0) != 0)

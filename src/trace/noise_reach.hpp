@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds on how far noise moves points, by distance. Sampled evaluation must look that far beyond a voxel's cube.
+// Bounds on how far noise moves points, by distance. A sampled evaluation must search this far beyond a voxel's cube.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace vantage {
 
-// Row r and column c of the noise table: noise moves no hit up to that distance further than this, on a surface of that
-// reflectivity or a larger one. REQUIRES: model.enabled().
+// Entry of row r and column c of the noise table: the farthest that noise moves a hit up to that distance, on a surface
+// of at least that reflectivity. REQUIRES: model.enabled().
 using NoiseReaches = std::array<std::array<float, NoiseModel::side>, NoiseModel::side>;
 inline std::unique_ptr<const NoiseReaches> noise_reaches(const NoiseModel& model) {
   auto reaches = std::make_unique<NoiseReaches>();
@@ -26,7 +26,7 @@ inline std::unique_ptr<const NoiseReaches> noise_reaches(const NoiseModel& model
   return reaches;
 }
 
-// Upper bound on how far noise moves a hit nearer than t, on a surface that is at least so bright.
+// Bounds how far noise moves a hit nearer than t, on a surface of at least this reflectivity.
 inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t, float reflectivity = 0) {
   constexpr auto last = static_cast<float>(NoiseModel::side - 1);
   const float column = (t - model.min_range) * model.inverse_span * last + 1.01f, row = reflectivity * last - 0.01f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A voxel with stations on several sides of its planes counts as several, each with the stations of one side.
+// Counts a voxel with stations on several sides of its planes as several voxels, one for each side's stations.
 #include "trace/one_sided.hpp"
 
 #include <algorithm>
@@ -31,8 +31,8 @@ class SideCounter {
     for (const TraceStation& station : stations) heads_[station.place] = station.origin;
   }
 
-  // Pairs of `many` voxels; `index_of(k)`: the index of voxel number k. `words(w, first, end)`: word w of their masks,
-  // or nothing.
+  // Counts pairs in `many` voxels. `index_of(k)`: index of voxel number k. `words(w, first, end)`: word w of their
+  // masks, or nothing.
   template <class IndexOf, class Words>
   Pairs count(std::size_t many, const IndexOf& index_of, const Words& words) const {
     return parallel::reduce(
@@ -64,7 +64,7 @@ class SideCounter {
  private:
   using Masks = std::vector<std::vector<std::uint64_t>>;  // word by word
 
-  // Leaves the stations of one side in row `k` of the masks, and appends a row for each other side.
+  // Leaves one side's stations in row `k` of the masks, and appends a row for each other side.
   void split(std::uint64_t voxel_index, std::size_t k, Masks& masks) const {
     const std::uint32_t sides = planes_.sides(voxel_index);
     if (sides == 1) return;

@@ -22,7 +22,7 @@ struct Pass {
   std::vector<TraceStation> stations;
 };
 
-// Passes that have a station to trace.
+// Returns the passes that have a station to trace.
 std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_t station_count) {
   std::vector<Pass> passes;
   for (std::uint32_t first = 0; first < station_count; first += bits) {

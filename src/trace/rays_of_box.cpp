@@ -11,11 +11,11 @@
 namespace vantage {
 namespace {
 
-// Components of a direction are products of two values rounded to 24 bits. Its angles are off by less than 2^−22, and
-// fast_atan2 by 2^−25.
+// Widening of angles. Components of a direction are products of two values rounded to 24 bits, which shifts angles by
+// less than 2^−22; fast_atan2 adds 2^−25.
 constexpr double angle_pad = 0x1p-20;
 
-// Indices k in [0, count) with low <= first + k·step <= high.
+// Returns the indices k in [0, count) with low <= first + k·step <= high.
 [[gnu::always_inline]] inline RayRanges::Range indices(double low, double high, double first, double step,
                                                        std::uint32_t count) {
   const double begin = std::ceil((low - first) / step), end = std::floor((high - first) / step) + 1;
@@ -24,7 +24,7 @@ constexpr double angle_pad = 0x1p-20;
           static_cast<std::uint32_t>(std::min(end, static_cast<double>(count)))};
 }
 
-// Rows whose zeniths lie in [low, high].
+// Returns the rows whose zeniths lie in [low, high].
 [[gnu::always_inline]] inline RayRanges::Range rows_of(const RayPattern& pattern, double low, double high) {
   if (pattern.zeniths.empty()) return indices(low, high, pattern.first_zenith, pattern.zenith_step, pattern.rows());
   const auto begin = std::ranges::lower_bound(pattern.zeniths, low),
@@ -33,7 +33,7 @@ constexpr double angle_pad = 0x1p-20;
           static_cast<std::uint32_t>(end - pattern.zeniths.begin())};
 }
 
-// Columns whose azimuths lie in [begin, begin + width], modulo a turn.
+// Returns the columns whose azimuths lie in [begin, begin + width], modulo a turn.
 [[gnu::always_inline]] inline std::array<RayRanges::Range, 2> columns_of(const RayPattern& pattern, double begin,
                                                                          double width) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -42,12 +42,12 @@ constexpr double angle_pad = 0x1p-20;
   begin -= std::floor(begin / turn) * turn;
   const RayRanges::Range first = indices(begin, begin + width, 0, pattern.azimuth_step, columns);
   const RayRanges::Range second = indices(begin - turn, begin - turn + width, 0, pattern.azimuth_step, columns);
-  // Both ends of nearly a full turn, or a pattern of more than a turn: one range.
+  // Both ends of nearly a full turn, or a pattern of more than a turn, give one range.
   if (!first.empty() && second.end > first.begin) return {{{0, columns}, {}}};
   return {first, second};
 }
 
-// Rays whose angles lie in a window.
+// Returns the rays whose angles lie in a window.
 [[gnu::always_inline]] inline RayRanges rays_in(const RayPattern& pattern, const AngleWindow& window) {
   RayRanges ranges;
   ranges.rows = rows_of(pattern, window.least_zenith, window.most_zenith);
@@ -60,13 +60,13 @@ constexpr double angle_pad = 0x1p-20;
   return ranges;
 }
 
-// Angles of a box, widened.
+// Returns the angles of a box, widened.
 [[gnu::always_inline]] inline AngleWindow window_of_box(const Vec3& low, const Vec3& high) {
   constexpr double kTurn = 2 * std::numbers::pi;
   const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
   const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
   const double r = std::sqrt(cx * cx + cy * cy);
-  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
+  // Half extents of the box along and across the horizontal direction to its middle, times r.
   const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
   if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
     if (low.z <= 0 && high.z >= 0) return {-angle_pad, std::numbers::pi + angle_pad, 0, kTurn};
@@ -75,8 +75,8 @@ constexpr double angle_pad = 0x1p-20;
                  most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
     return {least - angle_pad, most + angle_pad, 0, kTurn};
   }
-  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
-  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
+  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point is further across
+  // or nearer. In the plane of axis distance and height, it likewise lies in a rectangle around its middle.
   const double radial = (along + across) / r;
   const double distance = std::sqrt(r * r + cz * cz);
   const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
@@ -138,7 +138,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
 VANTAGE_TARGET_CLONES
 AngleWindow angles_of_box(const Vec3& low, const Vec3& high) { return window_of_box(low, high); }
 
-// As rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
+// Works as rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
 VANTAGE_TARGET_CLONES
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -149,7 +149,7 @@ void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
     return static_cast<std::int32_t>(std::min(count, std::max(0.0, index)));
   };
   const std::uint32_t n = boxes.size;
-  if (!pattern.zeniths.empty()) {  // rows that must be looked up, one box after the other
+  if (!pattern.zeniths.empty()) {  // rows that must be searched, box by box
     std::fill_n(boxes.simple, n, 0);
     return;
   }

@@ -25,15 +25,15 @@ struct RayRanges {
 // more than the rounding of directions.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
 
-// As much, in angles: for patterns that are a list.
+// Returns the angles of a box, for patterns that are a list.
 AngleWindow angles_of_box(const Vec3& low, const Vec3& high);
 
-// Rays with a zenith between two and an azimuth in [azimuth, azimuth + width], radians; widened likewise.
+// Returns rays with a zenith between two and an azimuth in [azimuth, azimuth + width], radians; also widened.
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
                        double width);
 
-// For a turned scanner: replaces a box, relative to the head, by one in the scanner's own frame that contains it. It is
-// wide enough for the rounding of turned directions.
+// Replaces a box, relative to the head of a turned scanner, by one in the scanner's own frame that contains it. It is
+// widened for the rounding of turned directions.
 void turn_back(const Turn& turn, Vec3& low, Vec3& high);
 
 // Batch of boxes seen from one head. Small and distant boxes, the majority, are handled several at once.
@@ -50,9 +50,9 @@ struct BoxBatch {
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes);
 void turn_back(const Turn& turn, BoxBatch& boxes);
 
-// Margin by which a box is widened on each side, so that every point which float arithmetic puts into it lies inside. A
-// point is origin + t·d, and its cell the floor of (p − min)·inverse_size: five roundings of at most 2^−24 of `reach`,
-// the largest magnitude involved (coordinates of head, box and grid, and the distance). The margin is three times that.
+// Returns the margin for each side of a box within which float arithmetic may put a point into the box. A point is
+// origin + t·d, and its cell the floor of (p − min)·inverse_size: five roundings of at most 2^−24 of `reach`, the
+// largest magnitude involved (coordinates of head, box and grid, distance). The margin is three times that.
 double rounding_pad(double reach);
 
 }  // namespace vantage

@@ -109,7 +109,7 @@ std::vector<NetworkCounts> RebuildingTracer::count_sampled(std::span<const std::
     }
     if (counts.back().cancelled) break;
   }
-  // When cancelled, the other networks were not reached.
+  // Networks that were not reached before cancellation.
   NetworkCounts left;
   left.cancelled = true;
   counts.resize(networks.size(), left);

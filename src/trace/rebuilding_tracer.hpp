@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer on a device that may fail: it is set up anew, once for each piece of work, and repeats the piece. Counts equal
-// those of a device that never failed.
+// Tracer on a device that may fail. After a fault it is set up anew, once for each piece of work, and repeats the
+// piece. Counts equal those of a device that never failed.
 #pragma once
 
 #include <functional>
@@ -33,7 +33,7 @@ class RebuildingTracer final : public Tracer {
             RawChunk& chunk) override;
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override;
-  // Halves the networks in flight, permanently, when the device's memory is too small for all at once.
+  // Halves the networks in flight, permanently, if the device's memory is too small for all of them.
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override;
@@ -43,7 +43,7 @@ class RebuildingTracer final : public Tracer {
   Tracer& ready() const;
   void make_again();
   void set_up_anew(const DeviceFault& fault, const std::string& what_next);
-  // Calls `work` on the tracer; after a failure, once more on a new tracer.
+  // Calls `work` on the tracer, and after a failure once more on a new tracer.
   template <class Work>
   auto twice(const Work& work);
 

@@ -24,9 +24,9 @@ static_assert(of_pair == pair_sums && of_station == station_sums && of_errors ==
 static_assert(instrument_errors == RegistrationSums::instrument_errors &&
               instrument_errors == start_draws * angle_errors + 2);
 using Deviations = std::array<float, RegistrationSums::instrument_errors>;
-constexpr double least_share = 0.5;       // smallest share of one plane in a voxel's surface, and in that around it
-constexpr double least_area = 1e-3;       // in faces; anything smaller is a corner that no scan resolves
-constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer has no normal to register by
+constexpr double least_share = 0.5;       // least share of one plane in a voxel's surface, and in the surface around it
+constexpr double least_area = 1e-3;       // in faces; smaller surfaces are corners that no scan resolves
+constexpr double points_of_a_plane = 10;  // least points in a patch for a normal to register by
 // Distance, as a share of a patch's side, within which a surface must be flat. A scan's normal is fitted to points
 // around it, within the patch of constant error; a pipe thinner than that has no normal, however fine the voxels.
 constexpr double flat_part = 0.5;
@@ -154,7 +154,7 @@ void add_products(std::int64_t* sums, const std::int32_t* products, const std::i
   }
 }
 
-// The stations with a point in each voxel: word after word of a sample, or as a field keeps them.
+// Stations with a point in each voxel: by word of a sample's masks, or as a field keeps them.
 struct SeenBy {
   std::span<const std::uint64_t> words;
   std::size_t voxels = 0;
@@ -193,7 +193,7 @@ class PairNumbers {
 
   std::size_t size() const { return kept_.empty() ? all() : kept_.size(); }
   std::size_t all() const { return stations_ * (stations_ - 1) / 2; }
-  // Index among all pairs of the k-th summed pair, and back.
+  // Returns the index among all pairs of the k-th summed pair; number() is its inverse.
   std::size_t pair(std::size_t k) const { return kept_.empty() ? k : kept_[k]; }
   std::uint32_t number(std::size_t i, std::size_t j) const {
     const std::size_t pair = i * (2 * stations_ - i - 1) / 2 + j - i - 1;
@@ -254,7 +254,7 @@ class Summer {
         seen_by_(seen_by),
         units_(static_cast<float>(patch_weight_units / patches.largest)) {}
 
-  // Every `step`-th patch from `first` on.
+  // Sums every `step`-th patch from `first` on.
   Accumulator<Wide> sum(std::size_t first, std::size_t step) const {
     const std::size_t voxels = patches_.patches.size(), some = voxels > first ? (voxels - first + step - 1) / step : 0,
                       blocks = (some + patches_a_block - 1) / patches_a_block;
@@ -301,7 +301,7 @@ class Summer {
 
   void add_pairs(const RegistrationPatch& patch, std::span<const std::uint16_t> seen,
                  Accumulator<std::int64_t>& sums) const {
-    // Stations on either side of the plane.
+    // Stations on each side of the plane.
     std::array<std::array<std::uint16_t, max_stations>, 2> places;
     std::array<std::array<float, max_stations>, 2> weights;
     std::array<std::size_t, 2> many{};
@@ -375,7 +375,7 @@ class Summer {
   float units_;
 };
 
-// `pairs`, `surface` and `instrument`: of all stations. `deviation`: unit of the latter.
+// Converts sums. `pairs`, `surface` and `instrument`: of all stations. `deviation`: unit of `instrument`.
 template <class Number>
 RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> surface,
                          std::span<const Number> instrument, double deviation, const Patches& patches,
@@ -397,7 +397,7 @@ RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> 
   return sums;
 }
 
-// Of every pair.
+// Converts the sums of every pair.
 RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs, double deviation,
                          const Patches& patches, std::span<const TraceStation> stations, std::size_t count) {
   if (pairs.all() <= pairs.size())
@@ -411,7 +411,7 @@ RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs,
                  stations, count);
 }
 
-// Only of the pairs whose sums in the whole are not 0. Squares are among the sums, so others are 0 in every part.
+// Converts only pairs with sums other than 0 in the whole. Sums include squares, so others are 0 in every part.
 RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulator<Wide>& whole,
                                  const PairNumbers& pairs, double deviation, const Patches& patches,
                                  std::span<const TraceStation> stations, std::size_t count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Station masks to the sums behind the registration error (docs/method.md, "Registration error").
+// Computes the sums for the registration error from station masks (docs/method.md, "Registration error").
 //
 // A voxel that several stations see from one side of its plane ties them together along the plane's normal. A pair's
 // share is quantised to whole numbers before it is summed, so the order of summing does not matter. The vectors J are
@@ -42,7 +42,7 @@ struct PatchFrame {
 // REQUIRES: model.rho_m > 0, model.patch_m > 0; surfaces within the cube.
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model);
-// For voxels of the grid of `surfaces`; indices as for `SurfaceFinder::find`. A stop ends it early, with no patches.
+// Does so for voxels of a grid; indices as for `SurfaceFinder::find`. Without patches if stopped early.
 Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
                      const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop = {});
 
@@ -55,18 +55,18 @@ struct PatchScanner {
   float range_m = 0;  // its longest
 };
 
-// Unit of the distances by which scanners' errors move planes, metres: the largest. They are rounded to a
-// `deviation_quanta`-th. 0: no scanner states errors.
+// Returns the largest distance by which scanners' errors move planes, metres: the unit of such distances, which are
+// rounded to a `deviation_quanta`-th. 0: no scanner states errors.
 double deviation_unit(std::span<const PatchScanner> scanners);
-// A scanner's errors in that unit; those of angles are shared out to the draws of directions. All 0 if it is 0.
+// A scanner's errors in that unit; errors of angles are divided among the draws of directions. All 0 if it is 0.
 struct DeviationErrors {
   float angle = 0, offset = 0, scale = 0;
 };
 DeviationErrors deviation_errors(const PatchScanner& scanner, double deviation);
 
-// Horizontal direction in which a scan begins: one face of the mirror sees what lies left of it, the other what lies
-// right. A scanner that turns all the way is set up in any direction, so those of upright scans are drawn: were they
-// alike, errors that change sign with the face would cancel between scans. A turned one has its own.
+// Returns the horizontal direction in which a scan begins: one face of the mirror sees the left of it, the other the
+// right. A scanner that turns fully is set up in any direction, so the directions of upright scans are drawn; if they
+// were equal, errors that change sign with the face would cancel between scans. A turned scanner has its own direction.
 Float3 scan_start(std::uint32_t place, std::uint32_t draw);
 
 // Request for `NetworkCounts::registration` beside the counts of a sample, with masks.
@@ -88,27 +88,27 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
 std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
                                           std::uint32_t station_count, std::span<const std::uint64_t> masks,
                                           std::uint32_t groups);
-// Planes of `many` voxels of a grid from `first` on; null if stopped.
+// Returns planes of `many` voxels of a grid from `first` on; null if stopped.
 using PatchesFrom = std::function<std::shared_ptr<const Patches>(std::size_t first, std::size_t many)>;
-// The same sums over all voxels of a field, without groups, from planes of at most `part_voxels` voxels at a time:
-// those of tens of millions of voxels are gigabytes. None if stopped. `counts`: of the field, with pairs.
+// Computes the same sums over all voxels of a field, without groups, from planes of at most `part_voxels` voxels at a
+// time, as planes of tens of millions of voxels take gigabytes. Empty if stopped. `counts`: of the field, with pairs.
 std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std::size_t part_voxels,
                                             std::span<const PatchScanner> scanners,
                                             std::span<const TraceStation> stations, const NetworkCounts& counts,
                                             const StationMasks& masks);
-// Calls with(place in `pairs`) for each pair with a sum that is not 0.
+// Calls with(place in `pairs`) for each pair that has a sum other than 0.
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with);
-// Moves such sums into the counts of a network: those of the groups, if any, come after those of all.
+// Moves sums into the counts of a network: the sums over all, then those of the groups, if any.
 void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums);
 
 // Sets the numbers of voxels of sums over all patches, then over each of the interleaved groups.
 std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, const Patches& patches);
 
-// Number of voxels whose whole numbers fit in 64 bits together, signed: 2^15 of weight times 2^30 of two components of
+// Number of voxels whose integer sums fit into 64 signed bits together: 2^15 of weight times 2^30 of two components of
 // J.
 inline constexpr std::size_t patches_in_64_bits = std::size_t{1} << 17;
-// Converts whole numbers summed by an engine: `sums` of each pair, of each station, and, unless `deviation` is 0, of
-// the errors of each station's scanner.
+// Converts integers summed by an engine: `sums` of each pair, of each station, and, unless `deviation` is 0, of the
+// errors of each station's scanner.
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
                                    std::uint32_t station_count, std::span<const std::int64_t> sums, double deviation);
 

@@ -21,7 +21,7 @@ class SampleRuns {
   explicit SampleRuns(std::size_t voxels) : runs_((voxels + length - 1) / length), step_(golden_step(runs_)) {}
   std::size_t size() const { return runs_; }
 
-  // Returns the k-th run of `sample`. REQUIRES: its size is that given to the constructor.
+  // Returns the k-th run of `sample`. REQUIRES: the size passed to the constructor.
   template <class T>
   std::span<const T> run(std::span<const T> sample, std::size_t k) const {
     return of(sample, k * step_ % runs_);

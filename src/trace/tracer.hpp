@@ -25,7 +25,7 @@ namespace vantage {
 
 // Directions of all rays in the scanner's frame, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
 // sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are computed in double and rounded once, so the result does
-// not depend on an engine's sine. Or a list of directions that are no grid, with a row for each and one column.
+// not depend on an engine's sine. A list of directions without a grid has a row for each and one column.
 struct RayPattern {
   std::vector<float> sin_zenith, cos_zenith;       // rows
   std::vector<float> sin_azimuth, cos_azimuth;     // columns
@@ -44,19 +44,19 @@ struct RayPattern {
     if (list) return {sine * list->cos_azimuth[row], sine * list->sin_azimuth[row], cos_zenith[row]};
     return {sine * cos_azimuth[column], sine * sin_azimuth[column], cos_zenith[row]};
   }
-  // Angle between two rows.
+  // Returns the angle between two rows.
   double rows_apart(std::uint32_t upper, std::uint32_t lower) const {
     return zeniths.empty() ? (lower - upper) * zenith_step : zeniths[lower] - zeniths[upper];
   }
-  // Steps of zenith and azimuth, multiplied; those of uneven rows and of lists are taken as even.
+  // Returns the product of the steps of zenith and azimuth; uneven rows and lists count as even.
   double cell() const {
     if (zeniths.size() < 2) return (zenith_step > 0 ? zenith_step : azimuth_step) * azimuth_step;
     return (zeniths.back() - zeniths.front()) / static_cast<double>(zeniths.size() - 1) * azimuth_step;
   }
 };
 
-// Algorithm 1: σ by bilinear look-up over normalised distance (columns) and reflectivity (rows), both in [0, 1], step
-// 0.01.
+// Algorithm 1: σ by bilinear interpolation over normalised distance (columns) and reflectivity (rows), both in [0, 1],
+// in steps of 0.01.
 struct NoiseModel {
   static constexpr std::uint32_t side = 101;
   std::vector<float> sigma;  // side × side, row-major [reflectivity][distance]; empty: no noise
@@ -74,8 +74,8 @@ struct LimitModel {
     float least_cosine_square = 0;       // angle between ray and normal
     float largest_footprint_square = 0;  // major axis of the beam on the surface, metres squared
     float largest_sigma = 0;             // range, metres
-    // Square of the distance, in metres squared, from which an echo at normal incidence is just detected. A scan has no
-    // point where this limit is missed, on blocking meshes too.
+    // Squared distance, in metres squared, from which an echo at normal incidence is just detected. A scan has no point
+    // that misses this limit, on blocking meshes either.
     float largest_reach_square = 0;
     friend bool operator==(const Limits&, const Limits&) = default;
   };
@@ -83,10 +83,10 @@ struct LimitModel {
   float exit_diameter = 0;                       // of the beam, metres
   float divergence = 0;                          // full angle, radians
   std::shared_ptr<const NoiseModel> noise = {};  // table for σ, whether noise is applied or not; set if σ is limited
-  // The echo of a ray is lost if its random bits are below this (shared/noise_types.h); 0: none is.
+  // A ray's echo is lost if its random bits are below this (shared/noise_types.h); 0: no echo is lost.
   std::uint32_t lost_below = 0;
   std::uint64_t seed = 0;  // that of the scanner's noise
-  bool glass = false;      // glass weakens echoes, and returns the beam near its normal; only if the scene has some
+  bool glass = false;      // glass weakens echoes, and reflects the beam near its normal; only if the scene has glass
   bool enabled() const { return !meshes.empty(); }
 };
 
@@ -100,10 +100,10 @@ struct TraceScanner {
 struct RegistrationJob;  // trace/registration_sums.hpp
 struct SceneDifference;  // scene/scene_difference.hpp
 
-// How the CPU engine finds the hits of whole scans. Results are the same.
+// Method by which the CPU engine finds the hits of whole scans. All give the same results.
 enum class WholeScans : std::uint8_t {
-  faster,  // of the two, by the scene's triangles and the rays
-  drawn,   // except from a head that stands in a surface
+  faster,  // the faster one, by the scene's triangles and the rays
+  drawn,   // except from a head that lies in a surface
   traced
 };
 
@@ -120,13 +120,13 @@ struct TraceScene {
   bool sort_triangles = true;  // for drivers that build on the given order; off only to measure the gain of sorting
 };
 
-// Whether glass weakens the echoes of any scanner.
+// Returns true if glass weakens the echoes of any scanner.
 inline bool weakens_through_glass(const TraceScene& scene) {
   return std::ranges::any_of(scene.scanners, [](const TraceScanner& s) { return s.limits && s.limits->glass; });
 }
 
-// A rotation as engines apply it to directions. Rows are rounded once from double and products summed from the left, so
-// every engine turns a direction into the same bits.
+// A rotation as engines apply it to directions. Rows are rounded once from double and products are summed from the
+// left, so every engine turns a direction into the same bits.
 struct Turn {
   Float3 x, y, z;
   Float3 operator()(const Float3& d) const {
@@ -139,10 +139,10 @@ struct TraceStation {
   Float3 origin;              // head, local frame
   std::uint32_t place = 0;    // index in its network; keys the noise
   std::uint32_t scanner = 0;  // index into TraceScene::scanners
-  // From the scanner's frame to the local one. Empty: upright, with the pattern's own directions.
+  // Rotation from the scanner's frame to the local one. Empty: upright, with the pattern's own directions.
   std::optional<Turn> turn = std::nullopt;
-  // Bit in a mask and index among a call's stations. Their places all lie within one run of `mask_bits` that begins at
-  // a multiple of it.
+  // Returns the bit in a mask and index among a call's stations. Their places all lie within one run of `mask_bits`
+  // that begins at a multiple of it.
   std::uint32_t bit() const { return place % static_cast<std::uint32_t>(mask_bits); }
 };
 
@@ -193,8 +193,8 @@ class Tracer {
                                                 std::span<const std::uint32_t> station_counts,
                                                 const CountOptions& options, const Progress& progress);
 
-  // Sampled: the same counts over the voxels of `sample` only (ascending indices), for many networks in one submission.
-  // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
+  // Sampled: the same counts, but only over the voxels of `sample` (ascending indices), for many networks in one
+  // submission. networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
     std::span<const std::uint32_t> sample;
     // Interleaved groups: voxel number i of the sample is in group i % groups. 0: omits what standard errors need,
@@ -215,10 +215,10 @@ class Tracer {
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                                    const Progress& progress) = 0;
-  // Takes a changed scene in place of its own, remaking what differs. Returns false, and changes nothing, if the engine
-  // cannot, or if a new one is as fast. An error changes nothing either.
+  // Takes a changed scene in place of its own, and remakes what differs. Returns false, and changes nothing, if the
+  // engine cannot, or if a new engine is as fast. An error changes nothing either.
   virtual bool take(const TraceScene&, const SceneDifference&) { return false; }
-  // Bytes copied to the device's own memory since it was set up.
+  // Returns the bytes copied to the device's own memory since it was set up.
   virtual std::uint64_t uploaded_bytes() const { return 0; }
   // Goal density: a voxel with count >= goal is saturated. Set once after construction.
   virtual void set_goal_density(double goal) { goal_density_ = goal; }
@@ -231,8 +231,8 @@ class Tracer {
 // device is set up anew, with a call to `warn`. Throws Error no_suitable_device with every refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn = {});
-// Device that make_tracer() takes, with the free part of its own memory. Unknown if it has no memory of its own or its
-// driver keeps no account.
+// Device that make_tracer() takes, with the free part of its own memory; unknown if it has none, or if its driver keeps
+// no account.
 struct ChosenDevice {
   Engine engine;
   bool software = false;

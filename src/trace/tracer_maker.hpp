@@ -16,7 +16,7 @@ class TracerMaker {
   // `own`: over the devices of this process. `fingerprint`: of the traced scene.
   virtual std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
                                        std::uint64_t fingerprint) = 0;
-  // Number of networks, of every ray, that keeps all processes busy.
+  // Returns the number of networks, of every ray, that keeps all processes busy.
   virtual std::size_t networks_at_once() const = 0;
 };
 

@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// For each vertex, the first vertex at the same place.
+// Returns for each vertex the first vertex at the same place.
 std::vector<std::uint32_t> first_at_its_place(std::span<const Float3> positions) {
   const auto place = [&](std::uint32_t v) {
     const Float3& p = positions[v];

@@ -11,12 +11,12 @@
 
 namespace vantage {
 
-// [3 t + k]: the triangle across triangle t's edge from corner k to the next. Corners are equal if their positions are,
-// bit for bit. `no_primitive` at an edge that does not belong to exactly two triangles.
+// Returns at [3 t + k] the triangle across triangle t's edge from corner k to the next. Corners are equal if their
+// positions are, bit for bit. `no_primitive` at an edge that does not belong to exactly two triangles.
 std::vector<std::uint32_t> triangle_neighbours(std::span<const Float3> positions, std::span<const Triangle> triangles);
 
-// Neighbours of the opaque triangles of a later scene, by those of the earlier one: kept ones of kept triangles, and of
-// others those among the same run of them. Empty if those of the earlier scene are.
+// Returns neighbours of the opaque triangles of a later scene: kept ones for kept triangles, and for others those
+// within the same run of new triangles. Empty if `neighbours` is.
 std::vector<std::uint32_t> neighbours_after(std::span<const std::uint32_t> neighbours, const SceneData& later,
                                             const SceneDifference& difference);
 

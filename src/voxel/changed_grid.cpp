@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Voxels of a changed scene. Bricks that a triangle touches which is gone or new are marked from nothing by all
-// triangles that touch them; all others stay.
+// Voxels of a changed scene. Bricks touched by a removed or new triangle are marked from scratch by all triangles that
+// touch them; all others stay.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -58,8 +58,8 @@ class Remarked {
     if (box.low[0] <= box.high[0]) boxes_.push_back(box);
   }
 
-  // Marks the bricks anew by all surveyed triangles of a scene that touch them. `bounds`: of its surveyed meshes with
-  // triangles, one by one.
+  // Marks the bricks from scratch by all surveyed triangles of a scene that touch them. `bounds`: of each of its
+  // surveyed meshes with triangles.
   void mark(const SceneData& scene, std::span<const MeshRange> surveyed, std::span<const Box> bounds) {
     std::ranges::sort(keys_);
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
@@ -91,11 +91,11 @@ class Remarked {
   }
 
   std::span<const std::uint64_t> keys() const { return keys_; }
-  // Brick number k as it was marked; null if no triangle touches it.
+  // Returns brick number k as marked; null if no triangle touches it.
   const VoxelBrick* brick(std::size_t k) const { return touched_[k] ? &marked_.bricks[k] : nullptr; }
 
  private:
-  // Whether corners, in bricks, lie where a changed mesh is or was. Wider than all roundings.
+  // Returns true if corners, in bricks, lie where a changed mesh is or was. Wider than all roundings.
   bool near(const std::array<std::array<double, 3>, 3>& corners) const {
     std::array<double, 3> low, high;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -25,11 +25,11 @@ using Corners = std::array<dvec3, 3>;
 using Cell = std::array<std::int64_t, 3>;
 
 // Largest distance from the plane of surface that still belongs to it, in half windows. A surface that bends by one
-// plane's 26° within half a window leaves the plane by tan 13° of it. Parallel surface further off is another sheet.
+// plane's 26° within half a window leaves the plane by tan 13° of it. A parallel surface further away is another sheet.
 constexpr double other_sheet = 0.25;
 // Triangles up to this share of a window, along any axis, count as a whole, by their middle.
 constexpr double small_share = 1.0 / 4;
-// Voxels between two checks of a stop; keys and lists of so many are kept at once.
+// Voxels between two checks of a stop; as many keys and lists are kept at once.
 constexpr std::size_t voxels_at_once = std::size_t{1} << 22;
 // Windows of a cell that one thread takes. A cell of a fine grid has thousands, and thousands of triangles around it.
 constexpr std::size_t windows_a_task = 128;
@@ -67,7 +67,7 @@ struct Cells {
   std::int64_t a_side;
 };
 
-// Cells about as wide as `wanted_m`, at least voxels and at most the grid.
+// Returns cells about as wide as `wanted_m`, at least voxels and at most the grid.
 Cells cells_of(const VoxelGrid& grid, double wanted_m) {
   const int shift = static_cast<int>(std::ceil(std::log2(wanted_m / grid.voxel_size())));
   return {grid, std::clamp(shift, 0, grid.depth())};
@@ -241,7 +241,7 @@ class SortedTriangles {
 
   std::span<const std::uint32_t> large() const { return large_; }
   bool any_small() const { return !small_.empty(); }
-  // Of a block, by its Morton key.
+  // Returns the small triangles of a block, by its Morton key.
   std::span<const Small> small_in(std::uint64_t block) const {
     const auto found = std::ranges::lower_bound(blocks_, block);
     if (found == blocks_.end() || *found != block) return {};

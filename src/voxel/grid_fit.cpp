@@ -23,7 +23,7 @@ constexpr double margin_share = 0.001;  // on either side: the cube's side is 1.
 constexpr double max_tilt =
     1.0 / 128;  // off the axis; thickness is the criterion, this only excludes small facets of curves
 
-// Slabs at the same heights weigh together.
+// Adds up the weights of slabs at the same heights.
 void merge(std::vector<Slab>& slabs) {
   std::ranges::sort(slabs, {}, [](const Slab& s) { return std::pair(s.low, s.high); });
   std::size_t out = 0;
@@ -88,7 +88,7 @@ Box bounds_of(const SceneData& scene, std::uint32_t first, std::uint32_t count) 
       },
       united);
 }
-// Those of places are known.
+// Returns the bounds of a mesh; those of places are stored.
 Box bounds_of(const SceneData& scene, const MeshRange& mesh) {
   if (!scene.shares()) return bounds_of(scene, mesh.first_triangle, mesh.triangle_count);
   Box bounds;
@@ -101,7 +101,7 @@ Box bounds_of(const SceneData& scene, const MeshRange& mesh) {
   return bounds;
 }
 
-// Weight of the slabs within `clearance` of a face.
+// Returns the weight of the slabs within `clearance` of a face.
 std::uint64_t weight_near_faces(std::span<const Slab> slabs, double voxel, double clearance) {
   std::uint64_t sum = 0;
   for (const Slab& s : slabs)
@@ -109,7 +109,7 @@ std::uint64_t weight_near_faces(std::span<const Slab> slabs, double voxel, doubl
   return sum;
 }
 
-// The smallest shift of the grid, at most `most` either way, that leaves the least weight within `clearance` of a face.
+// Returns the smallest shift of the grid, within ± `most`, with the least weight within `clearance` of a face.
 double best_shift(std::span<const Slab> slabs, double voxel, double clearance, double most) {
   struct Event {
     double at;
@@ -198,7 +198,7 @@ GridCube cube_around(const Box& bounds, const Box& local_bounds, double user_siz
   return cube;
 }
 
-// The cube, moved off the planes.
+// Returns the cube, moved off the planes.
 GridFit moved_off(const AxisSlabs& slabs_along, const GridCube& cube) {
   GridFit fit = cube.fit;
   const double voxel = 1.0 / fit.inverse_size, edge = std::ldexp(voxel, fit.depth), clearance = cube.clearance;
@@ -289,7 +289,7 @@ std::optional<GridFit> refit_grid(const FitBasis& before, const SceneData& scene
     if (added[axis].empty() && taken[axis].empty()) continue;
     slabs.insert(slabs.end(), added[axis].begin(), added[axis].end());
     merge(slabs);
-    for (const Slab& slab : taken[axis]) {  // each is there: it was counted before
+    for (const Slab& slab : taken[axis]) {  // each is present: it was counted before
       const auto at = std::ranges::lower_bound(slabs, std::pair(slab.low, slab.high), {},
                                                [](const Slab& s) { return std::pair(s.low, s.high); });
       at->weight -= slab.weight;

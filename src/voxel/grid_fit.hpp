@@ -24,10 +24,10 @@ struct Slab {
   double low, high;
   std::uint64_t weight;  // area, as an integer so that sums do not depend on the order
 };
-// Those of each axis, ascending; those at the same heights weigh together.
+// Slabs of each axis, ascending; those at the same heights add up their weights.
 using AxisSlabs = std::array<std::vector<Slab>, 3>;
 
-// The cube around the surveyed meshes before it is moved, and what decides how it moves.
+// The cube around the surveyed meshes before it is moved, and the values that determine its move.
 struct GridCube {
   GridFit fit;
   std::array<double, 3> low{}, high{};  // of the surveyed meshes
@@ -45,7 +45,7 @@ struct FitBasis {
   AxisSlabs slabs;
 };
 
-// The cube of `VoxelGrid::build`.
+// Returns the cube of `VoxelGrid::build`.
 //
 // Host and device must find the same voxel, so the grid is *defined* by the floats that the device reads. `min` and
 // `inverse_size` are rounded once, here, and the voxel size is 1 / inverse_size in double. A face then lies at a whole
@@ -56,20 +56,20 @@ struct FitBasis {
 // cube is therefore moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
 // `face_clearance` of a face. If there are too many planes for that, their area within it is minimised.
 //
-// `basis`: receives what the grid was fitted to, if given.
+// `basis`: receives the data that the grid was fitted to, if given.
 GridFit fit_grid(const SceneData& scene, std::span<const MeshRange> surveyed, double user_size_m,
                  FitBasis* basis = nullptr);
 
-// The same for a changed scene, from the basis of the scene before. Empty if the cube is another one before it is
-// moved, or if no basis was kept of that many planes. Both spans are the scenes' surveyed_ranges().
+// Does the same for a changed scene, from the basis of the scene before. Empty if the cube, before its move, is another
+// one, or if no basis was kept because of too many planes. Both spans are the scenes' surveyed_ranges().
 std::optional<GridFit> refit_grid(const FitBasis& before, const SceneData& scene_before, const SceneData& scene,
                                   std::span<const MeshRange> surveyed, const SceneDifference& difference,
                                   double user_size_m, FitBasis& basis);
 
-// Distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's side, at least a
-// thousandth and at most an eighth of a voxel. A hit's position carries the roundings of t, t·d and o + t·d, its cell
-// those of two more operations; 4 ulp were the worst seen. The upper limit keeps most of each voxel free in very fine
-// grids.
+// Returns the distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's
+// side, at least a thousandth and at most an eighth of a voxel. A hit's position carries the roundings of t, t·d and o
+// + t·d, its cell those of two more operations; 4 ulp were the worst seen. The upper limit keeps most of each voxel
+// free in very fine grids.
 double face_clearance(double reach_m, double voxel_size_m);
 
 }  // namespace vantage

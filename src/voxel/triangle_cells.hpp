@@ -51,7 +51,7 @@ class TriangleCells {
     within[static_cast<std::size_t>(full_ ? 0 : u_)] = {layers * part / parts, layers * (part + 1) / parts - 1};
     walk(within, visit);
   }
-  // Only for the cells from `low` to `high`, both included.
+  // Visits only the cells from `low` to `high`, both included.
   template <class Visit>
   void for_each_within(const Cell& low, const Cell& high, Visit&& visit) const {
     if (empty_) return;
@@ -183,7 +183,7 @@ class TriangleCells {
     return true;
   }
 
-  // A range of j that contains every cell (i, j) inside the projection on (u, v).
+  // Returns a range of j that contains every cell (i, j) inside the projection on (u, v).
   Range row(std::int64_t i) const {
     double first = 0, last = static_cast<double>(count_[v_] - 1);
     for (const Edge& e : uv_) {
@@ -202,7 +202,7 @@ class TriangleCells {
     return {static_cast<std::int64_t>(std::ceil(first)), static_cast<std::int64_t>(std::floor(last))};
   }
 
-  // Cells that the plane crosses within column (i, j), inside the triangle's extent.
+  // Returns the cells that the plane crosses within column (i, j), inside the triangle's extent.
   Range column(std::int64_t i, std::int64_t j) const {
     if (!plane_known_) return {0, count_[w_] - 1};
     const double middle = height_ - slope_u_ * static_cast<double>(i) - slope_v_ * static_cast<double>(j);

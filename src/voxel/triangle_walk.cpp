@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Large enough to make handing out a piece cheap, small enough that all threads end together.
+// Large enough to make handing out a piece cheap, small enough for all threads to end together.
 constexpr double cells_a_piece = 1 << 16;
 // Least number of steps, for work of a second or more.
 constexpr double steps = 64, least_cells_a_step = 1 << 25;

@@ -19,8 +19,8 @@ class TriangleWalk {
   // Borrows the scene; `meshes` are some of its ranges, and `grid` is the finest grid that will be walked.
   TriangleWalk(const SceneData& scene, std::span<const MeshRange> meshes, const GridTransform& grid);
 
-  // Area of all triangles in faces of cells, a lower bound on the cells except for slivers. Coincident triangles count
-  // several times.
+  // Returns the area of all triangles in faces of cells, a lower bound on the cells except for slivers. Coincident
+  // triangles count several times.
   double area() const { return area_; }
 
   // Calls visit(cell) for each cell that a triangle touches, once per triangle. `make_visit(mesh)` makes a visitor for

@@ -33,8 +33,8 @@ void check_area(const TriangleWalk& triangles) {
                     " voxels, more than the 4294967294 that can be numbered; use a larger user size");
 }
 
-// Sorted keys of the bricks that a triangle touches; empty if stopped. A brick's closed box is the union of its voxels'
-// closed boxes, so these are exactly the bricks that hold a marked voxel.
+// Returns the sorted keys of the bricks that a triangle touches; empty if stopped. A brick's closed box is the union of
+// its voxels' closed boxes, so these are exactly the bricks that hold a marked voxel.
 std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& triangles, const GridTransform& grid,
                                                          std::int64_t bricks_per_side, const Progress& progress) {
   struct Keys {
@@ -142,7 +142,7 @@ std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const M
   if (!walk.for_each(grid, std::int64_t{1} << depth, progress, [&](std::size_t) { return MarkVoxels(result); }))
     return std::nullopt;
 
-  // A brick may be empty if rounding drops its every voxel; it stays, since indices skip it.
+  // A brick may be empty if rounding drops all its voxels; it stays, since indices skip it.
   number_bricks(result);
   return result;
 }

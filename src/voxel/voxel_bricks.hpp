@@ -23,11 +23,11 @@ struct GridTransform {
   std::array<double, 3> min{};
   double inverse_size = 1;
   std::array<std::array<double, 3>, 3> corners(const std::array<Float3, 3>& triangle) const;
-  // The same grid in cells of 2^shift voxels; exact.
+  // Returns the same grid in cells of 2^shift voxels; exact.
   GridTransform coarser(int shift) const { return {min, inverse_size / static_cast<double>(1 << shift)}; }
 };
 
-// Bit of a voxel within its brick, from voxel coordinates.
+// Returns the bit of a voxel within its brick, from voxel coordinates.
 std::uint32_t brick_bit(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
 // Bricks in Morton order that hold every voxel, of 2^depth per side, touched by one of the triangles; `first` is the
@@ -37,19 +37,19 @@ struct VoxelBricks {
   std::vector<BrickSlot> slots;
   std::uint64_t voxels = 0;
 };
-// Of some ranges of the scene's triangles. Empty if stopped.
+// Marks the bricks of some ranges of the scene's triangles. Empty if stopped.
 std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const MeshRange> triangles,
                                        const GridTransform& grid, int depth, const Progress& progress = {});
 
-// Hash table over bricks.
+// Returns a hash table over bricks.
 std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks);
 // Counts the voxels, and fills `first` of the bricks. Throws as mark_bricks().
 void number_bricks(VoxelBricks& marked);
 
-// Index of the brick with these brick coordinates, or no_brick.
+// Returns the index of the brick with these brick coordinates, or no_brick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-// Sets the bits of the voxels that a triangle touches, in the bricks that there are. Several may work at once.
+// Sets the bits of the voxels that a triangle touches, in existing bricks. Several may work at once.
 class MarkVoxels {
  public:
   explicit MarkVoxels(VoxelBricks& bricks) : bricks_(bricks) {}
@@ -77,7 +77,7 @@ class MarkVoxels {
   VoxelBrick* brick_ = nullptr;
 };
 
-// Surveyed meshes.
+// Returns the ranges of surveyed meshes.
 std::vector<MeshRange> surveyed_ranges(const SceneData& scene);
 
 }  // namespace vantage

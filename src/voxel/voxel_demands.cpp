@@ -13,8 +13,8 @@
 namespace vantage {
 namespace {
 
-// Per voxel index: among the demands of surveyed meshes that touch the voxel, the first in the order of `before`.
-// `last` is the last of that order, and some surveyed mesh demands it. Empty if all demand it.
+// Returns for each voxel index, among the demands of surveyed meshes that touch the voxel, the first in the order of
+// `before`. `last` is the last in that order, demanded by some surveyed mesh. Empty if all demand it.
 template <class T, class Before>
 std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& grid, std::span<const T> of_mesh,
                                        T last, Before before, const Progress& progress) {
@@ -47,7 +47,7 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
   return found;
 }
 
-// The demand that comes last among surveyed meshes. REQUIRES: one is surveyed.
+// Returns the demand that comes last among surveyed meshes. REQUIRES: one is surveyed.
 template <class T, class Before>
 T last_of(const SceneData& scene, std::span<const T> of_mesh, Before before) {
   std::optional<T> last;

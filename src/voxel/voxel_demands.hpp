@@ -24,26 +24,26 @@ struct VoxelDemands {
 
   std::uint32_t weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
   std::uint32_t point_weight(std::size_t k) const { return point_weights.empty() ? 1 : point_weights[k]; }
-  // Point weight in a voxel of the densest goal.
+  // Returns the point weight in a voxel of the densest goal.
   std::uint32_t least_point_weight() const;
-  // Demands of a sample. REQUIRES: voxel_indices below the number of voxels.
+  // Returns the demands of a sample. REQUIRES: voxel_indices below the number of voxels.
   VoxelDemands of(std::span<const std::uint32_t> voxel_indices) const;
 };
 
 inline constexpr std::uint32_t densest_point_weight = 4096;
 
-// Per voxel index: largest weight of the surveyed meshes that touch the voxel. Empty if all surveyed meshes have equal
-// weights, since only ratios matter. No value if stopped. Parallel; the result does not depend on the number of
-// threads.
+// Returns for each voxel index the largest weight of the surveyed meshes that touch the voxel. Empty if all surveyed
+// meshes have equal weights, since only ratios matter. No value if stopped. Parallel; the result does not depend on the
+// number of threads.
 std::optional<std::vector<std::uint8_t>> voxel_weights(const SceneData& scene, const VoxelGrid& grid,
                                                        const Progress& progress);
 
-// Finest spacing wanted of surveyed meshes, metres; one spacing per mesh of the scene. REQUIRES: one is surveyed.
+// Returns the finest wanted spacing of surveyed meshes, metres; one spacing per mesh. REQUIRES: one is surveyed.
 double finest_spacing(const SceneData& scene, std::span<const double> spacings_m);
 
-// Per voxel index: point weight if surveyed meshes want different spacings; the finest of the meshes that touch the
-// voxel applies. Every voxel wants at least one point. Empty if all want the same; no value if stopped. Parallel; the
-// result does not depend on the number of threads.
+// Returns for each voxel index the point weight if surveyed meshes want different spacings; the finest spacing of the
+// meshes that touch the voxel applies. Every voxel wants at least one point. Empty if all want the same; no value if
+// stopped. Parallel; the result does not depend on the number of threads.
 std::optional<std::vector<std::uint32_t>> point_weights(const SceneData& scene, const VoxelGrid& grid,
                                                         std::span<const double> spacings_m, const Progress& progress);
 

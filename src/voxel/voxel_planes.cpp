@@ -21,13 +21,13 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 // Distance from a plane within which a corner lies in it, as a share of a voxel.
 constexpr double kFlat = 1e-3;
-// Least width of a surface: that of a door's leaf, and half a voxel.
+// Least width of a surface: a door's leaf, and half a voxel.
 constexpr double kWide_m = 0.75, kWideInVoxels = 0.5;
-// Two planes of a voxel that differ by less, in their normals and by this share of a voxel in place, are one.
+// Two planes of a voxel count as one if they differ by less, in their normals and by this share of a voxel in place.
 constexpr double kSame = 1e-3;
 // Least share of a voxel's surface that lies in one direction (`one_plane`) if the voxel is flat.
 constexpr double kFlatShare = 0.95;
-// A triangle of so many voxels or more is walked in parts, side by side.
+// A triangle of this many voxels or more is walked in parts, in parallel.
 constexpr double kLargeTriangle = 1 << 16;
 
 // Triangles that follow each other and lie in one plane.
@@ -56,7 +56,7 @@ struct Surface {
   }
 };
 
-// Every pair of a voxel and a triangle that touches it. Triangles are walked once, for the lists are made in two turns.
+// Every pair of a voxel and a triangle that touches it. Triangles are walked once, since lists are made in two passes.
 class TouchFinder {
  public:
   TouchFinder(const SceneData& scene, const VoxelGrid& grid) : grid_(grid) {
@@ -112,7 +112,7 @@ class TouchFinder {
   std::vector<Pairs> pairs_;
 };
 
-// The plane of a voxel's surface if nearly all of it lies in one direction.
+// Returns the plane of a voxel's surface if nearly all of it lies in one direction.
 std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<const std::uint32_t> triangles,
                                              const Vec3& middle, double face_m2) {
   struct Part {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The planes of surfaces in each voxel: a place is on one side of each.
+// The planes of surfaces in each voxel; a place lies on one side of each.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 
 namespace vantage {
 
-// Two kinds of planes. Walls, boards, slabs and closed doors, with one face or two, have one in each voxel that they
-// touch: flat surfaces of triangles that follow each other in a mesh, wide enough to part what stands on either side.
-// Any other voxel whose surface lies in one direction has the plane of that, as on a vault of small triangles. Steps,
+// Planes are of two kinds. Walls, boards, slabs and closed doors, with one face or two, have one in each voxel that
+// they touch: flat surfaces of consecutive triangles of a mesh, wide enough to part the space on either side. Any other
+// voxel whose surface lies in one direction has the plane of that surface, as on a vault of small triangles. Steps,
 // furniture and pipes have no sides where their surfaces meet, since places on either side of one of their planes may
 // well see the same surface beside it. Winding does not matter.
 class VoxelPlanes {
@@ -24,7 +24,7 @@ class VoxelPlanes {
   // Parallel; the result does not depend on the number of threads.
   VoxelPlanes(const SceneData& scene, const VoxelGrid& grid);
 
-  // The side of a voxel's planes on which a place lies (local frame): bit k is set behind its k-th plane.
+  // Returns the side of a voxel's planes on which a place lies (local frame): bit k is set behind its k-th plane.
   std::uint32_t side(std::uint64_t voxel_index, const Float3& place) const {
     std::uint32_t side = 0, bit = 1;
     for (const std::uint32_t p : of(voxel_index)) {
@@ -37,7 +37,7 @@ class VoxelPlanes {
     }
     return side;
   }
-  // All sides are below this number; 1 for a voxel without planes.
+  // Returns a number above all sides; 1 for a voxel without planes.
   std::uint32_t sides(std::uint64_t voxel_index) const { return std::uint32_t{1} << of(voxel_index).size(); }
 
   struct Plane {

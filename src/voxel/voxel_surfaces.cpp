@@ -26,7 +26,7 @@ void clip_to_unit_cube(ClippedPolygon& polygon) {
   }
 }
 
-// Area, over (voxel size)², of a plane's section with the unit cube.
+// Returns the area, over (voxel size)², of a plane's section with the unit cube.
 double section(const Point& point, const Point& normal) {
   const Point other = std::abs(normal.x) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
   const Point u = normalize(cross(normal, other)) * 4.0, v = cross(normal, u);  // beyond every corner of the cube
@@ -63,7 +63,7 @@ struct Plane {
   }
 };
 
-// In grid units, relative to the voxel's low corner.
+// Returns parts in grid units, relative to the voxel's low corner.
 std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transform, const Point& low,
                            std::span<const std::uint32_t> triangles) {
   std::vector<Part> parts;
@@ -84,7 +84,7 @@ std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transfor
   return parts;
 }
 
-// The mesh with most area; the lower one of equals. REQUIRES: at least one part.
+// Returns the mesh with most area; the lower one of equals. REQUIRES: at least one part.
 std::uint32_t largest_mesh(std::span<const Part> parts) {
   std::vector<std::pair<std::uint32_t, double>> meshes;  // a few at most
   for (const Part& part : parts) {

@@ -29,14 +29,14 @@ struct VoxelSurface {
   float diffuse = 0;       // mean diffuse coefficient of that surface
 };
 
-// Finds the surfaces of a series of samples of voxels. What does not depend on the sample is made once.
+// Finds the surfaces of a series of samples of voxels. Makes data that do not depend on the sample only once.
 class SurfaceFinder {
  public:
   SurfaceFinder(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid,
                 std::shared_ptr<SampleTriangles> triangles);
   SurfaceFinder(const SceneData& scene, const VoxelGrid& grid);  // borrows both
 
-  // Clips every surveyed triangle to the voxel's cube, in double. Of two parallel sheets in one voxel, as of a thin
+  // Clips every surveyed triangle to the voxel's cube, in double. If two parallel sheets lie in one voxel, as in a thin
   // wall, the larger counts. A plane has at most the area of its section with the cube, so a sheet modelled twice
   // counts once. A window of `window_m` metres around each plane's point, if wider than a voxel, reduces its share to
   // the flat part at that scale. A stop ends it early, with no surfaces. Parallel; a voxel's surface depends neither on
@@ -52,7 +52,7 @@ class SurfaceFinder {
   std::unique_ptr<const FlatWindows> windows_;  // of the last window
 };
 
-// The same for one sample.
+// Does the same for one sample.
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
                                          std::span<const std::uint32_t> voxel_indices, double window_m = 0,
                                          const std::stop_token& stop = {});

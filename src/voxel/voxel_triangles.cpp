@@ -215,7 +215,7 @@ std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::
   if (std::ranges::equal(first_, voxel_indices)) return nullptr;
   if (!bricks_ || bricks_->margin_m < margin_m) {
     const double margin = to_spare * margin_m;
-    // A thread that waits for this must not take up other work, which might wait here, too.
+    // A thread that waits here must not take up other work, which might wait here, too.
     tbb::this_task_arena::isolate([&] {
       bricks_ = std::make_shared<const Bricks>(
           Bricks{margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size())});

@@ -20,14 +20,14 @@ struct VoxelTriangles {
   std::vector<std::uint32_t> triangle;
 };
 
-// Surveyed triangles that touch each voxel's cube widened by `margin_m` on every side. Parallel; the result does not
-// depend on the number of threads. REQUIRES: voxel_indices ascending, without duplicates, below grid.size(); margin_m
-// >= 0. Throws Error out_of_memory if the lists would hold more than 2^32 − 1 triangles.
+// Returns the surveyed triangles that touch each voxel's cube widened by `margin_m` on every side. Parallel; the result
+// does not depend on the number of threads. REQUIRES: voxel_indices ascending, without duplicates, below grid.size();
+// margin_m >= 0. Throws Error out_of_memory if the lists would hold more than 2^32 − 1 triangles.
 VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid,
                                   std::span<const std::uint32_t> voxel_indices, double margin_m);
 
-// The same for a series of samples. The second call makes lists of each brick's triangles; from then on a sample's cost
-// depends on what it touches, not on the whole scene. Callable from several threads at once.
+// Does the same for a series of samples. The second call makes lists of each brick's triangles; from then on a sample's
+// cost depends on the bricks that it touches, not on the whole scene. Callable from several threads at once.
 class SampleTriangles {
  public:
   SampleTriangles(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid);
@@ -38,7 +38,7 @@ class SampleTriangles {
     double margin_m;
     VoxelTriangles triangles;  // one list per brick
   };
-  // Null while a walk over the scene is as fast.
+  // Returns null while a walk over the scene is as fast.
   std::shared_ptr<const Bricks> bricks_for(std::span<const std::uint32_t> voxel_indices, double margin_m);
   VoxelTriangles by_bricks(const Bricks& bricks, std::span<const std::uint32_t> voxel_indices, double margin_m) const;
 

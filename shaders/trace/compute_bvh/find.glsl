@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// find() of own_rays.comp over our own binary BVH. Its boxes are wider than their triangles by more than rays are off.
+// find() of own_rays.comp over our own binary BVH. Its boxes are widened by more than the error of rays.
 #include "lib/scene_triangle.glsl"
 #include "trace/compute_bvh/own_frame.glsl"
 #include "trace/compute_bvh/walk.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a caller's own in the frame of a mesh that nodes share.
+// A caller's own rays in the frame of a mesh that nodes share.
 #ifndef VANTAGE_TRACE_COMPUTE_BVH_OWN_FRAME
 #define VANTAGE_TRACE_COMPUTE_BVH_OWN_FRAME
 #include "lib/crossing.glsl"
@@ -8,7 +8,7 @@
 
 struct MovedRay {
   vec3 origin, direction;
-  float doubt;  // by which corners of the mesh, rounded where it stands, may be elsewhere for the ray
+  float doubt;  // error of the placed mesh's rounded corners for the ray
 };
 
 MovedRay moved_into(BvhPlacement place, vec3 origin, vec3 direction) {

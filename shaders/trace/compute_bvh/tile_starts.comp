@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the nodes of the BVH at which rays of each listed tile may start: one thread per tile. The rays of a tile leave
-// one point in almost the same direction, so their upper steps down the tree are alike; the tile takes these steps once
-// for its 1024 rays.
+// one point in almost the same direction, so that their upper steps down the tree are alike. The tile takes these steps
+// once for its 1024 rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/tiles.glsl"
@@ -41,7 +41,7 @@ Beam beam_of(uint tile, float far) {
   return beam;
 }
 
-// Distance of the box from the origin; negative if it is outside the beam.
+// Returns the distance of the box from the origin; negative if it is outside the beam.
 float distance_in(Beam beam, vec3 centre, vec3 half_size) {
   for (uint k = 0u; k < 4u; ++k)
     if (dot(beam.planes[k], centre) + dot(abs(beam.planes[k]), half_size) < 0.0) return -1.0;
@@ -56,7 +56,7 @@ void main() {
   Beam beam = beam_of(tile, min(parameters.max_range, push.tile_far.at[tile]));
   if (turned)
     for (uint p = 0u; p < 4u; ++p) beam.planes[p] = turn_direction(push.turn, beam.planes[p]);
-  // Twice as wide as the rays' own boxes of nodes, so that everything that a ray would enter is in the beam.
+  // Twice the widening of the rays' own boxes of nodes, so that the beam holds all nodes that a ray would enter.
   const float widening = 4.0 * widening_of(push.origin);
 
   // Nodes that may still be opened, first in first out, and nodes where rays start, nearest first; together at most

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// trace() over our own binary BVH, of one level, or of two where nodes share meshes.
+// trace() over our own binary BVH, of one level, or of two if nodes share meshes.
 #include "lib/scene_triangle.glsl"
 #include "trace/compute_bvh/walk.glsl"
 
-// Uncontracted, so that all devices move a ray alike.
+// Moves a ray into a mesh's frame, uncontracted, so that all devices do it alike.
 FrameRay ray_in_mesh(BvhPlacement place, vec3 origin, vec3 direction) {
   precise vec3 from = origin - place.origin;
   const vec3 moved = vec3(exact_dot(place.row0, from), exact_dot(place.row1, from), exact_dot(place.row2, from));
   const vec3 along = vec3(exact_dot(place.row0, direction), exact_dot(place.row1, direction),
                           exact_dot(place.row2, direction));
-  // As widening_of(): boxes are widened by four times that of their largest coordinate.
+  // As in widening_of(): boxes are widened by four times that of their largest coordinate.
   const vec3 far = abs(moved);
   const float widening = max(0.25 * place.widening, max(max(far.x, far.y), far.z) * (1.0 / 524288.0));
   return frame_ray(moved, along, widening, place.widening, place.base);
 }
 
-// As walk(), over the tree of the scene and those of its shared meshes.
+// Works as walk(), over the tree of the scene and those of its shared meshes.
 Hit walk_placed(vec3 origin, vec3 direction, float t_min, float t_max, float enough, Starts starts) {
   Hit best = Hit(t_max, no_primitive, vec2(0));
   FrameRay ray = ray_in_tree(bvh_nodes, origin, direction);

@@ -6,7 +6,7 @@
 #include "trace/compute_bvh/nodes.glsl"
 #include "trace/hit.glsl"
 
-// A ray for tests against nodes' boxes, where a last bit does no harm: contraction is welcome.
+// A ray for tests against nodes' boxes. A wrong last bit does no harm, so contraction is allowed.
 struct NodeRay {
   vec3 inverse;
   vec3 moved;  // origin · inverse
@@ -19,9 +19,9 @@ NodeRay node_ray(vec3 origin, vec3 inverse, float widening, float built_widening
   return NodeRay(inverse, origin * inverse, abs(inverse) * larger);
 }
 
-// Interval of the ray inside a box, from x to y, up to t_max. Non-negative floats are ordered as their bits, and a GPU
-// takes the maximum of three integers at once. A negative value becomes any negative number, which begins before t_min,
-// or ends before it.
+// Returns the interval of the ray inside a box, from x to y, up to t_max. Non-negative floats are ordered as their
+// bits, and a GPU takes the maximum of three integers at once. A negative value becomes any negative number; as a begin
+// or an end, it lies before t_min either way.
 ivec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size, int t_min, int t_max) {
   const vec3 middle = centre * ray.inverse - ray.moved;
   const ivec3 near = floatBitsToInt(middle - half_size * ray.size), far = floatBitsToInt(middle + half_size * ray.size);
@@ -44,12 +44,12 @@ FrameRay frame_ray(vec3 origin, vec3 direction, float widening, float built_wide
                   node_ray(origin, inverse, widening, built_widening), base);
 }
 
-// In the frame of a tree whose root is node 0.
+// Returns the ray in the frame of a tree whose root is node 0.
 FrameRay ray_in_tree(NodeQuarters nodes, vec3 origin, vec3 direction) {
   return frame_ray(origin, direction, widening_of(origin), uintBitsToFloat(nodes.at[2].w), 0u);
 }
 
-// Children of a node, and how many of them the ray enters before t_max: both, the nearer alone, or none.
+// Children of a node, and the number that the ray enters before t_max: both, only the nearer, or none.
 struct Children {
   uint nearer, farther;
   bool both, none;
@@ -67,7 +67,7 @@ Children children_of(NodeQuarters nodes, uint node, NodeRay ray, float t_min, fl
   return Children(first0 ? child0 : child1, first0 ? child1 : child0, hit0 && hit1, !hit0 && !hit1);
 }
 
-// Replaces the best hit by that of triangle i, if that is better.
+// Replaces the best hit by that of triangle i if that is better.
 void meet_corners(inout Hit best, TriangleCorners corners, uint i, float t_min, FrameRay ray) {
   const uvec4 word_a = corners.at[3u * i], word_b = corners.at[3u * i + 1u], word_c = corners.at[3u * i + 2u];
   meet_triangle(best, t_min, ray.shear, ray.origin, ray.inverse, ray.widening, uintBitsToFloat(word_a.xyz),
@@ -77,7 +77,7 @@ void meet_corners(inout Hit best, TriangleCorners corners, uint i, float t_min, 
 uint first_of_leaf(uint leaf) { return leaf & bvh_leaf_first_mask; }
 uint last_of_leaf(uint leaf) { return first_of_leaf(leaf) + ((leaf >> bvh_leaf_count_shift) & 7u); }
 
-// Node at which the ray continues once its start node is finished.
+// Returns the node at which the ray continues once its start node is finished.
 uint next_start(Starts starts, inout uint started, inout uint depth, float nearest) {
   if (starts.list == 0ul || started == tile_starts) return bvh_end;
   const TileStart start = TileStarts(starts.list).at[starts.tile * tile_starts + started];
@@ -87,7 +87,7 @@ uint next_start(Starts starts, inout uint started, inout uint depth, float neare
   return start.node;
 }
 
-// As trace(), over the tree in these arrays.
+// Works as trace(), over the tree in these arrays.
 Hit walk(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 direction, float t_min, float t_max,
          float enough, Starts starts) {
   Hit best = Hit(t_max, no_primitive, vec2(0));
@@ -99,8 +99,8 @@ Hit walk(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 directio
   uint current = 0u;  // the root is always a node
   uint started = 1u;
   if (starts.list != 0ul) current = TileStarts(starts.list).at[starts.tile * tile_starts].node;
-  // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves instead of
-  // alternating between nodes and triangles. The time goes into the instructions of the loop over nodes.
+  // Goes down to a leaf first, then tests its triangles: threads of a subgroup thus wait for each other at leaves
+  // instead of alternating between nodes and triangles. Most time goes into instructions of the loop over nodes.
   for (;;) {
     while ((current & bvh_leaf_bit) == 0u) {
       const Children met = children_of(nodes, current, ray.node, t_min, best.t);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// find() of own_rays.comp by VK_KHR_ray_query, over boxes around triangles: a driver may decide about its own triangles
-// as it likes near edges, but it tells of every box that a ray meets. Boxes are wider than their triangles by more than
-// rays are off, the driver's own roundings included.
+// find() of own_rays.comp by VK_KHR_ray_query, over boxes around triangles. A driver may decide about its own triangles
+// as it likes near edges, but it reports every box that a ray meets. Boxes are widened by more than the error of rays,
+// the driver's own roundings included.
 #extension GL_EXT_ray_query : require
 #include "lib/scene_triangle.glsl"
 #include "shared/ray_query_types.h"
@@ -12,7 +12,7 @@ layout(set = 0, binding = 1) uniform accelerationStructureEXT acceleration_struc
 void find(inout Found found, OwnRay ray, float start) {
   const Line line = line_along(ray.origin, ray.direction, scene_doubt(ray.origin));
   Line mesh_line = line;
-  uint mesh_instance = no_primitive;  // that mesh_line belongs to
+  uint mesh_instance = no_primitive;  // owner of mesh_line
   TriangleCorners corners = TriangleCorners(parameters.traversal[primitive_ids_array]);
   rayQueryEXT query;
   rayQueryInitializeEXT(query, acceleration_structure, gl_RayFlagsNoneEXT, 0xFF, ray.origin, start, ray.direction,
@@ -44,7 +44,7 @@ void find(inout Found found, OwnRay ray, float start) {
       rayQueryTerminateEXT(query);
       return;
     }
-    // The walk ends where the nearest sure hit does.
+    // Ends the walk at the nearest sure hit.
     if (found.far < far) rayQueryGenerateIntersectionEXT(query, max(found.far, start));
   }
 }

@@ -10,8 +10,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Que
 
 layout(set = 0, binding = 1) uniform accelerationStructureEXT acceleration_structure;
 
-// Weights of a triangle's second and third vertex at a hit. The driver's own are accurate to 1e-5 at best, which would
-// show in normals and reflectivities.
+// Returns the weights of a triangle's second and third vertex at a hit. The driver's own are accurate to 1e-5 at best,
+// which would show in normals and reflectivities.
 vec2 barycentric_of(uint triangle, vec3 origin, vec3 direction, vec2 otherwise) {
   const Corners corners = corners_of(triangle, origin);
   const vec3 edges = edge_functions(sheared(shear_along(direction), vec3(0), corners.a, corners.b, corners.c));

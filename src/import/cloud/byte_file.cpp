@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kBlock = std::size_t{1} << 20, kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostOpen = 16;
 
-// In the order in which they were opened.
+// Returns the open files, in the order in which they were opened.
 std::vector<ByteFile*>& open_files() {
   static std::vector<ByteFile*> files;
   return files;

@@ -14,7 +14,7 @@
 
 namespace vantage::importer {
 
-// Little-endian value at a place in memory.
+// Returns the value at a place in memory, little-endian by default.
 template <class T>
 T value_at(const char* bytes, bool big_endian = false) {
   char copy[sizeof(T)];
@@ -26,11 +26,11 @@ T value_at(const char* bytes, bool big_endian = false) {
   return value;
 }
 
-// A whole text as a number; empty if it is none.
+// Parses a whole text as a number; empty if it is none.
 std::optional<double> number_of(std::string_view text);
 
-// A file read forwards, in large blocks. A folder may hold thousands: the last few that were read are open, and have a
-// buffer.
+// Reads a file forwards, in large blocks. A folder may hold thousands of files, so only the last few that were read are
+// open and have a buffer.
 class ByteFile {
  public:
   // Throws Refused.
@@ -42,17 +42,17 @@ class ByteFile {
   std::uint64_t size() const { return size_; }
   std::uint64_t place() const { return begin_ + at_; }
   void seek(std::uint64_t place);
-  // Bytes up to the file's end.
+  // Returns the number of bytes up to the file's end.
   std::uint64_t left() const { return size_ - std::min(size_, place()); }
-  // Returns so many next bytes, valid until the next call. Throws Refused if the file ends before.
+  // Returns the next bytes, valid until the next call. Throws Refused if the file ends before.
   const char* take(std::size_t bytes);
-  // Next line without its end, valid until the next call; empty at the end. Throws Refused for absurdly long ones.
+  // Returns the next line without its end, valid until the next call; empty at the end. Throws Refused if too long.
   std::optional<std::string_view> line();
 
  private:
   bool fill(std::size_t bytes);
   void open();
-  void rest();  // without its buffer and its descriptor, until it is read again
+  void rest();  // gives up the buffer and the descriptor until the next read
 
   std::filesystem::path path_;
   std::ifstream stream_;

@@ -8,7 +8,7 @@
 namespace vantage::importer {
 namespace {
 
-// More points than these say nothing new of a cell, and sums of floats would no longer be exact enough.
+// More points say nothing new of a cell, and sums of floats would no longer be exact enough.
 constexpr std::uint32_t kMostPoints = 1 << 14;
 constexpr int kBits = 21;
 

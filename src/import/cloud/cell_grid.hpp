@@ -13,7 +13,7 @@ namespace vantage::importer {
 
 using CellIndex = Eigen::Vector3i;
 
-// First and second moments of points, in cells, about a place of the caller's.
+// First and second moments of points, in cells, about a place that the caller chooses.
 struct Moments {
   double count = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -23,7 +23,7 @@ struct Moments {
   void add(const Moments& other, const Eigen::Vector3d& shift);
   Eigen::Vector3d mean() const { return sum / count; }
   Eigen::Matrix3d covariance() const { return products / count - mean() * mean().transpose(); }
-  // Mean square distance from the plane normal · x = offset.
+  // Returns the mean square distance from the plane normal · x = offset.
   double square_distance(const Eigen::Vector3d& normal, double offset) const;
 };
 
@@ -31,7 +31,7 @@ struct Cell {
   static constexpr std::uint16_t several = 0xFFFF;
   std::uint64_t key = 0;
   std::uint32_t count = 0;
-  std::uint16_t scan = 0;         // that alone saw it, or `several`
+  std::uint16_t scan = 0;         // the only scan that saw it, or `several`
   std::uint8_t seen_through = 0;  // rays of other scans that went through it
   bool kept = true;
   std::array<float, 3> sum{}, towards{};  // about its middle, in cells; summed unit vectors to the scanner
@@ -48,7 +48,7 @@ class CellGrid {
 
   CellGrid(const Eigen::Vector3d& middle, double cell_m);
 
-  // False if it lies too far away. `towards`: a unit vector to the scanner, or 0.
+  // Returns false if the point lies too far away. `towards`: a unit vector to the scanner, or 0.
   bool add(const Eigen::Vector3d& p, std::uint16_t scan, const Eigen::Vector3d& towards);
 
   double cell_m() const { return cell_m_; }
@@ -58,11 +58,11 @@ class CellGrid {
   std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
   Cell& operator[](std::uint32_t k) { return cells_[k]; }
   const Cell& operator[](std::uint32_t k) const { return cells_[k]; }
-  // Number of the cell there, or `none`. Cells that are not kept are found, too.
+  // Returns the number of the cell there, or `none`. Also finds cells that are not kept.
   std::uint32_t find(const CellIndex& index) const;
   static CellIndex index_of(const Cell& cell);
   static Eigen::Vector3d middle_of(const CellIndex& index) { return index.cast<double>().array() + 0.5; }
-  // Calls `visit(number, index)` for cells of the 26 around one.
+  // Calls `visit(number, index)` for each of the 26 cells around one that exists.
   template <class Visit>
   void for_all_around(const CellIndex& index, Visit&& visit) const {
     for (int z = -1; z <= 1; ++z)
@@ -73,14 +73,14 @@ class CellGrid {
           if (const std::uint32_t k = find(beside); k != none) visit(k, beside);
         }
   }
-  // The same for those that are kept.
+  // Does the same for kept cells only.
   template <class Visit>
   void for_neighbours(const CellIndex& index, Visit&& visit) const {
     for_all_around(index, [&](std::uint32_t k, const CellIndex& beside) {
       if (cells_[k].kept) visit(k, beside);
     });
   }
-  // Moments of a cell and its kept neighbours about its middle.
+  // Returns the moments of a cell and its kept neighbours about the cell's middle.
   Moments around(std::uint32_t k) const;
 
  private:

@@ -25,14 +25,14 @@ namespace {
 
 using nlohmann::json;
 
-// Rows and columns of a region may lack so many cells between two that have points.
+// Fills gaps of at most this many cells in the rows and columns of a region.
 constexpr std::int32_t kClosedGap = 3;
-// A person's space above ground, in metres: known if so much of it was seen through.
+// A person's space above ground, in metres, is known if this share of it was seen through.
 constexpr double kFromGround_m = 0.3, kHeight_m = 1.8, kKnownShare = 0.5;
 constexpr double kGround = 0.8;      // least z of a normal of ground
 constexpr double kUpright = 0.3;     // largest z of a wall's
-constexpr double kFarthest_m = 1e9;  // of a scene's coordinates
-// Rays of all scans that are followed to find free space; more say nothing new.
+constexpr double kFarthest_m = 1e9;  // largest coordinate of a scene
+// Follows at most this many rays of all scans to find free space; more say nothing new.
 constexpr std::uint64_t kMostRays = 20'000'000;
 
 std::string counted(std::uint64_t n, const char* what) {
@@ -47,7 +47,7 @@ std::string counted(std::uint64_t n, const char* what) {
 
 std::string with_unit(double value, const char* unit) { return rounded(value) + " " + unit; }
 
-// A place with Z up as glTF has it, with Y up, or as it is.
+// Returns a place with Z up in the axes of glTF, which has Y up; unchanged unless `y_up`.
 std::array<double, 3> up_axis(const Eigen::Vector3d& p, bool y_up) {
   return y_up ? std::array{p.x(), p.z(), -p.y()} : std::array{p.x(), p.y(), p.z()};
 }
@@ -136,7 +136,7 @@ class Converter {
   }
 
  private:
-  // Reads all points, and tells how far the conversion is when they fill a part of it.
+  // Reads all points, and reports progress from `from` to `to`.
   void read(double from, double to, const PointSink& sink) {
     const auto all = static_cast<double>(std::max(source_->announced(), points_));
     double done = 0;
@@ -166,7 +166,7 @@ class Converter {
     if (far && metric_) throw Refused("its points lie farther than 1e9 m from the origin; export it again");
     if (!metric_) refuse_degrees(density);
     if (far) {
-      // Nothing on earth is that far but in millimetres.
+      // Only coordinates in millimetres are that large on earth.
       source_ = moved(std::move(source_), Eigen::Matrix3d::Identity(), 0.001);
       metric_ = true;
       unit_note_ =
@@ -177,7 +177,7 @@ class Converter {
     if (cell_m_) {
       cell = *cell_m_;
     } else {
-      // Lengths of an unknown unit are measured as metres unless points are too far apart for that.
+      // Lengths of an unknown unit count as metres unless points are too far apart for that.
       constexpr double kMostScale = 1000, kCentimetres = 100;
       while (!metric_ && density.too_thin() && scale_ < kMostScale) {
         scale_ = scale_ == 1 ? kCentimetres : kMostScale;
@@ -185,12 +185,12 @@ class Converter {
       }
       cell = scale_ * Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
     }
-    // Whole metres, so that coordinates stay short.
+    // Rounds the middle to whole metres, so that coordinates stay short.
     grid_.emplace(density.middle().array().round(), cell);
     for (const CloudScan& scan : source_->scans()) posed_ += scan.posed ? 1 : 0;
   }
 
-  // No site is a few metres long and wide as the earth sees it, and higher than that in degrees.
+  // Refuses points 50 times as high as they are wide, and at most 0.02 wide: degrees, with heights in metres.
   static void refuse_degrees(const Density& density) {
     constexpr double kWidest = 0.02, kHigher = 50, kLeastHigh = 0.3;
     const Eigen::Vector3d extent = density.extent(), middle = density.middle();
@@ -200,7 +200,7 @@ class Converter {
       throw Refused("its coordinates look like degrees of latitude and longitude; project them to metres, e.g. UTM");
   }
 
-  // Number of a scan in cells.
+  // Returns the number of a scan as cells store it.
   static std::uint16_t number_of(std::uint32_t scan) {
     return static_cast<std::uint16_t>(std::min<std::uint32_t>(scan, Cell::several - 1));
   }
@@ -232,7 +232,7 @@ class Converter {
     });
   }
 
-  // Tells whether the space of a person there was seen.
+  // Returns true if at least half of a person's space above this ground was seen.
   bool known_above(const FreeSpace& free, const Eigen::Vector3d& ground) const {
     int known = 0, all = 0;
     const double cells = scale_ / grid_->cell_m();  // of a metre
@@ -241,7 +241,7 @@ class Converter {
     return known >= kKnownShare * all;
   }
 
-  // `free`: null if nothing is known about it.
+  // `free`: null if free space is not known.
   void cover(const std::vector<FlatRegion>& regions, const FreeSpace* free) {
     const double square_m2 = grid_->cell_m() * grid_->cell_m();
     for (Surface* surface : {&floors_, &ceilings_, &walls_, &slopes_, &unknown_}) surface->stand_up(metric_);
@@ -264,7 +264,7 @@ class Converter {
                          : std::abs(region.normal.z()) <= kUpright ? walls_
                                                                    : slopes_;
       surface.add(region, known, grid_->cell_m(), false);
-      // Nobody stands on what faces down.
+      // Nobody can stand on a surface that faces down.
       unknown_.add(region, unknown, grid_->cell_m(), true);
       unknown_m2_ += square_m2 * static_cast<double>(unknown.size()) / std::max(region.normal.z(), kGround);
     }
@@ -273,7 +273,7 @@ class Converter {
     throw Refused("no surface shows in its points; " + (coarse.empty() ? "export more of them" : coarse));
   }
 
-  // Empty unless the coordinates are told in steps of more than a twentieth of a cell, which bend what should be flat.
+  // Returns a note if coordinates come in steps above a twentieth of a cell, which bend flat surfaces; else empty.
   std::string coarse_note() const {
     constexpr double kCoarse = 0.05;
     double step = 0;
@@ -327,7 +327,7 @@ class Converter {
       surface->write(buffer, nodes, meshes, translation);
     json roots = json::array();
     for (std::size_t k = 0; k < nodes.size(); ++k) roots.push_back(k);
-    // Without a unit, which the reader of scenes then recognises or asks, the axes stay those that the user knows.
+    // Without a unit, the axes stay those that the user knows; the scene's reader recognises or asks for the unit.
     json vantage{{"up", metric_ ? "y" : "z"}, {"scanned", true}};
     if (metric_) vantage["unit"] = "m";
     const std::string& crs = source_->crs();
@@ -343,13 +343,13 @@ class Converter {
   }
 
   std::unique_ptr<PointSource> source_;
-  std::optional<double> cell_m_;  // as the user wants it
-  bool metric_ = false;           // whether lengths are metres, or in the file's own unit
-  double scale_ = 1;              // lengths in a metre, as far as they were measured
+  std::optional<double> cell_m_;  // the user's; empty: chosen
+  bool metric_ = false;           // true: lengths are metres; false: the file's own unit
+  double scale_ = 1;              // the file's units in a metre, as far as recognised
   std::string unit_note_;
   std::optional<CellGrid> grid_;
   std::uint64_t points_ = 0, far_ = 0;
-  // True if all coordinates along an axis are numbers of float32.
+  // True for each axis along which all coordinates are numbers of float32.
   Eigen::Array<bool, 3, 1> floats_ = Eigen::Array<bool, 3, 1>::Constant(true);
   std::size_t posed_ = 0;  // scans with a pose
   double unknown_m2_ = 0;

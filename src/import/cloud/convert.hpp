@@ -14,37 +14,37 @@ namespace vantage::importer {
 
 using Files = std::vector<std::filesystem::path>;
 
-// What the user says of a cloud.
+// Settings of a cloud that the user gives.
 struct CloudSettings {
   std::optional<double> cell_m = {};  // size of the cells; empty: chosen
   std::optional<double> unit_m = {};  // metres in a unit; empty: as the file tells, else recognised
   char up = 'z';                      // the file's axis that points up: x, y or z
   std::string columns = {};           // of a text, see columns_of()
 };
-// Sets one of them by a word NAME=VALUE of cell, unit, up and columns; false if it is none. Throws Refused.
+// Sets one of them by a word NAME=VALUE of cell, unit, up and columns; returns false for other names. Throws Refused.
 bool take_setting(CloudSettings& settings, const std::string& word);
 
-// The reader of a format: e57, las, ply, xyz or pcd; of several files it reads one after the other. Throws Refused.
+// Opens the reader of a format: e57, las, ply, xyz or pcd. Several files are read one after the other. Throws Refused.
 std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format,
                                          const CloudSettings& settings = {});
 
-// Bytes that cells may take: most of what this process may.
+// Returns the bytes that cells may take, 60 % of this process's limit.
 double memory_for_cells();
 
-// A point cloud as surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. Its unit is declared unless neither the files
-// nor the user tell it: lengths, the cells' included, are then in the files' own unit. Throws Refused.
+// Converts a point cloud to surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. The GLB declares its unit if the
+// files or the user tell it; else all lengths, the cells' too, are in the files' own unit. Throws Refused.
 std::string convert_cloud(const Files& files, const std::string& format, const CloudSettings& settings = {});
 
-// The scans of an E57 file, a GLB without meshes whose `asset.extras.scans` lists name, position (metres, Z up),
-// rotation (quaternion w, x, y, z), sensor and settings (ScanSettings) of those with a pose. Throws Refused.
+// Lists the scans of an E57 file that have a pose, as a GLB without meshes. `asset.extras.scans` holds their name,
+// position (metres, Z up), rotation (quaternion w, x, y, z), sensor and settings (ScanSettings). Throws Refused.
 std::string list_scans(const std::filesystem::path& file);
-// One of them.
+// Returns the entry of one scan.
 nlohmann::json scan_json(const CloudScan& scan);
 
-// The points of each scan with a pose, one for each cell of `cell_m`: a GLB whose scans, as above, also tell their
-// `points` and which records of the binary chunk are theirs, `first` and `count`. A record is the mean point in metres
-// from the head, along the axes of the file, as three floats, and the number of points as uint32 (at most 16 384).
-// Cells are twice as large, or four times, if memory is short. Throws Refused.
+// Returns a GLB with the points of each scan that has a pose, thinned to one for each cell of `cell_m`. Its scans, as
+// above, also hold the number of `points`, and the `first` and `count` of their records in the binary chunk. A record
+// is the mean point in metres from the head, along the axes of the file, as three floats, and the number of points as
+// uint32 (at most 16 384). Cells are two or four times as large if memory is short. Throws Refused.
 std::string thin_scans(const Files& files, const std::string& format, double cell_m);
 
 }  // namespace vantage::importer

@@ -11,7 +11,7 @@ namespace vantage::importer {
 namespace {
 
 constexpr std::size_t kReservoir = 1023, kMostSampled = 1 << 14;
-// A plane has three unknowns; twice as many points show whether they lie in one. Neighbours help with the rest.
+// A plane has three unknowns; twice as many points show whether they lie in one. Neighbours add more points.
 constexpr double kEnough = 6;
 constexpr double kFarthest = 1e13;  // its cells of the smallest size can be numbered
 

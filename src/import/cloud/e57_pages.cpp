@@ -28,7 +28,7 @@ E57Pages::E57Pages(const std::filesystem::path& file) : file_(file) {
                   std::to_string(file_.size()) + "; copy or export it again");
   content_ = page_bytes_ - kChecksum;
   pages_ = file_.size() / page_bytes_;
-  load(0);  // whose checksum covers the header
+  load(0);  // the checksum of this page covers the header
 }
 
 std::uint64_t E57Pages::logical(std::uint64_t physical) const {
@@ -43,7 +43,7 @@ void E57Pages::load(std::uint64_t page) {
   if (page >= pages_) throw Refused("it ends in the middle of its data; copy or export it again");
   if (file_.place() != page * page_bytes_) file_.seek(page * page_bytes_);
   const char* bytes = file_.take(page_bytes_);
-  // The one number of the format that is big-endian.
+  // The checksum is the only big-endian number of the format.
   if (value_at<std::uint32_t>(bytes + content_, true) != crc32c(bytes, content_))
     throw Refused("page " + std::to_string(page) + " of it is damaged, by its checksum; copy or export it again");
   loaded_.assign(bytes, content_);

@@ -8,14 +8,14 @@
 
 namespace vantage::importer {
 
-// An E57 file (ASTM E2807, 2011) without its pages' checksums. Addresses in the file count them ("physical"); lengths
-// do not ("logical").
+// Reads an E57 file (ASTM E2807, 2011) without its pages' checksums. Addresses in the file count the checksums
+// ("physical"); lengths do not ("logical").
 class E57Pages {
  public:
   explicit E57Pages(const std::filesystem::path& file);
 
   std::string xml();
-  // Throws Refused for a place outside the file or in a checksum.
+  // Throws Refused for a place outside the file or within a checksum.
   std::uint64_t logical(std::uint64_t physical) const;
   std::uint64_t logical_end() const { return pages_ * content_; }
   // Checks every page that it reads. Throws Refused if one is damaged, or the file ends before.

@@ -81,7 +81,7 @@ std::uint64_t E57Column::available() const {
 
 double E57Column::take() {
   using Type = E57RecordField::Type;
-  // Values begin at the lowest bit of the first byte that has one left.
+  // A value begins at the lowest bit that is left of the current byte.
   std::uint64_t raw = 0;
   for (unsigned have = 0; have < field_.bits;) {
     const unsigned within = bit_ % 8, n = std::min(8 - within, field_.bits - have);

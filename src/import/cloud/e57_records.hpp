@@ -19,14 +19,14 @@ struct E57RecordField {
   std::string name;
   Type type = Type::double_precision;
   std::int64_t minimum = 0;  // of an integer
-  unsigned bits = 64;        // that a value takes in the stream; 0: always `minimum`
+  unsigned bits = 64;        // bits of a value in the stream; 0: always `minimum`
   double scale = 1, offset = 0;
 };
 
-// The fields of a prototype. Throws Refused.
+// Returns the fields of a prototype. Throws Refused.
 std::vector<E57RecordField> e57_fields(const XmlElement& prototype);
 
-// Numbers of one field, from a stream that packets bring in pieces.
+// Decodes the numbers of one field from a stream that packets bring in pieces.
 class E57Column {
  public:
   explicit E57Column(const E57RecordField& field) : field_(field) {}
@@ -34,16 +34,16 @@ class E57Column {
   void append(const char* bytes, std::size_t count);
   std::uint64_t available() const;  // values that are complete
   double take();                    // REQUIRES: available() > 0
-  void compact();                   // forgets bytes that were taken
+  void compact();                   // drops bytes that were taken
 
  private:
   E57RecordField field_;
   std::string bytes_;
-  std::uint64_t bit_ = 0;  // of the next value
+  std::uint64_t bit_ = 0;  // where the next value begins
 };
 
-// Reads the records of a section. `wanted`: indices of fields. Calls `record` for each, with a value for each wanted
-// field. Throws Refused if there are fewer than `count`.
+// Reads the records of a section, and calls `record` for each with one value for each wanted field. `wanted`: indices
+// of fields. Throws Refused if there are fewer than `count` records.
 void read_e57_records(E57Pages& pages, std::uint64_t section, std::uint64_t count,
                       std::span<const E57RecordField> fields, std::span<const std::size_t> wanted,
                       const std::function<void(std::span<const double>)>& record);

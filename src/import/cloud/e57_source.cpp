@@ -43,7 +43,7 @@ std::uint64_t whole_number(const XmlElement& points, const char* name) {
   throw Refused("its points have no " + std::string(name) + "; export it again");
 }
 
-// A row or column, held within its type whatever a file says.
+// Converts a row or column, clamped to its type whatever a file says.
 std::uint32_t index_of(double value) {
   return static_cast<std::uint32_t>(std::clamp(value, 0.0, double{std::numeric_limits<std::uint32_t>::max()}));
 }
@@ -81,12 +81,12 @@ class E57Source final : public PointSource {
       data_.push_back(data_of(element, scan.name));
       const Data3d& data = data_.back();
       scan.position = data.translation, scan.rotation = data.rotation;
-      // A cloud that was merged has a pose, too: that of its frame.
+      // A merged cloud has the pose of its frame, so that a pose without translation needs more evidence of a scanner.
       scan.posed = data.translation.norm() > 0 || data.has("sphericalRange") ||
                    (data.has("rowIndex") && data.has("columnIndex"));
       scans_.push_back(scan);
     }
-    // Scans are not taken from one place; where it seems so, their points were moved into a common frame.
+    // Two scans with the same pose have points in a common frame, so that neither pose is the scanner's.
     for (std::size_t a = 0; a < scans_.size(); ++a)
       for (std::size_t b = a + 1; b < scans_.size() && b < a + 64; ++b)
         if (scans_[a].position == scans_[b].position && scans_[a].rotation.coeffs() == scans_[b].rotation.coeffs())
@@ -106,7 +106,7 @@ class E57Source final : public PointSource {
   }
 
  private:
-  // Lengths of E57 are metres, whatever the unit of the system.
+  // Lengths of E57 are metres, whatever unit the coordinate system has.
   void take_system(const std::string& text) {
     const auto system = text.empty() ? std::nullopt : read_coordinate_reference(text);
     crs_ = text;
@@ -127,7 +127,7 @@ class E57Source final : public PointSource {
       notes_.emplace_back("its coordinate system is not in metres; its points are, as E57 has it, and are taken so");
   }
 
-  // Places of three fields among those that are read, if a scan has them, and that of what says that they are invalid.
+  // Places, among the fields read, of the first of three coordinates and of the field that marks them as invalid.
   struct Coordinates {
     std::optional<std::size_t> first, state;
   };
@@ -157,7 +157,7 @@ class E57Source final : public PointSource {
 
   void read_scan(const Data3d& data, const std::string& name, std::uint32_t scan, const PointSink& sink) {
     std::vector<std::size_t> wanted;
-    // Records may have both, of which each has its own state.
+    // Records may have Cartesian and spherical coordinates, each with their own state.
     const Coordinates cartesian =
         want_coordinates(data, name, {"cartesianX", "cartesianY", "cartesianZ"}, "cartesianInvalidState", wanted);
     Coordinates spherical;

@@ -13,12 +13,12 @@ namespace vantage::importer {
 namespace {
 
 constexpr std::uint32_t kNone = UINT32_MAX;
-// Points of a region lie within these of its plane, root mean square, in cells: the least for slightly bent walls, and
-// so many times the noise.
+// The points of a region lie within a tolerance of its plane, root mean square, in cells. It is kNoiseTimes the noise,
+// at least kLeastTolerance for slightly bent walls, and at most kMostTolerance.
 constexpr double kLeastTolerance = 0.12, kMostTolerance = 1, kNoiseTimes = 2.5;
-// Lines of points across a far floor are so many cells apart, at most.
+// Scan lines across a far floor are at most this many cells apart.
 constexpr int kGap = 4;
-constexpr double kAlong = 0.5;  // largest part of the normal in a step along the plane
+constexpr double kAlong = 0.5;  // largest share of the normal in a step along the plane
 constexpr double kLeastWidth = 0.2;
 constexpr double kLeastAround = 8, kLeastOwn = 3;  // points of a cell by itself, with and without its neighbours'
 constexpr std::uint32_t kLeastGroup = 12;          // cells
@@ -49,7 +49,7 @@ class Growth {
   }
 
   std::vector<FlatRegion> run() {
-    // The flattest places first: planes that begin there are the best known.
+    // Begins at the flattest places, whose planes are known best.
     std::vector<std::uint32_t> seeds;
     for (std::uint32_t k = 0; k < grid_.size(); ++k)
       if (grid_[k].kept && planes_[k].width >= static_cast<float>(kLeastWidth) &&
@@ -107,7 +107,7 @@ class Growth {
     regions_.push_back(std::move(region));
   }
 
-  // Cells beside one: all next to it, and along the plane a few further ones.
+  // Calls `visit` for all steps to adjacent cells, and for a few longer ones along the plane.
   template <class Visit>
   void for_steps(const Eigen::Vector3d& normal, Visit&& visit) const {
     for (int z = -1; z <= 1; ++z)
@@ -122,7 +122,7 @@ class Growth {
         }
   }
 
-  // To the scanners that saw it. Without any, up: somebody may walk on it.
+  // Turns the normal to the scanners that saw the region, or up without any: somebody may walk on it.
   static void turn(FlatRegion& region, const Eigen::Vector3d& towards) {
     const double seen = region.normal.dot(towards);
     const double side = std::abs(seen) > 1e-6 ? seen : region.normal.z();
@@ -137,7 +137,7 @@ class Growth {
       }
   }
 
-  // Cells of an edge fit none of its planes: each plane that crosses one goes on into it.
+  // A cell at an edge fits none of its planes, so each plane that crosses it goes on into it.
   void add_edges() {
     for (std::uint32_t k = 0; k < grid_.size(); ++k) {
       if (!grid_[k].kept || region_[k] != kNone) continue;
@@ -154,7 +154,7 @@ class Growth {
           region.columns.push_back(column_of(at, region.axis));
           covered_[k] = true;
         }
-        // A few points beside a surface are its noise.
+        // A few points beside a surface are noise of it.
         if (std::abs(region.normal.dot(mean - region.base) - region.offset) <= kNoiseTimes * noise_) covered_[k] = true;
       });
     }

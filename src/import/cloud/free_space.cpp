@@ -10,17 +10,17 @@ namespace vantage::importer {
 namespace {
 
 constexpr double kCoarse_m = 0.12;
-constexpr double kMostCoarse = 2e8;  // in the box around the cloud, at a byte each
-// Rays are followed within the box of the cloud and so far beyond it: as high as people are, and more.
+constexpr double kMostCoarse = 2e8;  // coarse cells in the box around the cloud, a byte each
+// Rays are followed in the box of the cloud and this far beyond it, which is more than people are high.
 constexpr double kBeyondCloud_m = 3;
-// A ray that runs along a surface touches it by noise alone.
+// A ray that runs along a surface touches it only by noise.
 constexpr float kLeastSlope = 0.3F;
-// A plane that lies in the faces between cells crosses either, by noise.
+// A plane near the face between two cells may cross either of them, by noise.
 constexpr float kBeyond = 0.2F;
-// A single ray may be one that was recorded wrongly.
+// A single ray may have been recorded wrongly.
 constexpr std::uint8_t kSeveral = 2;
 
-// Calls `visit(index, begin, end)` for the unit cells along from + t · direction, 0 <= t <= length.
+// Calls `visit(index, begin, end)` for each unit cell along from + t · direction, 0 <= t <= length.
 template <class Visit>
 void walk(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double length, Visit&& visit) {
   CellIndex index = from.array().floor().cast<int>();
@@ -96,7 +96,7 @@ void FreeSpace::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, 
   const double length = way.norm(), end = length - 2 * coarse_;
   if (!(end > 0) || !(from.cwiseAbs().maxCoeff() < CellGrid::reach)) return;
   const Eigen::Vector3d direction = way / length;
-  double begin = 0;  // where it comes into the box
+  double begin = 0;  // where the ray enters the box
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0) continue;
     const double face = direction[axis] > 0 ? low_[axis] : high_[axis];
@@ -132,7 +132,7 @@ std::uint32_t drop_seen_through(CellGrid& grid) {
   for (std::uint32_t k = 0; k < grid.size(); ++k)
     if (grid[k].kept && grid[k].seen_through >= kSeveral) dropped.push_back(k);
   for (const std::uint32_t k : dropped) grid[k].kept = false;
-  // Cells that few rays met go with most of their neighbours.
+  // Drops cells that few rays met, too, if most cells around them are dropped.
   std::vector<std::uint32_t> remains;
   for (const std::uint32_t gone : dropped)
     grid.for_neighbours(CellGrid::index_of(grid[gone]), [&](std::uint32_t k, const CellIndex& at) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rays of scans went through: space that is known to be free, and cells that cannot be of the site.
+// Free space that the rays of scans passed through, and cells that cannot belong to the site.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ class FreeSpace {
   // `planes`: one for each cell. Both must outlive the object.
   FreeSpace(CellGrid& grid, const std::vector<CellPlane>& planes);
 
-  // A ray from a scanner to its point, in cells of the grid. Counts at cells that another scan alone saw, and that the
-  // ray crosses well before its end.
+  // Follows a ray from a scanner to its point, in cells of the grid. Each cell that only another scan saw counts the
+  // ray if the ray crosses it well before its end.
   void add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, std::uint16_t scan);
 
-  // Whether the coarse cell of a place was seen through, or holds surface.
+  // Returns true if the coarse cell at a place was seen through or holds surface.
   bool known(const Eigen::Vector3d& place) const;
   double coarse_cells() const { return coarse_; }  // side of a coarse cell, in cells
 
@@ -50,7 +50,7 @@ class FreeSpace {
   Brick* last_ = nullptr;
 };
 
-// Drops cells that rays of other scans went through. Returns their number.
+// Drops cells that rays of other scans went through. Returns the number of dropped cells.
 std::uint32_t drop_seen_through(CellGrid& grid);
 
 }  // namespace vantage::importer

@@ -33,7 +33,7 @@ class JoinedSource : public PointSource {
       const auto first = static_cast<std::uint32_t>(scans_.size());
       scans_.insert(scans_.end(), source->scans().begin(), source->scans().end());
       source->read([&](const PointBlock& block) {
-        while (scans_.size() < first + source->scans().size())  // it learns of them as it reads
+        while (scans_.size() < first + source->scans().size())  // a source may find scans while it reads
           scans_.push_back(source->scans()[scans_.size() - first]);
         sink({block.positions, block.normals, first + block.scan});
       });

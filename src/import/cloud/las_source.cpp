@@ -30,7 +30,7 @@ struct Records {
 
 class LasSource final : public PointSource {
  public:
-  // `own_unit`: whether coordinates are converted by what the file says of its units.
+  // `own_unit`: coordinates are converted by the unit that the file declares.
   LasSource(const std::filesystem::path& path, bool own_unit) : path_(path), file_(path) {
     constexpr std::size_t kOldHeader = 227, kNewHeader = 375;
     constexpr std::uint8_t kCompressed = 0x80, kOtherFlag = 0x40;
@@ -113,7 +113,7 @@ class LasSource final : public PointSource {
     points.flush();
   }
 
-  // Variable length records before the points, or extended ones behind them.
+  // Reads variable length records before the points, or extended ones behind them.
   void read_records(Records& records, std::uint64_t place, std::uint32_t count, bool extended) {
     constexpr std::size_t kRecordHead = 54, kExtendedHead = 60, kMost = std::size_t{1} << 20;
     const std::size_t head_bytes = extended ? kExtendedHead : kRecordHead;
@@ -143,7 +143,7 @@ class LasSource final : public PointSource {
     }
   }
 
-  // Unit and system: by the text or the keys, as a flag of the header says, or by whatever there is.
+  // Takes unit and system from the text or the keys, as a flag of the header says; else from the other of them.
   void take_system(const Records& records, bool by_text, bool own_unit) {
     DeclaredSystem system;
     if (!records.text.empty() && (by_text || records.keys.empty())) {
@@ -158,7 +158,7 @@ class LasSource final : public PointSource {
     head_.metres = system.metres, crs_ = system.text, notes_ = system.notes;
   }
 
-  // How points are compressed, by the record of LASzip.
+  // Reads from the record of LASzip how points are compressed.
   void read_layout(const std::optional<std::string>& record) {
     constexpr std::size_t kFixed = 34, kItem = 6;
     constexpr std::uint16_t kChunks = 2, kLayers = 3;

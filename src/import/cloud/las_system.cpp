@@ -42,7 +42,7 @@ std::string factor_text(double metres) {
   return text;
 }
 
-// Says what is converted, and what the file does not say of heights.
+// Notes what is converted, and that the file does not tell the unit of heights.
 void tell(DeclaredSystem& out, bool heights_told) {
   if (metric(out.metres)) return;
   const bool same = std::abs(out.metres.x() - std::abs(out.metres.z())) <= kSameUnit;
@@ -54,7 +54,7 @@ void tell(DeclaredSystem& out, bool heights_told) {
   if (out.metres.z() < 0) out.notes.emplace_back("its heights are depths, and are turned upwards");
 }
 
-// `told`: the text or code of the system as the file has it, which is kept if its lengths are metres.
+// `told`: the text or code of the system in the file, which is kept if its lengths are metres.
 DeclaredSystem system_of(const CoordinateReference& system, const std::string& told) {
   refuse_unusable(system);
   DeclaredSystem out;
@@ -101,7 +101,7 @@ DeclaredSystem system_of_keys(std::string_view directory, std::string_view doubl
     const auto found = keys.find(key);
     return found == keys.end() || found->second == kUserDefined ? 0 : found->second;
   };
-  // The unit that a key names by its code, or by its size.
+  // Returns the unit that a key names by its code or by its size.
   const auto unit = [&](std::uint16_t key, std::uint16_t size) -> std::optional<double> {
     if (const auto known = code(key) > 0 ? epsg_length_unit(code(key)) : std::nullopt) return known->metres;
     const auto given = sizes.find(size);

@@ -16,11 +16,11 @@ struct DeclaredSystem {
   std::vector<std::string> notes = {};
 };
 
-// By well-known text of either version. Throws Refused for degrees, coordinates from the earth's middle, and axes other
-// than east and north.
+// Reads well-known text of either version. Throws Refused for degrees, geocentric coordinates, and axes other than east
+// and north.
 DeclaredSystem system_of_text(const std::string& text);
 
-// By the keys of GeoTIFF (OGC 19-008r4, 2019), as LAS has them: the records 34735 and 34736. Throws Refused as above.
+// Reads the keys of GeoTIFF (OGC 19-008r4, 2019) in LAS: records 34735 and 34736. Throws Refused as above.
 DeclaredSystem system_of_keys(std::string_view directory, std::string_view doubles);
 
 }  // namespace vantage::importer

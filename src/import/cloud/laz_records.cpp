@@ -30,7 +30,7 @@ constexpr std::size_t kLateRecord = 30;  // of format 6
                 "; install node and laz-perf with setup.sh --laz, or decompress the points to .las");
 }
 
-// The script, in the folder of importers: that of the environment, else that of this program.
+// Returns the script in the importers' folder, which the environment names or which holds this program.
 fs::path script() {
   std::error_code failure;
   const char* given = std::getenv("VANTAGE_IMPORTERS");
@@ -61,7 +61,7 @@ struct Ends {
 LazRecords::LazRecords(const fs::path& file, const LazLayout& layout)
     : record_(layout.format >= 6 ? kLateRecord : layout.record) {
   const std::string program = node();
-  // A call for each point leaves garbage; room for it to collect saves a tenth of the time.
+  // Each call for a point leaves garbage; more room before it is collected saves a tenth of the time.
   std::vector<std::string> words{program, "--max-semi-space-size=16", script().string(), file.string()};
   for (const std::uint64_t number : {layout.first, layout.count, std::uint64_t{layout.format},
                                      std::uint64_t{layout.record}, std::uint64_t{layout.chunk}})
@@ -70,7 +70,7 @@ LazRecords::LazRecords(const fs::path& file, const LazLayout& layout)
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const Ends out, err;
-  fcntl(out.ends[0], F_SETPIPE_SZ, static_cast<int>(kPipe));  // without it only slower
+  fcntl(out.ends[0], F_SETPIPE_SZ, static_cast<int>(kPipe));  // a smaller pipe is only slower
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], STDOUT_FILENO);

@@ -10,16 +10,16 @@
 
 namespace vantage::importer {
 
-// What the header and the record of LASzip tell of compressed points (Isenburg: LASzip: lossless compression of LiDAR
-// data, 2013).
+// Layout of compressed points, from the file's header and the record of LASzip (Isenburg: LASzip: lossless compression
+// of LiDAR data, 2013).
 struct LazLayout {
   std::uint64_t first = 0, count = 0;  // byte of the points, and their number
   std::size_t format = 0, record = 0;
-  std::uint32_t chunk = 0;  // points of a chunk; UINT32_MAX: the table of chunks tells those of each
+  std::uint32_t chunk = 0;  // points of a chunk; UINT32_MAX: the chunk table tells each chunk's
 };
 
-// Records of LAZ, uncompressed by laz-perf in a process of node (src/import/laz). It holds a few chunks of them at a
-// time.
+// Reads records of LAZ, which laz-perf uncompresses in a process of node (src/import/laz). That process holds a few
+// chunks at a time.
 class LazRecords {
  public:
   // Throws Refused if node, the script or laz-perf is missing.
@@ -28,9 +28,9 @@ class LazRecords {
   LazRecords& operator=(const LazRecords&) = delete;
   ~LazRecords();
 
-  // Bytes of a record that next() returns. Records of late formats (6 to 10) end with the fields of format 6.
+  // Returns the bytes of a record of next(). Records of late formats (6 to 10) end with the fields of format 6.
   std::size_t record_bytes() const { return record_; }
-  // Next record, valid until the next call. Throws Refused with the reason if there is none.
+  // Returns the next record, valid until the next call. Throws Refused with the reason if there is none.
   const char* next();
 
  private:

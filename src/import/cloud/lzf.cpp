@@ -20,14 +20,14 @@ std::string unpack_lzf(std::string_view packed, std::size_t bytes) {
   };
   while (at < packed.size()) {
     const std::size_t control = next();
-    if (control < 32) {  // so many bytes, and one, as they are
+    if (control < 32) {  // control + 1 bytes follow as they are
       const std::size_t n = control + 1;
       check(n <= packed.size() - at && n <= bytes - out.size());
       out.append(packed.substr(at, n));
       at += n;
       continue;
     }
-    std::size_t n = control >> 5;  // so many bytes, and two, from before
+    std::size_t n = control >> 5;  // repeats n + 2 bytes from before
     if (n == 7) n += next();
     const std::size_t back = ((control & 31) << 8) + next() + 1;
     n += 2;

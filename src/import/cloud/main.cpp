@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // vantage-import-cloud FORMAT [SETTING=VALUE...] FILE...: fits surfaces to the points of all files together and writes
-// them to standard output, as GLB. FORMAT is e57, las (also for LAZ), ply, xyz (also for PTS, CSV and PTX) or pcd;
-// e57-scans lists the scans of an E57 file; e57-points and xyz-points thin the points of scans to one for each cell,
-// 0.02 m otherwise.
+// them to standard output, as GLB. FORMAT is e57, las (also for LAZ), ply, xyz (also for PTS, CSV and PTX) or pcd.
+// e57-scans lists the scans of an E57 file. e57-points and xyz-points thin scans to one point for each cell, of 0.02 m
+// by default.
 #include <cstdio>
 #include <string_view>
 

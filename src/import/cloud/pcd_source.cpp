@@ -24,7 +24,7 @@ class PcdSource final : public PointSource {
     used_.insert(used_.end(), normal_.begin(), normal_.end());
     data_at_ = file_.place();
     CloudScan scan;
-    // The viewpoint that writers put when they know none is that of a merged cloud.
+    // Writers put the default viewpoint if they know none, as for a merged cloud; it is no pose.
     scan.posed = moved_ = !place_of_view_.isZero(0) || std::abs(view_.w()) < view_.norm();
     scan.position = place_of_view_;
     if (moved_) scan.rotation = view_.normalized();
@@ -99,7 +99,7 @@ class PcdSource final : public PointSource {
     }
   }
 
-  // Place, and turn as a quaternion w, x, y, z.
+  // Reads a position, and a rotation as a quaternion w, x, y, z.
   void read_viewpoint(std::string_view line) {
     std::array<double, 7> v{};
     for (double& value : v) {
@@ -162,7 +162,7 @@ class PcdSource final : public PointSource {
     }
   }
 
-  // All values of one field, then all of the next.
+  // Reads all values of one field, then all of the next.
   void read_compressed(BlockWriter& points) {
     const std::string sizes(file_.take(8), 8);
     const std::uint64_t packed = value_at<std::uint32_t>(sizes.data()),
@@ -185,7 +185,7 @@ class PcdSource final : public PointSource {
   ByteFile file_;
   std::vector<ScalarField> fields_;
   std::vector<std::uint64_t> times_;
-  std::vector<std::size_t> place_, normal_, used_;  // fields; the last are both others
+  std::vector<std::size_t> place_, normal_, used_;  // fields; used_: place_ and normal_
   std::string data_;
   std::uint64_t count_ = 0, data_at_ = 0;
   std::size_t record_ = 0;

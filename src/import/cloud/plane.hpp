@@ -9,7 +9,7 @@
 
 namespace vantage::importer {
 
-// normal · x = offset, with what lies about it: its thickness and its smaller width, standard deviations in cells.
+// The plane normal · x = offset, and the thickness and smaller width of its points: standard deviations in cells.
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset = 0, thickness = 0, width = 0;

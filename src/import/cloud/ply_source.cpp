@@ -164,7 +164,7 @@ class PlySource final : public PointSource {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // added to what the points hold
   std::vector<Element> elements_;
   std::size_t vertex_ = 0;
-  std::vector<std::size_t> place_, normal_, used_;  // fields; the last are both others
+  std::vector<std::size_t> place_, normal_, used_;  // fields; used_: place_ and normal_
   std::uint64_t data_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of a cloud, a block at a time, and the scans that they are of.
+// Points of a cloud, a block at a time, and the scans that they belong to.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -38,13 +38,13 @@ class PointSource {
   virtual ~PointSource() = default;
   // Reads all points, in the same order each time. Throws Refused.
   virtual void read(const PointSink& sink) = 0;
-  // Points that the file announces; 0: it does not say.
+  // Returns the number of points that the file announces; 0: it does not say.
   virtual std::uint64_t announced() const { return 0; }
-  // Whether lengths are metres: by the format's definition, or as the file says. Else they are in the file's own unit.
+  // Returns true if lengths are metres, by the format or as the file says; false if in the file's own unit.
   virtual bool metric() const { return true; }
-  // True if the file holds coordinates as floats, without an origin: coarse ones where they are national.
+  // Returns true if the file holds coordinates as floats without an origin, which are coarse in national grids.
   virtual bool floats() const { return false; }
-  // Wants `PointBlock::cells` of those scans that have them.
+  // Requests `PointBlock::cells` of those scans that have them.
   void want_cells() { cells_ = true; }
   // Complete after the first read().
   const std::vector<CloudScan>& scans() const { return scans_; }
@@ -58,7 +58,7 @@ class PointSource {
   bool cells_ = false;
 };
 
-// Passes points on in blocks, without those that are not finite.
+// Passes points on in blocks, without non-finite ones.
 class BlockWriter {
  public:
   BlockWriter(const PointSink& sink, std::uint32_t scan, bool normals) : sink_(sink), scan_(scan), normals_(normals) {
@@ -88,19 +88,19 @@ class BlockWriter {
   std::vector<std::array<std::uint32_t, 2>> cells_;
 };
 
-// All points of several sources, one after the other.
+// Returns a source of all points of several sources, one after the other.
 std::unique_ptr<PointSource> joined(std::vector<std::unique_ptr<PointSource>> sources);
 
-// All points of a source, turned and then multiplied by `factor`; without its coordinate system.
+// Returns a source of all points, turned and then multiplied by `factor`, without the coordinate system.
 std::unique_ptr<PointSource> moved(std::unique_ptr<PointSource> source, const Eigen::Matrix3d& turn, double factor);
 
-// How a file is read, where it does not tell itself.
+// Settings for files that do not describe themselves.
 struct Reading {
   bool own_unit = true;      // converts lengths by the unit that the file tells; false: passes them on as they are
   std::string columns = {};  // of a text, see columns_of()
 };
 
-// Readers, one a format. Each reads the file's head. Throw Refused.
+// Readers, one for each format. Each reads the file's head. Throw Refused.
 std::unique_ptr<PointSource> open_e57(const std::filesystem::path& file);
 std::unique_ptr<PointSource> open_las(const std::filesystem::path& file, const Reading& reading = {});  // and LAZ
 std::unique_ptr<PointSource> open_ply(const std::filesystem::path& file);

@@ -8,7 +8,7 @@
 namespace vantage::importer {
 namespace {
 
-// By rows, the second number, and each once.
+// Sorts squares by rows, the second number, and removes duplicates.
 void sort_rows(std::vector<Square>& squares) {
   std::ranges::sort(squares,
                     [](const Square& a, const Square& b) { return std::pair(a[1], a[0]) < std::pair(b[1], b[0]); });
@@ -42,7 +42,7 @@ std::vector<Square> close_gaps(std::vector<Square> squares, std::int32_t most) {
 
 std::vector<Rectangle> rectangles(const std::vector<Square>& squares) {
   std::vector<Rectangle> all;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> open, next;  // by their extent in rows
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> open, next;  // by first column and end
   for (std::size_t k = 0; k < squares.size();) {
     const std::int32_t row = squares[k][1];
     next.clear();
@@ -75,7 +75,7 @@ Outlines::Outlines(const std::vector<Rectangle>& all) {
 
 std::vector<Square> Outlines::of(const Rectangle& rectangle) const {
   std::vector<Square> outline;
-  // From one corner to the next, without the latter. `across`: 0 along a row.
+  // Adds corners from one corner to the next, without the latter. `across`: 0 along a row, 1 along a column.
   const auto side = [&](std::size_t across, std::int32_t line, std::int32_t from, std::int32_t to) {
     const std::vector<Square>& corners = corners_[across];
     const auto less = [](const Square& a, const Square& b) { return std::pair(a[1], a[0]) < std::pair(b[1], b[0]); };

@@ -10,24 +10,24 @@ namespace vantage::importer {
 using Square = std::array<std::int32_t, 2>;
 
 struct Rectangle {
-  Square low{}, high{};  // of whole squares; `high` is beyond
+  Square low{}, high{};  // in whole squares; `high` is exclusive
 };
 
-// Fills gaps of at most `most` squares in rows and columns. Squares come back sorted, each once.
+// Fills gaps of at most `most` squares in rows and columns. Returns the squares sorted, without duplicates.
 std::vector<Square> close_gaps(std::vector<Square> squares, std::int32_t most);
 
-// Few rectangles over exactly these squares: runs in rows, joined where they are alike. REQUIRES: as from close_gaps().
+// Covers exactly these squares with few rectangles: joins equal runs of adjacent rows. REQUIRES: as from close_gaps().
 std::vector<Rectangle> rectangles(const std::vector<Square>& squares);
 
-// Outlines that meet those of their neighbours corner to corner, so that no neighbour has a corner within an edge.
+// Outlines without T-junctions: each has a corner wherever a neighbour has one along its edges.
 class Outlines {
  public:
   explicit Outlines(const std::vector<Rectangle>& all);
-  // Corners of one of them, and those of others along its edges, anticlockwise from `low`.
+  // Returns the rectangle's corners and the corners of others along its edges, anticlockwise from `low`.
   std::vector<Square> of(const Rectangle& rectangle) const;
 
  private:
-  std::array<std::vector<Square>, 2> corners_;  // line by line: by the second number and by the first
+  std::array<std::vector<Square>, 2> corners_;  // sorted by rows, and transposed by columns
 };
 
 }  // namespace vantage::importer

@@ -14,7 +14,7 @@
 
 namespace vantage::importer {
 
-// A number of a binary record, as PLY and PCD have them.
+// A number of a binary record, as in PLY and PCD.
 struct ScalarField {
   std::string name;
   char kind = 'F';  // F: floating point, I: signed, U: unsigned
@@ -39,14 +39,14 @@ struct ScalarField {
   }
 };
 
-// Place of the field of this name in lower case; fields.size() if there is none. Some writers put capitals.
+// Returns the place of the field of this lower-case name, ignoring the file's case; fields.size() if there is none.
 inline std::size_t find_field(std::span<const ScalarField> fields, std::string_view name) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
   const auto same = [&](const ScalarField& field) { return std::ranges::equal(field.name, name, {}, lower); };
   return static_cast<std::size_t>(std::ranges::find_if(fields, same) - fields.begin());
 }
 
-// Places of three fields; empty unless all are there.
+// Returns the places of three fields; empty unless all are there.
 inline std::vector<std::size_t> find_fields(std::span<const ScalarField> fields,
                                             const std::array<std::string_view, 3>& names) {
   std::vector<std::size_t> places;
@@ -61,7 +61,7 @@ inline bool are_floats(std::span<const ScalarField> fields, std::span<const std:
   return std::ranges::all_of(places, [&](std::size_t k) { return fields[k].kind == 'F' && fields[k].bytes == 4; });
 }
 
-// Next word of a line, which it leaves without; empty at the end.
+// Removes the next word from a line and returns it; empty at the end.
 inline std::string_view next_word(std::string_view& line) {
   constexpr std::string_view kBetween = " \t,;";
   const auto first = line.find_first_not_of(kBetween);
@@ -72,7 +72,7 @@ inline std::string_view next_word(std::string_view& line) {
   return word;
 }
 
-// A whole number of a header. Throws Refused.
+// Parses a whole number of a header. Throws Refused.
 inline std::uint64_t count_of(std::string_view word, const std::string& what) {
   std::uint64_t value = 0;
   const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);

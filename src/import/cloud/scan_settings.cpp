@@ -11,23 +11,23 @@ namespace {
 using nlohmann::json;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kAtScanner_m = 0.05;  // nearer points are none, as writers put what was not hit at 0
+constexpr double kAtScanner_m = 0.05;  // nearer points are no hits: writers put misses at 0
 constexpr std::size_t kSamples = 1 << 14;
-// Points so many rows or columns apart: far enough that rounded coordinates do not matter, near enough for one sweep.
+// Compares points this many rows or columns apart: far enough for rounded coordinates, near enough for one sweep.
 constexpr std::uint32_t kLeastApart = 8, kMostApart = 200;
 constexpr std::size_t kLeastPairs = 50;
-// Near the poles an azimuth says little.
+// An azimuth says little within this angle of a pole.
 constexpr double kFromPole_deg = 30;
-// Cells of one degree with most points are those that every ray filled.
+// A cell of one degree counts as filled by every ray if it has as many points as this quantile of all cells.
 constexpr double kFullShare = 0.9;
 constexpr std::uint32_t kLeastInCell = 4;
-// A direction without points for so many degrees is out of the field of view.
+// A gap without points of at least this width lies outside the field of view.
 constexpr int kGap_deg = 10;
-// A degree of azimuth or zenith is in it if it has this share of the points that it would have by the mean: not of a
-// few wrong ones.
+// A degree of azimuth or zenith lies in the field of view if it has at least this share of the mean number of points,
+// so that a few wrong points do not count.
 constexpr double kLeastShare = 0.01;
 constexpr double kNotAlone = 2;  // points
-// Ranges are counted in classes that grow by so much; one counts with this share of the points.
+// Ranges are counted in classes that grow by this factor; a class counts if it has this share of the points.
 constexpr double kRangeGrows = 1.05, kLeastOfRange = 1e-4;
 
 double median(std::vector<double> values) {
@@ -36,7 +36,7 @@ double median(std::vector<double> values) {
   return *half;
 }
 
-// To three digits, so that scans with the same setting agree.
+// Rounds to three digits, so that scans with the same setting agree.
 double rounded(double value) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
   return std::round(value / digit) * digit;
@@ -60,14 +60,14 @@ void ScanSettings::add(const Eigen::Vector3d& p, std::optional<std::array<std::u
   if (samples_.size() < kSamples) {
     samples_.push_back(sample);
   } else {
-    // Knuth's generator of linear congruences: any will do.
+    // Any generator will do; this is Knuth's linear congruential one.
     random_ = random_ * 6364136223846793005 + 1442695040888963407;
     if (const std::uint64_t place = (random_ >> 16) % points_; place < kSamples) samples_[place] = sample;
   }
 }
 
 std::optional<std::array<double, 2>> ScanSettings::steps_by_grid() const {
-  // Median of the angle of a step over pairs of points that are near each other in the grid.
+  // Returns the median angle of a step over pairs of points that are near each other in the grid.
   const auto step = [&](auto&& index, auto&& angle, double turn, bool from_poles) -> std::optional<double> {
     std::vector<Sample> sorted;
     for (const Sample& s : samples_)
@@ -86,7 +86,7 @@ std::optional<std::array<double, 2>> ScanSettings::steps_by_grid() const {
     const double found = median(std::move(steps));
     return found > 0 ? std::optional(found) : std::nullopt;
   };
-  // A mirror that turns over the top fills both sides of a column: azimuths are those of its plane.
+  // A mirror that turns over the top fills both sides of a column, so that azimuths are taken modulo 180 degrees.
   const auto column =
       step([](const Sample& s) { return s.column; }, [](const Sample& s) { return s.azimuth; }, 180, true);
   const auto row = step([](const Sample& s) { return s.row; }, [](const Sample& s) { return s.zenith; }, 360, false);
@@ -121,7 +121,7 @@ json ScanSettings::as_json() const {
   int first = 0, last = kZeniths - 1;
   while (first < last && !seen(of_zenith, first)) ++first;
   while (last > first && !seen(of_zenith, last)) --last;
-  // The widest gap around the horizon is not in the field of view.
+  // The widest gap around the horizon lies outside the field of view.
   int gap = 0, gap_end = 0;
   for (int k = 0, length = 0; k < 2 * kAzimuths; ++k) {
     length = seen(of_azimuth, k % kAzimuths) ? 0 : length + 1;

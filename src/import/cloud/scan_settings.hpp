@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the points of a scan tell of how it was made: the steps between rays, the field of view, the ranges.
+// Settings of a scan, estimated from its points: steps between rays, field of view, ranges.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +13,12 @@ namespace vantage::importer {
 
 class ScanSettings {
  public:
-  // A point in the scanner's frame, metres, and its row and column in the scan's grid.
+  // Adds a point in the scanner's frame, metres, with its row and column in the scan's grid.
   void add(const Eigen::Vector3d& p, std::optional<std::array<std::uint32_t, 2>> cell);
 
-  // Degrees and metres: `azimuth` (middle and width of the sweep), `zenith` (first and last), `range` (from which to
-  // which there are points, without lone ones), `step` (of azimuth and zenith, or null) and `by_grid`: whether the grid
-  // tells the steps, or the density of points. Null without points.
+  // Returns degrees and metres: `azimuth` (middle and width of the sweep), `zenith` (first and last), `range` (nearest
+  // and farthest, without lone points), `step` (of azimuth and zenith, or null) and `by_grid`: true if the grid tells
+  // the steps, false if the density of points does. Null without points.
   nlohmann::json as_json() const;
 
  private:

@@ -25,7 +25,7 @@ std::string_view word_itself(std::string_view word) {
   return word;
 }
 
-// A number in quotes may be cut at its comma, so that it has one of them alone.
+// A number in quotes may be cut at its comma, so that each part has one quote.
 std::string_view without_quotes(std::string_view word) {
   if (word.starts_with('"')) word.remove_prefix(1);
   if (word.ends_with('"')) word.remove_suffix(1);
@@ -49,8 +49,8 @@ std::string lower_case(std::string_view text) {
 
 constexpr const char* kGiveColumns = "give the setting columns, e.g. -,x,y,z where one column stands before them";
 
-// Whether digits are set apart in groups of three from the decimal mark on. `body`: without sign, fraction and
-// exponent.
+// Returns true if digits stand in groups of three, counted from the decimal mark. `body`: the number without sign,
+// fraction and exponent.
 bool grouped(std::string_view body, char decimal) {
   std::size_t digits = 0;
   char mark = 0;
@@ -67,11 +67,11 @@ bool grouped(std::string_view body, char decimal) {
   return mark == 0 || (digits >= 1 && digits <= 3 && body.front() != '0');
 }
 
-// Styles from the simplest on.
+// Styles, the simplest first.
 constexpr std::array kStyles{NumberStyle{'.', false}, NumberStyle{',', false}, NumberStyle{'.', true},
                              NumberStyle{',', true}};
 
-// Whether people take it for a number: digits, and signs that stand in numbers.
+// Returns true if people read it as a number: digits, and signs that stand in numbers.
 bool looks_numeric(std::string_view word) {
   return !word.empty() && std::ranges::any_of(word, is_digit) &&
          word.find_first_not_of("0123456789+-.,'eE ") == std::string_view::npos && word.front() != 'e' &&
@@ -83,7 +83,7 @@ struct Layout {
   NumberStyle numbers;
 };
 
-// How words are set apart. REQUIRES: lines that begin points.
+// Returns the separator of words. REQUIRES: lines that begin points.
 char separator_of(std::span<const std::string> lines) {
   const auto share = [&](auto&& has) {
     return 2 * static_cast<std::size_t>(std::ranges::count_if(lines, has)) > lines.size();
@@ -93,7 +93,7 @@ char separator_of(std::span<const std::string> lines) {
   };
   if (several(';')) return ';';
   if (several('\t')) return '\t';
-  // A comma between two digits, with blanks elsewhere, belongs to a number.
+  // A comma between two digits belongs to a number if blanks separate words.
   const bool blanks = several(' ');
   const bool inner = std::ranges::all_of(lines, [](const std::string& line) {
     for (std::size_t k = 0; k < line.size(); ++k)
@@ -112,7 +112,7 @@ Layout layout_of(std::span<const std::string> lines) {
   Layout layout{separator_of(lines), {}};
   if (layout.between == 0) return layout;
   if (layout.between == ',') {
-    // Commas alone: between numbers, unless no number has a point and every other one looks like a fraction.
+    // Commas alone separate numbers, unless no number has a point and every other one looks like a fraction.
     const auto no_point = [](const std::string& line) {
       return line.find('.') == std::string::npos && line.find(' ') == std::string::npos;
     };
@@ -134,7 +134,7 @@ Layout layout_of(std::span<const std::string> lines) {
       ask(lines, "whether commas stand between its numbers or in them is not clear",
           "export it with points in its numbers");
   }
-  // The simplest style that reads all words.
+  // Takes the simplest style that reads all words.
   std::array<bool, kStyles.size()> reads{};
   reads.fill(true);
   TextColumns columns{.between = layout.between};
@@ -159,11 +159,11 @@ enum class Role { x, y, z, degrees, other };
 struct Title {
   Role role = Role::other;
   double metres = 0;
-  bool direction = false;  // it says east or north, and no letter of an axis, which geodesists may give to the other
+  bool direction = false;  // named east or north, not by the letter of an axis, which geodesists may swap
 };
 
-// Tells whether these look like northings before eastings: of UTM and the like, Gauss-Krueger of zones 2 to 4, whose
-// number leads the easting, Swiss LV95, or Krovak.
+// Returns true if these look like northings before eastings: UTM and the like, Gauss-Krueger of zones 2 to 4 (the zone
+// leads the easting), Swiss LV95, or Krovak.
 bool north_first(double a, double b) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   return (within(a, 2.6e6, 1e7) && within(b, 1e5, 9e5)) || (within(a, 5.2e6, 6.2e6) && within(b, 2.3e6, 4.7e6)) ||
@@ -175,7 +175,7 @@ Title title_of(std::string_view word) {
   std::string name = lower_case(word_itself(word));
   while (!name.empty() && (name.front() == '#' || name.front() == '/' || name.front() == '%')) name.erase(0, 1);
   Title title;
-  // A unit in brackets, or behind an underscore.
+  // Takes a unit in brackets or behind an underscore.
   const std::size_t bracket = name.find_first_of("[(");
   std::string unit;
   if (bracket != std::string::npos) {
@@ -229,7 +229,7 @@ Title title_of(std::string_view word) {
   return title;
 }
 
-// The middle one of the coordinates along an axis.
+// Returns the median coordinate along an axis.
 double middle_of(std::span<const std::string> lines, const TextColumns& columns, std::size_t axis) {
   std::vector<double> values;
   Words words;
@@ -244,7 +244,7 @@ double middle_of(std::span<const std::string> lines, const TextColumns& columns,
   return *middle;
 }
 
-// Places of x, y and z by the titles in a line; empty if it does not name all three once.
+// Finds the places of x, y and z by the titles in a line; empty if it does not name all three once.
 std::optional<TextColumns> by_titles(std::span<const std::string> lines, const std::string& line, Layout layout) {
   TextColumns out{.between = layout.between, .numbers = layout.numbers};
   Words words;
@@ -253,7 +253,7 @@ std::optional<TextColumns> by_titles(std::span<const std::string> lines, const s
   Words values;
   out.split(lines.front(), values);
   out.split(text, words);
-  if (words.size() != values.size()) TextColumns{}.split(text, words);  // titles may stand apart by blanks alone
+  if (words.size() != values.size()) TextColumns{}.split(text, words);  // titles may be separated by blanks alone
   if (words.size() > values.size()) return {};                          // prose
   std::array<int, 3> found{};
   bool directions = false;
@@ -293,7 +293,7 @@ struct Column {
   double middle() const { return 0.5 * (low + high); }
 };
 
-// By the values of points alone.
+// Recognises the columns by the values of points alone.
 TextColumns by_values(std::span<const std::string> points, Layout layout) {
   TextColumns out{.between = layout.between, .numbers = layout.numbers};
   const bool quotes = points.front().find('"') != std::string::npos;
@@ -338,7 +338,7 @@ TextColumns by_values(std::span<const std::string> points, Layout layout) {
             kGiveColumns);
     }
   }
-  // They mirror a site.
+  // Swapped columns would mirror the site.
   if (rest >= 3 && points.size() >= kFew && north_first(at(0).middle(), at(1).middle()))
     ask(points, "which of its columns are x, y and z is not clear: the first one could be northings", kGiveOrder);
   if (first > 0) {
@@ -426,7 +426,7 @@ void TextColumns::split(std::string_view line, std::vector<std::string_view>& wo
 }
 
 TextColumns columns_of(std::span<const std::string> lines, const std::string& told) {
-  // Lines of points have three words that look like numbers, or two of them each, and few others.
+  // A line of a point has three words or more that look like numbers, and no more others than these.
   std::vector<std::string> points;
   std::vector<std::string> titles;
   for (const std::string& line : lines) {

@@ -14,7 +14,7 @@
 namespace vantage::importer {
 namespace {
 
-// Numbers at the start of a line, as many as there are up to `most`.
+// Reads the numbers at the start of a line, at most `most`; returns how many.
 std::size_t numbers(std::string_view line, double* to, std::size_t most) {
   std::size_t n = 0;
   for (; n < most; ++n) {
@@ -49,7 +49,7 @@ class TextSource final : public PointSource {
   }
 
  private:
-  // How many words the next line has, if all are whole numbers; else 0.
+  // Returns the number of words in the next line, if all are whole numbers; else 0.
   std::size_t next_counts() {
     auto line = file_.line();
     std::size_t n = 0;
@@ -59,7 +59,7 @@ class TextSource final : public PointSource {
     return n;
   }
 
-  // Lines that are not empty, enough to tell columns.
+  // Returns enough lines, without empty ones, to recognise columns.
   std::vector<std::string> first_lines() {
     constexpr std::size_t kLines = 2000;
     std::vector<std::string> lines;
@@ -80,7 +80,7 @@ class TextSource final : public PointSource {
     throw Refused("line " + std::to_string(line_) + " " + what + "; copy or export it again");
   }
 
-  // The coordinates of a line; false if it has none.
+  // Reads the coordinates of a line; returns false if it has none.
   bool coordinates(std::string_view line, std::array<double, 3>& p) {
     if (columns_.usual()) return numbers(line, p.data(), 3) == 3;
     columns_.split(line, words_);
@@ -94,7 +94,7 @@ class TextSource final : public PointSource {
   }
 
   void read_xyz(const PointSink& sink) {
-    // Titles, counts and comments stand between points; more of them than points are no cloud.
+    // Titles, counts and comments may stand between points; a file with more of them than points is no cloud.
     BlockWriter points(sink, 0, false);
     std::uint64_t found = 0, others = 0;
     const double metres = columns_.metres > 0 ? columns_.metres : 1;
@@ -127,7 +127,7 @@ class TextSource final : public PointSource {
       words = *second;
       const std::uint64_t rows = count_of(next_word(words), "its rows");
       if (columns > UINT32_MAX || rows > UINT32_MAX) refuse("has more rows than there can be");
-      Eigen::Matrix4d head = Eigen::Matrix4d::Identity();  // place and axes, which the matrix mostly has, too
+      Eigen::Matrix4d head = Eigen::Matrix4d::Identity();  // position and axes, which the matrix mostly repeats
       for (const int column : {3, 0, 1, 2}) {
         const auto line = next_line();
         std::array<double, 3> v{};
@@ -147,9 +147,9 @@ class TextSource final : public PointSource {
     }
   }
 
-  // Reads points behind the head of a scan. Some writers leave the matrix at none and tell the scanner's place above it
-  // alone; points are then either in the scanner's frame, or moved already. The grid tells: points of a column lie in
-  // one plane through the scanner.
+  // Reads the points behind the head of a scan. Some writers leave the matrix at identity and tell the scanner's
+  // position above it alone; points are then in the scanner's frame, or moved already. The grid decides: the points of
+  // a column lie in one plane through the scanner.
   void read_scan(std::uint64_t columns, std::uint64_t rows, const Eigen::Matrix4d& head, const Eigen::Matrix4d& matrix,
                  const PointSink& sink) {
     CloudScan scan;
@@ -178,7 +178,7 @@ class TextSource final : public PointSource {
     points.flush();
   }
 
-  // The point of the next line; false without a return.
+  // Reads the point of the next line; returns false without a return.
   bool read_point(std::uint64_t all, Eigen::Vector3d& p) {
     const auto line = next_line();
     if (!line) refuse("is missing: a scan of " + std::to_string(all) + " points ends before");
@@ -186,8 +186,8 @@ class TextSource final : public PointSource {
     return p != Eigen::Vector3d::Zero();
   }
 
-  // Points leave the planes of their columns by less if seen from where they were scanned: the origin or the head.
-  // Angles would not do: from far away all are small. Without columns, the scanner stands amid its points.
+  // Points leave the plane of their column less if seen from their scanner: the origin or the head. Angles would not
+  // do, as all are small from far away. Without columns, the place with the smaller median range is the scanner's.
   bool moved_already(std::uint64_t columns, std::uint64_t rows, const Eigen::Vector3d& head) {
     constexpr std::uint64_t kMost = 200'000;
     constexpr std::size_t kLeast = 30;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of each scan, thinned: one for each small cell around its scanner, with the number of points that it
+// Thins the points of each scan to one for each small cell around its scanner, with the number of points that this one
 // stands for.
 #include <algorithm>
 #include <cstring>
@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr std::size_t kRecord = 4 * sizeof(std::uint32_t);  // x, y, z, count
 
-// All scans with cells of one size. Empty if they would take more than `memory` bytes.
+// Thins all scans with cells of one size. The result is empty if they would take more than `memory` bytes.
 class ThinScans {
  public:
   ThinScans(PointSource& source, double cell_m, double memory) : source_(source), cell_m_(cell_m), memory_(memory) {}
@@ -38,7 +38,7 @@ class ThinScans {
       total_ += block.positions.size();
       if (!source_.scans()[scan_].posed) return;
       for (const Eigen::Vector3d& p : block.positions) grid_->add(p, 0, Eigen::Vector3d::Zero());
-      // What is written is copied once.
+      // Records count twice, since writing copies them.
       too_many_ =
           grid_->size() * (CellGrid::bytes_each + 2 * kRecord) + 2.0 * static_cast<double>(records_.size()) > memory_;
     });
@@ -66,7 +66,7 @@ class ThinScans {
     total_ = 0;
   }
 
-  // Its mean point, from the scanner's head.
+  // Adds the cell's mean point, relative to the scanner's head.
   void add(const Cell& cell) {
     const Eigen::Vector3d mean = CellGrid::middle_of(CellGrid::index_of(cell)) + cell.moments().mean();
     std::array<char, kRecord> record;

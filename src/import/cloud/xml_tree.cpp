@@ -15,7 +15,7 @@ constexpr std::size_t kDeepest = 64;
 
 struct Builder {
   XmlElement root;
-  std::vector<XmlElement*> open{&root};  // an element's address holds while its children are added
+  std::vector<XmlElement*> open{&root};  // addresses of open elements hold while children are added
   XML_Parser parser = nullptr;
   bool too_deep = false;
 };

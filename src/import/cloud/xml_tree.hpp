@@ -14,9 +14,9 @@ struct XmlElement {
   std::map<std::string, std::string> attributes;
   std::vector<XmlElement> children;
 
-  // The first child of that name, or null.
+  // Returns the first child of that name, or null.
   const XmlElement* child(std::string_view wanted) const;
-  // Number at a path of children; `missing` if there is none or it is empty. Throws Refused if it is no number.
+  // Returns the number at a path of children; `missing` if there is none or it is empty. Throws Refused if no number.
   double number(std::initializer_list<std::string_view> path, double missing) const;
   std::string text_at(std::string_view wanted) const;
 };

@@ -12,7 +12,7 @@
 
 namespace vantage::floor_plan {
 
-// Target from source, seen from above: x and y are where its axes go.
+// Transform from source to target, seen from above: x and y are the images of the source's axes.
 struct Placement {
   Point x{1, 0}, y{0, 1}, origin;
 
@@ -21,7 +21,7 @@ struct Placement {
     const auto turned = [&](Point p) { return x * p.x + y * p.y; };
     return {turned(inner.x), turned(inner.y), (*this)(inner.origin)};
   }
-  // Whether circles stay circles.
+  // Returns true if circles stay circles.
   bool keeps_shape() const {
     const double scale = length(x);
     return scale > 0 && std::abs(dot(x, y)) <= 1e-6 * scale * scale && std::abs(length(y) - scale) <= 1e-6 * scale;
@@ -37,7 +37,7 @@ struct Insert {
   int layer = 0;
 };
 
-// Of a block or of the model space. Origins have neither kind nor symbol yet.
+// Content of a block or of the model space. Origins have neither kind nor symbol yet.
 struct Content {
   Point base;
   std::string name;
@@ -51,10 +51,10 @@ struct Content {
   std::map<std::tuple<Fate, int, std::string>, std::size_t> entities;  // by fate, layer and type
 };
 
-// Names of layers and blocks, whose case does not matter.
+// Names of layers and blocks, which ignore case.
 class Layers {
  public:
-  enum State { shown, off, frozen };  // what is placed on a layer that is off may show; on a frozen one it does not
+  enum State { shown, off, frozen };  // blocks on a layer that is off may show, but not on a frozen one
 
   explicit Layers(Drawing& drawing) : drawing_(drawing) {}
   int index(std::string_view raw);  // in Drawing::layers
@@ -72,26 +72,26 @@ class Layers {
   std::vector<State> states_;
 };
 
-// Adds an entity to a content. `parts` are the vertices and attributes that follow it.
+// Adds an entity to a content. `parts`: the vertices and attributes that follow it.
 void add_entity(const Entity& entity, const std::vector<Entity>& parts, Layers& layers, Content& into);
 
-// An arc of the unit circle, placed: as an arc, or as a curve if it is one of an ellipse.
+// Adds a placed arc of the unit circle: as an arc, or as a curve if it is elliptical.
 void add_arc(const Placement& placement, double from, double sweep, const Origin& origin, std::vector<Arc>& arcs,
              std::vector<Curve>& curves);
 
-// The circle of an edge from a to b as a unit circle, placed, whose x axis goes to a. `bulge` is the tangent of a
-// quarter of the arc's angle; REQUIRES: its size is above kStraightBulge.
+// Returns the placement of the unit circle that puts it on the arc of an edge from a to b, its x axis towards a.
+// `bulge`: the tangent of a quarter of the arc's angle; REQUIRES: its size is above kStraightBulge.
 inline constexpr double kStraightBulge = 1e-6;
 Placement bulge_circle(Point a, Point b, double bulge);
 
-// The area of a HATCH in its own coordinates: rings, of which those within others are holes. Seed points and rings
-// around texts are none of it.
+// Returns the area of a HATCH in its own coordinates: rings, of which those within others are holes. Seed points and
+// rings around texts do not count.
 std::vector<std::vector<Point>> hatch_rings(const Entity& hatch);
 
-// Chains of points that stray from curves by 1/20 000 of their extent.
+// Returns chains of points within 1/20 000 of their extent of the curves.
 std::vector<Point> ellipse_points(const Placement& unit_circle, double from, double sweep);
-// Control points with their weights, or points that the curve passes through if there are none of them. Empty if the
-// spline is not valid.
+// Control points with their weights, or points that the curve passes through if there are no control points. Empty if
+// the spline is not valid.
 struct Spline {
   int degree = 3;
   std::vector<double> knots, weights;

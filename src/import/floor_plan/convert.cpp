@@ -26,7 +26,7 @@ namespace {
 using importer::Refused;
 using nlohmann::json;
 
-// To metres, and around a point of whole metres amid the lines: floats hold no map coordinates. Curves become lines.
+// Scales to metres about a middle in whole metres, since floats hold no map coordinates. Curves become lines.
 Point scale_to_metres(Drawing& drawing, double metres) {
   const auto each = [&](const auto& visit) {
     for (Line& line : drawing.lines) visit(line.a), visit(line.b);
@@ -73,7 +73,7 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > kMost ? out + ", …" : out;
 }
 
-// What a drawing holds and the site does not, by layer and type, so that nothing is lost in silence.
+// Notes by layer and type what the drawing holds and the site lacks, so that nothing is lost in silence.
 void add_left_out(std::vector<std::string>& notes, const Drawing& drawing, const Walls& walls,
                   const std::vector<Swing>& swings) {
   const auto add = [&](const std::string& what, const auto& wanted) {
@@ -156,8 +156,8 @@ std::vector<std::string> notes_of(const Plan& plan, const Drawing& drawing, cons
   return notes;
 }
 
-// A floor plan has doors, or names of rooms. Without both, a title may say what else it is; then nothing is raised
-// unless the user names the layer of walls.
+// A floor plan has doors or names of rooms. Without both, a title may show that the drawing is another view; then
+// nothing is raised unless the user names the layer of walls.
 void check_view(const Drawing& drawing, const Plan& plan, bool doors, bool asked, std::vector<std::string>& notes) {
   const bool named = std::ranges::any_of(plan.rooms.rooms, [](const Room& room) { return !room.name.empty(); });
   if (doors || (named && asked)) return;
@@ -172,7 +172,7 @@ void check_view(const Drawing& drawing, const Plan& plan, bool doors, bool asked
         "in place of a floor plan?");
 }
 
-// Triangles of a node, Y up, without a point twice.
+// Returns the triangles of a node, Y up, without duplicate points.
 json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
   std::map<std::array<float, 3>, std::uint32_t> known;
   std::vector<float> positions;
@@ -188,14 +188,14 @@ json primitive_of(const Mesh& mesh, importer::Buffer& buffer) {
   return primitive;
 }
 
-// A drawing, raised.
+// A drawing, raised to a storey.
 struct Storey {
   Plan plan;
   std::vector<Flight> flights;  // of stairs
   std::vector<Text> texts;
   Point origin;        // of its points, in metres of the drawing
   double floor_m = 0;  // above the lowest one
-  std::string name;    // of its file, without its ending
+  std::string name;    // the file's name without its ending
   std::vector<std::string> notes;
 };
 

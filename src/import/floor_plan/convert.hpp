@@ -8,8 +8,8 @@
 namespace vantage::floor_plan {
 
 struct Settings {
-  std::string unit;                      // empty: as the drawing tells
-  std::vector<std::string> wall_layers;  // patterns; empty: as names or lines tell
+  std::string unit;                      // empty: as the drawing says
+  std::vector<std::string> wall_layers;  // patterns; empty: by names or lines
   double wall_height_m = 2.7;
 };
 

@@ -26,7 +26,7 @@ double to_chord(Point p, Point a, Point b) {
   return distance(a + along * std::clamp(dot(p - a, along) / square, 0.0, 1.0), p);
 }
 
-// A point of a B-spline, by de Boor's algorithm, with weights.
+// Returns a point of a weighted B-spline by de Boor's algorithm.
 Point at(const Spline& spline, std::size_t span, double t) {
   struct Weighted {
     double x, y, w;
@@ -70,14 +70,14 @@ std::vector<Point> controlled(const Spline& spline) {
   return points;
 }
 
-// The natural cubic spline through points, by lengths of chords.
+// Returns the natural cubic spline through points, parameterised by the lengths of chords.
 std::vector<Point> through(std::vector<Point> fit) {
   fit.erase(std::unique(fit.begin(), fit.end()), fit.end());
   const std::size_t n = fit.size();
   if (n < 2) return {};
   std::vector<double> chord(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) chord[i] = distance(fit[i], fit[i + 1]);
-  // Second derivatives, by Thomas's algorithm.
+  // Solves for second derivatives by Thomas's algorithm.
   std::vector<double> upper(n);
   std::vector<Point> second(n);
   for (std::size_t i = 1; i + 1 < n; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a floor plan's drawing holds, with blocks placed and curves as arcs.
+// Content of a floor plan's drawing, with blocks placed and curves as arcs.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace vantage::floor_plan {
 
 inline constexpr double kTurn = 2 * std::numbers::pi, kDegree = kTurn / 360;
-inline constexpr double kCurve_m = 0.005;  // by how much chords stray from curves
+inline constexpr double kCurve_m = 0.005;  // largest distance of chords from curves
 
 struct Point {
   double x = 0, y = 0;
@@ -27,10 +27,10 @@ inline double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 inline double length(Point a) { return std::hypot(a.x, a.y); }
 inline double distance(Point a, Point b) { return length(b - a); }
 
-// What a layer or a block is of, by its name.
+// Kind of a layer or a block, recognised by its name.
 enum class Kind { other, wall, door, window, furniture, stair, annotation };
 
-// Where a piece of the drawing comes from.
+// Origin of a piece of the drawing.
 struct Origin {
   int layer = 0;  // in Drawing::layers
   Kind kind = Kind::other;
@@ -43,7 +43,7 @@ struct Line {
   double width = 0;  // of a wide polyline
 };
 
-// From `start` around `centre` by `sweep` radians, counter-clockwise if positive.
+// An arc from `start` around `centre` by `sweep` radians, counter-clockwise if positive.
 struct Arc {
   Point centre, start;
   double sweep = 0;
@@ -53,7 +53,7 @@ struct Arc {
   Point end() const { return at(1); }
 };
 
-// What is neither straight nor an arc: a chain of points that are dense.
+// A dense chain of points for a curve that is neither straight nor an arc.
 struct Curve {
   std::vector<Point> points;
   Origin from;
@@ -80,7 +80,7 @@ struct Symbol {
   int parent = -1;  // the block that it is in
 };
 
-// What became of an entity.
+// Outcome of reading an entity.
 enum class Fate { drawn, not_read, invisible, hidden_layer, missing_block, paper_space };
 
 // Entities of one type, as DXF names it, that share their fate and layer.
@@ -105,18 +105,18 @@ struct Drawing {
   std::vector<Text> texts;
   int unit_code = 0;                          // $INSUNITS
   bool in_inches = false;                     // lengths are shown in feet and inches ($LUNITS)
-  std::map<EntityKey, std::size_t> entities;  // all that the file holds, as often as it is placed
-  std::map<double, std::size_t> thicknesses;  // heights that entities state, and of how many
+  std::map<EntityKey, std::size_t> entities;  // all that the file holds, counted as often as placed
+  std::map<double, std::size_t> thicknesses;  // heights that entities state, and how many state each
 };
 
-// Reads the model space of a DXF; coordinates are the file's. Layers that match `wall_layers` (shell patterns, case
-// does not matter), if there are any, are the walls, whatever names say. Throws Refused.
+// Reads the model space of a DXF; coordinates are the file's. Layers that match `wall_layers` (shell patterns; case is
+// ignored), if there are any, are the walls, whatever other names say. Throws Refused.
 Drawing read_drawing(const std::filesystem::path& file, const std::vector<std::string>& wall_layers);
 
-// Leaves points out as long as the chain strays by at most `error`.
+// Removes points as long as the chain strays by at most `error`.
 std::vector<Point> simplified(const std::vector<Point>& points, double error);
 
-// An arc as a chain of points that stray from it by at most `error`.
+// Returns an arc as a chain of points within `error` of it.
 std::vector<Point> chain(const Arc& arc, double error);
 
 }  // namespace vantage::floor_plan

@@ -154,7 +154,7 @@ Axes object_axes(const Entity& entity) {
   if (!(size > 0) || (x == 0 && y == 0 && z > 0)) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const std::array n{x / size, y / size, z / size};
   constexpr double kNearlyUpright = 1.0 / 64;
-  // Across n and the world's y if n is nearly upright, else its z.
+  // Takes the axis across n and the world's y if n is nearly upright, else across n and z.
   std::array along{-n[1], n[0], 0.0};
   if (std::abs(n[0]) < kNearlyUpright && std::abs(n[1]) < kNearlyUpright) along = {n[2], 0.0, -n[0]};
   const double wide = std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
@@ -168,7 +168,7 @@ void read_dxf(const std::filesystem::path& file, const DxfTaker& taker) {
   DxfText text(file);
   std::string_view section;
   bool in_block = false;
-  Entity entity, open;  // the one at hand, and one that is not handed on yet
+  Entity entity, open;  // the current one, and one that waits for its parts
   std::vector<Entity> parts;
   const auto finish = [&] {
     if (!open.type.empty()) taker.entity(open, parts, in_block);

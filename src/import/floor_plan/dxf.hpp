@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text of a DXF as entities of group codes and values, without what they mean.
+// The text of a DXF as entities of group codes and values, without their meaning.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@ namespace vantage::floor_plan {
 
 struct Group {
   int code = 0;
-  std::string_view value;  // without blanks around it; text keeps those before it
+  std::string_view value;  // without surrounding blanks; text keeps its leading ones
 };
 
-// NaN if the value is no number.
+// Returns NaN if the value is no number.
 double number(const Group& group);
 int integer(const Group& group);  // 0 if it is none
 
-// What stands between two groups of code 0: an entity, a table's entry, the begin or end of a section. Extended data,
-// groups of applications and embedded objects, whose codes mean something else, are left out.
+// Groups between two groups of code 0: an entity, a table's entry, the begin or end of a section. Extended data, groups
+// of applications and embedded objects are left out, as their codes have other meanings.
 struct Entity {
   std::string_view type;
   std::vector<Group> groups;
 
-  // The first group of that code.
+  // Returns the first group of that code; null if there is none.
   const Group* find(int code) const;
   bool has(int code) const { return find(code) != nullptr; }
   double number(int code, double otherwise = 0) const;
@@ -36,11 +36,11 @@ struct Entity {
   std::string_view text(int code, std::string_view otherwise = {}) const;
 };
 
-// The axes of an entity's object coordinates in the world: the arbitrary axes of its extrusion, which is the third.
+// Axes of an entity's object coordinates in the world, by the arbitrary axis algorithm; the third is its extrusion.
 using Axes = std::array<std::array<double, 3>, 3>;
 Axes object_axes(const Entity& entity);
 
-// Reads a file whole, then entity by entity.
+// Reads a file as a whole, then hands on its entities one by one.
 class DxfText {
  public:
   // Throws Refused if the file cannot be read.
@@ -48,8 +48,8 @@ class DxfText {
   DxfText(const DxfText&) = delete;
   DxfText& operator=(const DxfText&) = delete;
 
-  // The next entity, whose views live as long as this; false at the file's end (EOF). Throws Refused, with the line, if
-  // the text is no DXF or ends before its end.
+  // Reads the next entity, whose views live as long as this object; returns false at the file's end (EOF). Throws
+  // Refused, with the line, if the text is no DXF or ends before.
   bool next(Entity& entity);
 
  private:
@@ -62,13 +62,13 @@ class DxfText {
   bool begun_ = false;
 };
 
-// Takes what a file holds, in its order. Entities come with the vertices or attributes that follow them.
+// Receives the content of a file, in its order. Entities come with the vertices or attributes that follow them.
 struct DxfTaker {
   std::function<void(const std::map<std::string_view, Group>&)> header;  // variables by name: the first group of each
   std::function<void(const Entity&)> layer, begin_block;
   std::function<void(const Entity&, const std::vector<Entity>& parts, bool in_block)> entity;
 };
-// Views live as long as the call. Throws Refused.
+// Reads a DXF into `taker`. Views live as long as the call. Throws Refused.
 void read_dxf(const std::filesystem::path& file, const DxfTaker& taker);
 
 // A unit of $INSUNITS.
@@ -77,6 +77,6 @@ struct DxfUnit {
   int code;
   double metres;
 };
-const DxfUnit* unit_of_code(int code);  // null if it means none
+const DxfUnit* unit_of_code(int code);  // null if the code stands for no unit
 
 }  // namespace vantage::floor_plan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each type of entity draws, seen from above.
+// Draws each type of entity, seen from above.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ struct Vertex {
   double bulge = 0, width = 0;
 };
 
-// A vertex of a multiline: how far along its mitre each element lies, and where that begins and ends its dashes.
+// A vertex of a multiline: the place of each element along the mitre, and where its dashes begin and end.
 struct MultilineVertex {
   Point at, mitre;
   std::vector<std::vector<double>> elements;
@@ -32,7 +32,7 @@ class Adder {
     constexpr std::array<std::string_view, 3> kDrawNothing{"VIEWPORT", "SEQEND", "ENDBLK"};
     if (std::ranges::find(kDrawNothing, entity_.type) != kDrawNothing.end()) return;
     constexpr int kConstant = 2;
-    const bool definition = entity_.type == "ATTDEF";  // whose value each insert has for itself
+    const bool definition = entity_.type == "ATTDEF";  // an ATTDEF's value differs for each insert
     if (definition && (entity_.integer(70) & kConstant) == 0) return;
     Fate fate = Fate::drawn;
     if (entity_.integer(67) != 0)
@@ -46,7 +46,7 @@ class Adder {
   }
 
  private:
-  // Whether this type is read.
+  // Draws the entity; returns false if its type is not read.
   bool draw() {
     const std::string_view type = entity_.type;
     if (type == "LINE" || type == "3DLINE") return add_line(point(10), point(11));
@@ -69,7 +69,7 @@ class Adder {
 
   Point point(int code) const { return {entity_.number(code), entity_.number(code + 10)}; }
 
-  // The world, seen from above, from an entity's object coordinates at some height.
+  // Returns the transform from an entity's object coordinates, at some height, to the world seen from above.
   Placement object_system(double height) const {
     const auto [x, y, n] = object_axes(entity_);
     if (n[0] == 0 && n[1] == 0) height = 0;  // it moves nothing, even if it is no number
@@ -111,7 +111,7 @@ class Adder {
   bool add_light_polyline() {
     std::vector<Vertex> vertices;
     const double width = entity_.number(43);
-    double widest = width, narrowest = width;  // of the segment at hand
+    double widest = width, narrowest = width;  // widths of the current segment
     for (const Group& group : entity_.groups) {
       if (group.code == 10) {
         vertices.push_back({{number(group), 0}, 0, width});
@@ -144,7 +144,7 @@ class Adder {
     return add_vertices(vertices, (flags & closed) != 0,
                         (flags & in_space) != 0 ? Placement{} : object_system(entity_.number(30)));
   }
-  // Vertices first, then faces by their numbers, which are negative before an edge that does not show.
+  // Reads vertices first, then faces as vertex numbers; a negative number begins an edge that does not show.
   bool add_faces() {
     constexpr int kVertex = 64;
     std::vector<Point> corners;
@@ -209,7 +209,7 @@ class Adder {
         if (!(size > 0)) continue;
         const auto at = [&](double along) { return from + (to - from) * std::clamp(along / size, 0.0, 1.0); };
         if (dashes.size() < 3) add_line(from, to);
-        // Begin and end by turns; the last dash goes on to the next vertex.
+        // Dashes begin and end by turns; the last one goes on to the next vertex.
         for (std::size_t d = 1; dashes.size() >= 3 && d < dashes.size(); d += 2)
           add_line(at(dashes[d]), d + 1 < dashes.size() ? at(dashes[d + 1]) : to);
       }
@@ -239,7 +239,7 @@ class Adder {
     return true;
   }
 
-  // A corner that is missing is the one before it.
+  // A missing corner repeats the one before it.
   bool add_quad(const Placement& system, const std::array<int, 4>& codes) {
     std::vector<Point> ring;
     for (const int code : codes)
@@ -297,11 +297,11 @@ class Adder {
     for (const Group& group : entity_.groups)
       if (group.code == 3 || group.code == 1) raw += group.value;
     const std::string text = plain_text(raw, layers_.code_page);
-    // The attachment point counts from the top left corner, 1, by rows of three.
+    // The attachment point counts from 1, the top left corner, by rows of three.
     const int attachment = std::clamp(entity_.integer(71, 1), 1, 9) - 1;
     const double height = entity_.number(40), given = entity_.number(41);
     const double all = 0.7 * height * static_cast<double>(text.size()), wide = given > 0 ? std::min(given, all) : all;
-    // Its place and direction are the world's.
+    // Position and direction are in world coordinates.
     const Placement system = object_system(0);
     const double turn = entity_.number(50) * kDegree, upward = system.mirrors() ? -1 : 1;
     const Point along = entity_.has(11) ? point(11) : system.x * std::cos(turn) + system.y * std::sin(turn);

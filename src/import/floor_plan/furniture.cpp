@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLargest_m = 4.5, kSmallest_m = 0.15;
 
-// The outermost block of furniture that a block is in; -1: none.
+// Returns the outermost block of furniture that contains a block; -1: none.
 int piece_of(const Drawing& drawing, int symbol) {
   int out = -1;
   for (; symbol >= 0; symbol = drawing.symbols[static_cast<std::size_t>(symbol)].parent)
@@ -27,7 +27,7 @@ std::vector<Furniture> find_furniture(const Drawing& drawing, const Rooms& rooms
     const Bounds box = bounds(rooms.rooms[r].area);
     grid.add(r, box.low, box.high);
   }
-  // By outermost block, and by innermost for a block that is a whole room's furniture.
+  // Groups points by outermost block, and by innermost one in case the outermost is a whole room's furniture.
   std::map<int, std::map<int, std::vector<Point>>> pieces;
   const auto take = [&](const Origin& from, const std::vector<Point>& points) {
     if (from.kind != Kind::furniture) return;

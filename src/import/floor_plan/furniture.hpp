@@ -15,7 +15,7 @@ struct Furniture {
   Shape area;
 };
 
-// The smallest rectangle around each block of furniture, as far as it is in rooms.
+// Returns the smallest rectangle around each block of furniture, clipped to the rooms.
 std::vector<Furniture> find_furniture(const Drawing& drawing, const Rooms& rooms);
 
 }  // namespace vantage::floor_plan

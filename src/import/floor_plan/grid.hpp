@@ -12,13 +12,13 @@
 
 namespace vantage::floor_plan {
 
-// Finds things by the boxes around them: a grid of square cells.
+// Finds objects by their bounding boxes, in a grid of square cells.
 class Grid {
  public:
   explicit Grid(double cell) : cell_(cell) {}
 
   void add(std::size_t index, Point low, Point high) {
-    constexpr double kMostCells = 1024;  // of one thing; larger ones are looked at each time
+    constexpr double kMostCells = 1024;  // of one object; larger ones are tested on every visit
     const double cells = (1 + (high.x - low.x) / cell_) * (1 + (high.y - low.y) / cell_);
     if (!(cells <= kMostCells)) {
       large_.push_back(index);
@@ -27,7 +27,7 @@ class Grid {
     for_cells(low, high, [&](std::int64_t x, std::int64_t y) { cells_[key(x, y)].push_back(index); });
   }
 
-  // A line, and what is within `margin` of it.
+  // Adds a line, widened by `margin`.
   void add_line(std::size_t index, Point a, Point b, double margin) {
     if (is_long(a, b))
       large_.push_back(index);
@@ -35,7 +35,7 @@ class Grid {
       for_cells_of_line(a, b, margin, [&](std::int64_t x, std::int64_t y) { cells_[key(x, y)].push_back(index); });
   }
 
-  // Calls `visit(index)` for all things whose cells meet the box, some of them more than once.
+  // Calls `visit(index)` for all objects whose cells meet the box, for some more than once.
   template <class Visit>
   void visit(Point low, Point high, const Visit& visit) const {
     for (const std::size_t index : large_) visit(index);
@@ -45,8 +45,8 @@ class Grid {
     });
   }
 
-  // Calls `visit(index, low corner of the cell, cell)` for all things in the cells that a line passes, none if it is
-  // longer than some thousand cells.
+  // Calls `visit(index, low corner of the cell, cell)` for all objects in the cells that a line passes; for none if the
+  // line is longer than some thousand cells.
   template <class Visit>
   void visit_line(Point a, Point b, const Visit& visit) const {
     if (is_long(a, b)) return;
@@ -72,7 +72,7 @@ class Grid {
       for (std::int64_t x = cell_of(low.x); x <= cell_of(high.x); ++x) visit(x, y);
   }
 
-  // Row by row.
+  // Visits the cells row by row.
   template <class Visit>
   void for_cells_of_line(Point a, Point b, double margin, const Visit& visit) const {
     if (a.y > b.y) std::swap(a, b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boundaries of hatches. Their codes repeat, so they are read in their order.
+// Boundaries of hatches. Their codes repeat, so groups are read in their order.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -20,7 +20,7 @@ bool holds(const Ring& ring, Point p) {
   return inside;
 }
 
-// How many other rings are around each, by most of its points: rings may touch.
+// Returns for each ring how many others enclose it, by most of its points, as rings may touch.
 std::vector<std::size_t> depths(const std::vector<Ring>& rings) {
   std::vector<std::size_t> out(rings.size());
   for (std::size_t a = 0; a < rings.size(); ++a)
@@ -45,7 +45,7 @@ class Cursor {
   int code() const { return groups_[at_].code; }
   bool is(int code) const { return !done() && groups_[at_].code == code; }
   void skip() { ++at_; }
-  // The value of the next group if it has this code.
+  // Returns the value of the next group if it has this code, else `otherwise`.
   double take(int code, double otherwise = 0) { return is(code) ? number(groups_[at_++]) : otherwise; }
   int whole(int code, int otherwise = 0) { return is(code) ? integer(groups_[at_++]) : otherwise; }
   std::size_t count(int code) {
@@ -94,7 +94,7 @@ Ring spline(Cursor& groups) {
   return spline_points(out);
 }
 
-// An edge as a chain. Angles of clockwise arcs count clockwise.
+// Reads an edge as a chain. Angles of clockwise arcs count clockwise.
 Ring edge(Cursor& groups) {
   enum { line = 1, arc = 2, ellipse = 3 };
   const int kind = groups.whole(72);
@@ -111,7 +111,7 @@ Ring edge(Cursor& groups) {
   return ellipse_points(circle, from, sweep);
 }
 
-// Edges follow each other, some of them backwards, and now and then in another order.
+// Joins edges, some of which run backwards or stand in another order.
 Ring joined(std::vector<Ring> edges) {
   std::erase_if(edges, [](const Ring& edge) { return edge.empty(); });
   if (edges.empty()) return {};
@@ -121,7 +121,7 @@ Ring joined(std::vector<Ring> edges) {
     const auto miss = [&](const Ring& edge) {
       return std::min(distance(ring.back(), edge.front()), distance(ring.back(), edge.back()));
     };
-    // The next one as a rule.
+    // Takes the next edge if it fits, as most do; else the nearest one.
     const double tolerance = 1e-6 * (1 + length(ring.back()));
     const auto next = miss(edges.front()) <= tolerance ? edges.begin() : std::ranges::min_element(edges, {}, miss);
     if (distance(ring.back(), next->back()) < distance(ring.back(), next->front())) std::ranges::reverse(*next);

@@ -11,8 +11,8 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kSame = 1e-3;    // lines are longer; joins by half of it are told
-constexpr double kJoined = 1e-6;  // ends closer than this are joined already
+constexpr double kSame = 1e-3;    // lines are longer; joins of at least half of it are reported
+constexpr double kJoined = 1e-6;  // ends closer than this count as joined
 
 Point nearest_on(const Line& line, Point p) {
   const Point along = line.b - line.a;
@@ -20,7 +20,7 @@ Point nearest_on(const Line& line, Point p) {
   return line.a + along * t;
 }
 
-// Where the line would go on to meet the other.
+// Returns where the extended line would meet the other.
 std::optional<Point> crossing(const Line& line, const Line& other) {
   const Point a = line.b - line.a, b = other.b - other.a;
   const double turn = cross(a, b);
@@ -45,7 +45,7 @@ class Ends {
     Joined out;
     const auto move_to = [&](std::size_t end, Point target) {
       const double by = distance(at(end), target);
-      if (distance(target, other(end)) < kSame) return;  // would make a point of it
+      if (distance(target, other(end)) < kSame) return;  // would shrink the line to a point
       at(end) = target;
       if (by < kSame / 2) return;
       ++out.ends;
@@ -56,7 +56,7 @@ class Ends {
       done[move.end] = true;
       Point target = move.onto ? at(*move.onto) : move.to;
       if (move.onto && !done[*move.onto]) {
-        // Both go on to where they meet, if that is near; else the other stays where it is.
+        // Both lines extend to their crossing if it is near; else the other line stays.
         const auto corner = crossing(lines_[move.end / 2], lines_[*move.onto / 2]);
         const bool near = corner && is_loose_[*move.onto] && distance(*corner, at(move.end)) <= kTolerance_m &&
                           distance(*corner, at(*move.onto)) <= kTolerance_m;
@@ -82,7 +82,7 @@ class Ends {
   Point other(std::size_t end) { return at(end ^ 1U); }
 
   bool wide(std::size_t line) const { return lines_[line].width >= kThinnestWall_m; }
-  // A wide line is a wall by itself: lines of other walls end at its faces, not in its middle.
+  // A wide line is a wall of its own: lines of other walls end at its faces, not at its middle.
   bool may_join(std::size_t end, std::size_t line) const { return line != end / 2 && wide(line) == wide(end / 2); }
 
   bool loose(std::size_t end, const Grid& grid) {

@@ -29,7 +29,7 @@ void append_utf8(std::string& out, std::uint32_t code) {
   }
 }
 
-// $DWGCODEPAGE as iconv calls it: ANSI_1251 is CP1251.
+// Decodes text of $DWGCODEPAGE, under its name in iconv: ANSI_1251 is CP1251.
 std::string decoded(const std::string& text, const std::string& code_page) {
   if (is_utf8(text)) return text;
   const std::size_t number = code_page.find_first_of("0123456789");
@@ -46,7 +46,7 @@ std::string decoded(const std::string& text, const std::string& code_page) {
   return out;
 }
 
-// \U+00E9, and %%nnn of old files.
+// Decodes \U+00E9, and %%nnn of old files.
 std::string without_escapes(const std::string& text) {
   std::string out;
   const auto digits = [&](std::size_t at, std::size_t count, auto is_digit) {
@@ -76,7 +76,7 @@ std::string without_escapes(const std::string& text) {
   return out;
 }
 
-// {\fArial|b0;Living \Proom}: backslash and letter begin a code, most of which end with a semicolon.
+// Removes formatting such as {\fArial|b0;Living \Proom}. Most codes, a backslash and a letter, end with a semicolon.
 std::string without_formatting(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -125,7 +125,7 @@ std::string plain_text(const std::string& text, const std::string& code_page) {
 }
 
 int stair_way(const std::string& text) {
-  constexpr std::size_t kLongestOther = 2;  // as in DN 16R; a name of a room has longer ones
+  constexpr std::size_t kLongestOther = 2;  // as in DN 16R; names of rooms have longer words
   std::vector<std::string> words(1);
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -163,7 +163,7 @@ Label::Kind label_of(const std::string& text) {
     if (digits > 0 && text.find(measure) != std::string::npos) return Label::nothing;
   if (stair_way(text) != 0) return Label::nothing;
   if (longest >= 2 && letters > digits) return Label::name;
-  // 12, 1.04, A-12, but no 12.50 or 1,25, which are lengths or areas.
+  // Accepts 12, 1.04 and A-12, but not 12.50 or 1,25, which are lengths or areas.
   if (digits == 0 || text.size() > kLongestNumber || text.find_first_of(", +/") != std::string::npos)
     return Label::nothing;
   const std::size_t point = text.find('.');

@@ -20,7 +20,7 @@ bool has(const std::string& name, Words words) {
   return std::ranges::any_of(words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
 
-// As a word of its own: no letter before or after.
+// Finds a whole word, with no letter before or after it.
 bool has_whole(const std::string& name, Words words) {
   return std::ranges::any_of(words, [&](std::string_view word) {
     for (std::size_t at = name.find(word); at != std::string::npos; at = name.find(word, at + 1))
@@ -89,7 +89,7 @@ std::string lower_case(const std::string& text) {
     if (byte >= 'A' && byte <= 'Z') out[i] = static_cast<char>(byte - 'A' + 'a');
     if (byte < 0xC3 || byte > 0xD1 || i + 1 >= out.size()) continue;
     const auto next = static_cast<unsigned char>(out[i + 1]);
-    // Two bytes.
+    // Decodes two bytes of UTF-8.
     unsigned code = ((byte & 0x1FU) << 6) | (next & 0x3FU);
     if (code >= 0xC0 && code <= 0xDE && code != 0xD7)
       code += 0x20;

@@ -8,16 +8,16 @@
 
 namespace vantage::floor_plan {
 
-// ASCII, and letters of Latin-1, Latin Extended-A, Greek and Cyrillic.
+// Converts ASCII, and letters of Latin-1, Latin Extended-A, Greek and Cyrillic.
 std::string lower_case(const std::string& text);
 
-// By words of some fifteen languages in the name of a layer or block (UTF-8).
+// Recognises the kind by words of some fifteen languages in the name of a layer or block (UTF-8).
 Kind kind_of(const std::string& name);
 
-// Whether a name matches a shell pattern (*, ?); case does not matter.
+// Returns true if a name matches a shell pattern (*, ?), ignoring case.
 bool matches(const std::string& name, const std::string& pattern);
 
-// Whether a text is the title of a drawing that is no floor plan: an elevation, a section or a roof.
+// Returns true if a text is the title of a drawing that is no floor plan: an elevation, a section or a roof.
 bool names_another_view(const std::string& text);
 
 }  // namespace vantage::floor_plan

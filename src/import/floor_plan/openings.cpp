@@ -16,11 +16,11 @@ namespace {
 
 // Widths of gaps. Metres.
 constexpr double kNarrowestGap = 0.45, kWidestGap = 2.6;  // between two ends that face each other
-constexpr double kWidestShown = 12;                       // where a window or swings are drawn in it
-constexpr double kWidestToWall = 1.35;                    // between an end and the wall across
-constexpr double kNear = 0.2;                             // by which symbols miss the gaps that they are in
+constexpr double kWidestShown = 12;                       // with a window or swings drawn in it
+constexpr double kWidestToWall = 1.35;                    // between an end and the opposite wall
+constexpr double kNear = 0.2;                             // by which symbols may miss their gaps
 
-// The short side in which a wall ends: walls lie to the left of the way from a to b.
+// The short side at which a wall ends. Seen from a towards b, the wall lies to the left.
 struct Cap {
   Point a, b;
   Point middle() const { return (a + b) * 0.5; }
@@ -31,7 +31,7 @@ struct Cap {
   }
 };
 
-// A ring without corners on its straight sides.
+// Returns a ring without the corners on its straight sides.
 std::vector<Point> corners_of(const std::vector<Point>& ring) {
   constexpr double kStraight_m = 5e-4;
   std::vector<Point> out;
@@ -45,11 +45,11 @@ std::vector<Point> corners_of(const std::vector<Point>& ring) {
   return out;
 }
 
-// Jambs may have rebates and frames: ends of some steps, no deeper than kDeepestJamb.
+// Jambs may have rebates and frames, so that a wall may end in several steps, no deeper than kDeepestJamb.
 constexpr std::size_t kMostJambSides = 7;
 constexpr double kDeepestJamb = 0.12;
 
-// The cap of a wall whose side ends in ring[i], and goes back from ring[i + sides]; nothing if no wall ends there.
+// Returns the cap of a wall whose side ends in ring[i] and resumes at ring[i + sides]; nothing if no wall ends there.
 std::optional<Cap> cap_at(const std::vector<Point>& ring, std::size_t i, std::size_t sides) {
   constexpr double kLeastSide = 0.04, kStraight = 0.93;
   const std::size_t n = ring.size();
@@ -63,7 +63,7 @@ std::optional<Cap> cap_at(const std::vector<Point>& ring, std::size_t i, std::si
   double deepest = std::max(0.0, dot(b - a, in)), shallowest = std::min(0.0, dot(b - a, in));
   if (sides == 1) {
     const Point over = (b - a) * (1 / wide);
-    if (cross(in, over) < kStraight || cross(over, out) < kStraight) return {};  // both corners stand out
+    if (cross(in, over) < kStraight || cross(over, out) < kStraight) return {};  // both corners are convex
   } else {
     if (dot(in, out) > -0.98) return {};
     for (std::size_t k = 1; k < sides; ++k) {
@@ -73,7 +73,7 @@ std::optional<Cap> cap_at(const std::vector<Point>& ring, std::size_t i, std::si
     }
     if (deepest - shallowest > kDeepestJamb) return {};
   }
-  // A column has such sides all around; a wall goes on, or bends where its end begins.
+  // A column has such short sides all around; a wall continues, or bends where its end begins.
   const Point further = ring[(i + n - 2) % n], last = corner(sides + 2);
   const bool bends = cross(a - before, before - further) > 0 || cross(last - after, after - b) > 0;
   if (!bends && std::max(left, right) < 2 * wide) return {};
@@ -122,14 +122,14 @@ class Finder {
   }
 
  private:
-  // What one symbol or a cluster of loose lines draws.
+  // Points of one symbol or of a cluster of loose lines.
   struct Group {
     Kind kind;
     std::vector<Point> points;
     bool used = false;
   };
 
-  // Distance along a ray to the nearest edge of a wall, if within `far`.
+  // A ray's distance to the nearest edge of a wall, if within `far`.
   struct Hit {
     double at = std::numeric_limits<double>::infinity();
     std::size_t edge = 0;
@@ -175,7 +175,7 @@ class Finder {
         const Line& edge = edges_[hit.edge];
         const Point along = (edge.b - edge.a) * (1 / distance(edge.a, edge.b));
         if (std::abs(dot(along, way)) > 0.2) continue;
-        // Both sides of the wall's end have to meet that wall.
+        // Both sides of the wall's end must meet the same wall.
         const Hit left = look(cap.a + (cap.middle() - cap.a) * 0.02, way, kWidestShown),
                   right = look(cap.b + (cap.middle() - cap.b) * 0.02, way, kWidestShown);
         if (std::abs(left.at - hit.at) > 0.1 || std::abs(right.at - hit.at) > 0.1) continue;
@@ -191,7 +191,7 @@ class Finder {
     }
   }
 
-  // Whether the leaves of doors close this gap; their swings are used up.
+  // Returns true if the leaves of doors close this gap; marks their swings as used.
   bool takes_swings(const Shape& gap_area, double width) {
     const Bounds box = bounds(gap_area);
     const Region region(grown(gap_area, kNear));
@@ -209,7 +209,7 @@ class Finder {
     return !in_gap.empty();
   }
 
-  // Whether something of a window lies in this gap and spans half of it; such groups are used up.
+  // Returns true if part of a window lies in this gap and spans half of it; marks such groups as used.
   bool takes_windows(const Shape& gap_area, double width) {
     const Region region(grown(gap_area, kNear));
     const Bounds box = bounds(region.shape());
@@ -231,13 +231,13 @@ class Finder {
     return any;
   }
 
-  // Doors whose wall is drawn through, or whose ends no gap between caps tells.
+  // Adds doors whose wall is drawn through, or whose ends no gap between caps shows.
   void by_swings() {
     for (std::size_t s = 0; s < swings_.size(); ++s) {
       if (swing_used_[s]) continue;
       const Swing& swing = swings_[s];
       std::optional<Line> closed;
-      double best = 0.3;  // what both ends may miss walls by, together
+      double best = 0.3;  // largest distance of both ends from walls, summed
       for (const Point& end : swing.ends) {
         const Point along = (end - swing.hinge) * (1 / swing.width);
         const double miss = to_wall(swing.hinge - along * 0.05) + to_wall(end + along * 0.05);
@@ -245,7 +245,7 @@ class Finder {
       }
       if (!closed) continue;
       const Point along = (closed->b - closed->a) * (1 / swing.width), across{-along.y, along.x};
-      // A band along the leaf, as wide as walls are; what it cuts of walls is the opening.
+      // A band along the leaf, as wide as walls may be, cuts the opening out of the walls.
       const std::array<Point, 4> band{closed->a - across * kThickestWall_m, closed->b - across * kThickestWall_m,
                                       closed->b + across * kThickestWall_m, closed->a + across * kThickestWall_m};
       const std::array<Point, 4> leaf{closed->a - across * 0.06, closed->b - across * 0.06, closed->b + across * 0.06,
@@ -268,7 +268,7 @@ class Finder {
         along = corners[1] - corners[0];
         if (deep > wide) std::swap(wide, deep), along = corners[2] - corners[1];
         middle = (corners[0] + corners[2]) * 0.5;
-      } else {  // on one line
+      } else {  // collinear
         for (const Point& p : group.points)
           for (const Point& q : group.points)
             if (distance(p, q) > wide) wide = distance(p, q), along = p - q, middle = (p + q) * 0.5;
@@ -292,7 +292,7 @@ class Finder {
     }
   }
 
-  // The parts of a shape that meet another.
+  // Returns the parts of a shape that meet another.
   static Shape touching(const Shape& shape, const Shape& other) {
     std::vector<Shape> parts;
     for (Shape& part : polygons(shape))
@@ -312,7 +312,7 @@ class Finder {
     return inside_.holds(p) ? 0 : best;
   }
 
-  // Symbols of doors and windows, and loose lines on their layers as far as they hang together.
+  // Collects symbols of doors and windows, and connected components of loose lines on their layers.
   void collect_symbols() {
     std::map<int, std::size_t> by_symbol;
     std::vector<std::pair<Point, Point>> loose;
@@ -349,7 +349,7 @@ class Finder {
       const double t = std::clamp(dot(p - line.first, along) / std::max(dot(along, along), 1e-12), 0.0, 1.0);
       return distance(line.first + along * t, p);
     };
-    // The middle of one lies abreast of the other.
+    // True if the middle of one lies abreast of the other.
     const auto abreast = [&](const std::pair<Point, Point>& a, const std::pair<Point, Point>& b) {
       const Point u = a.second - a.first, v = b.second - b.first, middle = (a.first + a.second) * 0.5;
       const double at = dot(middle - b.first, v) / std::max(dot(v, v), 1e-12);

@@ -9,14 +9,14 @@
 
 namespace vantage::floor_plan {
 
-// A place in a wall that is open between its sill and its lintel.
+// A place in a wall that is open from its sill to its lintel.
 struct Opening {
   enum Kind { passage, door, window } kind = passage;
   Shape area;
 };
 
-// Openings of walls: gaps between ends of walls, or between an end and a wall across, as far as a door or a passage is
-// wide; doors by their swings; windows, and doors without a swing, by their symbols and layers.
+// Finds the openings of walls: gaps between ends of walls, or between an end and the opposite wall, of the width of a
+// door or passage; doors by their swings; windows, and doors without a swing, by symbols and layers.
 std::vector<Opening> find_openings(const Shape& solid, const Drawing& drawing, const std::vector<Swing>& swings);
 
 }  // namespace vantage::floor_plan

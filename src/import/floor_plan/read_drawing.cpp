@@ -14,7 +14,7 @@ namespace {
 using importer::Refused;
 
 constexpr std::size_t kMostPieces = 2'000'000, kMostSymbols = 200'000;
-constexpr int kDeepest = 16;  // blocks in blocks
+constexpr int kDeepest = 16;  // nesting of blocks
 
 using Blocks = std::map<std::string, Content>;
 
@@ -24,8 +24,8 @@ class Placer {
   Placer(const Layers& layers, const Blocks& blocks, Drawing& drawing)
       : layers_(layers), blocks_(blocks), drawing_(drawing) {}
 
-  // `layer` is that of the block's insert, which entities on layer 0 have too, -1 if there is none; `outer` the nature
-  // of what is around.
+  // `layer`: the layer of the block's insert, which entities on layer 0 take; -1 if there is none. `outer`: the kind of
+  // the enclosing block.
   void place(const Content& content, const Placement& placement, int layer, Kind outer, int symbol, int depth) {
     const auto on = [&](int own) {
       return drawing_.layers[static_cast<std::size_t>(own)] == "0" && layer >= 0 ? layer : own;
@@ -73,7 +73,7 @@ class Placer {
       throw Refused("it has more than 2 million lines, with those of its blocks; export the floor plan alone");
   }
   static Point sound(Point p) {
-    constexpr double kFarthest = 1e12;  // where doubles still tell fractions of a millimetre
+    constexpr double kFarthest = 1e12;  // up to here, doubles resolve fractions of a millimetre
     if (!(std::abs(p.x) < kFarthest) || !(std::abs(p.y) < kFarthest))
       throw Refused("a coordinate is not finite, or beyond 1e12; the file may be damaged: export the drawing again");
     return p;
@@ -110,7 +110,7 @@ class Placer {
       throw Refused("its blocks are nested deeper than " + std::to_string(kDeepest) + ", or one holds itself (" +
                     content.name + "); explode them");
     Kind kind = kind_of(content.name);
-    // A block's name that says wall is of something on a wall, unless its layer says so, too.
+    // A block named after a wall is something on a wall, unless its layer is one of walls, too.
     if (kind == Kind::other || kind == Kind::wall) kind = from.kind;
     for (int row = 0; row < insert.rows; ++row)
       for (int column = 0; column < insert.columns; ++column) {
@@ -181,7 +181,7 @@ class Reader {
   }
 
   Drawing& drawing_;
-  Content* block_ = nullptr;  // the one at hand
+  Content* block_ = nullptr;  // the current block
 };
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace vantage::floor_plan {
 namespace {
 
 constexpr double kSmallestRoom_m2 = 0.3;
-constexpr double kEnclosed = 0.25;  // share of the walls' hull that rooms have if the outer walls close
+constexpr double kEnclosed = 0.25;  // least share of the walls' hull that rooms cover if the outer walls close
 
 std::vector<Shape> enclosed(const Shape& closed, double gap_m) {
-  // GEOS widens fine teeth, as ends of an exploded hatch are, in quadratic time; outlines need none of them.
+  // GEOS widens fine teeth, such as ends of an exploded hatch, in quadratic time; outlines need no teeth.
   constexpr double kTooth_m = 0.02;
   std::vector<Shape> outlines;
   for (const Shape& part : polygons(gap_m > 0 ? grown(straightened(closed, kTooth_m), gap_m / 2) : clone(closed)))
@@ -24,13 +24,13 @@ std::vector<Shape> enclosed(const Shape& closed, double gap_m) {
   Shape outline = areas(united(std::move(outlines)));
   if (gap_m > 0) outline = grown(outline, -gap_m / 2);
   std::vector<Shape> rooms;
-  // Slivers between lines that nearly meet are none.
+  // Slivers between lines that nearly meet are no rooms.
   for (Shape& room : polygons(without(outline, closed)))
     if (area(room) >= kSmallestRoom_m2 && !is_empty(grown(room, -0.15))) rooms.push_back(std::move(room));
   return rooms;
 }
 
-// Texts of one label stand below each other; those of several labels have a stroke between them.
+// Lines of one label stand below each other; several labels are joined by a stroke.
 struct Names {
   std::string text;
   std::size_t labels = 0;
@@ -43,7 +43,7 @@ struct Names {
     const auto near = [&](const Text* other) {
       return distance(other->insertion, next.insertion) <= kLine * std::max(other->height, next.height);
     };
-    // A text that is drawn twice, or has a shadow, counts once.
+    // A text that is drawn twice, or with a shadow, counts once.
     if (std::ranges::any_of(taken, [&](const Text* other) { return other->text == next.text && near(other); })) return;
     const bool goes_on = last && near(last);
     last = &next;
@@ -55,7 +55,7 @@ struct Names {
 };
 
 void add_names(std::vector<Room>& rooms, const std::vector<Text>& texts) {
-  std::vector<const Text*> order;  // from the top down, as they are read
+  std::vector<const Text*> order;  // from top to bottom, in reading order
   for (const Text& text : texts)
     if (label_of(text.text) != Label::nothing && text.from.kind != Kind::furniture) order.push_back(&text);
   std::ranges::stable_sort(order, {}, [](const Text* text) { return -text->at.y; });
@@ -69,7 +69,7 @@ void add_names(std::vector<Room>& rooms, const std::vector<Text>& texts) {
   std::vector<Names> names(rooms.size());
   for (const Text* text : order) {
     std::optional<std::size_t> room;
-    // A text that is longer than its room is wide begins in it.
+    // A text that is wider than its room begins in it.
     for (const Point& p : {text->at, text->insertion})
       if (!room) grid.visit(p, p, [&](std::size_t r) { room = !room && regions[r].holds(p) ? r : room; });
     if (!room) continue;
@@ -94,7 +94,7 @@ Rooms find_rooms(const Shape& solid, const std::vector<Opening>& openings, const
   std::vector<Shape> found;
   const Shape whole = hull(corners);
   constexpr std::array kGaps{0.0, 0.5, 1.5, 3.0};
-  // The smallest gap that finds nearly all that the widest one finds.
+  // Takes the smallest gap that finds nearly all that the widest one finds.
   constexpr double kNearlyAll = 0.85;
   const auto sum = [](const std::vector<Shape>& rooms) {
     double m2 = 0;

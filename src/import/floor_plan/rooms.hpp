@@ -17,11 +17,11 @@ struct Room {
 
 struct Rooms {
   std::vector<Room> rooms;
-  double closed_m = 0;  // widest gap of the outer walls that was closed to find them; 0: the walls close
-  bool open = false;    // the walls enclose little: the ground is what the hull around them all holds
+  double closed_m = 0;  // widest gap of the outer walls that was closed; 0: the walls close by themselves
+  bool open = false;    // the walls enclose little, so that the ground is the area within their common hull
 };
 
-// What walls and openings enclose. Throws Refused if there is no ground.
+// Finds the rooms that walls and openings enclose. Throws Refused if there is no ground.
 Rooms find_rooms(const Shape& solid, const std::vector<Opening>& openings, const std::vector<Text>& texts);
 
 }  // namespace vantage::floor_plan

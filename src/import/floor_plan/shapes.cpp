@@ -13,7 +13,7 @@
 namespace vantage::floor_plan {
 namespace {
 
-// GEOS catches its own exceptions and hands their texts here.
+// GEOS catches its own exceptions and passes their texts here.
 std::string& last_error() {
   static std::string text;
   return text;
@@ -59,7 +59,7 @@ Shape collected(int type, std::vector<Shape> shapes) {
   return check(GEOSGeom_createCollection_r(context(), type, raw.data(), static_cast<unsigned>(raw.size())));
 }
 
-// Calls `visit` for each geometry of a collection, nested or not.
+// Calls `visit` for each geometry of a collection, nested ones too.
 template <class Visit>
 void for_parts(const GEOSGeometry* shape, const Visit& visit) {
   const int count = GEOSGetNumGeometries_r(context(), shape);
@@ -146,7 +146,7 @@ Shape lines(std::span<const Line> lines) {
     const std::array ends{line.a, line.b};
     shapes.push_back(check(ring_of(ends, false)));
   }
-  // GEOS keeps points in a tree that sorted ones make a list of.
+  // Shuffles them, since the tree of points in GEOS degenerates to a list for sorted ones.
   std::ranges::shuffle(shapes, std::mt19937());
   return collected(GEOS_MULTILINESTRING, std::move(shapes));
 }
@@ -174,7 +174,7 @@ Shape odd(std::span<const Shape> shapes) {
 }
 Shape grown(const Shape& shape, double by) { return buffered(shape, by, GEOSBUF_CAP_SQUARE); }
 Shape closed(const Shape& shape, double gap) {
-  constexpr double kSharpest = 10;  // so that corners of rooms are not filled
+  constexpr double kSharpest = 10;  // keeps corners of rooms from being filled
   const Shape wider = buffered(shape, gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
   return buffered(wider, -gap / 2, GEOSBUF_CAP_SQUARE, kSharpest);
 }
@@ -182,7 +182,7 @@ Shape straightened(const Shape& shape, double error) {
   return areas(check(GEOSTopologyPreserveSimplify_r(context(), shape.get(), error)));
 }
 Shape chained(const Shape& lines) { return check(GEOSLineMerge_r(context(), lines.get())); }
-// Line by line: GEOS widens many that overlap in quadratic time.
+// Widens line by line, since GEOS widens many overlapping ones in quadratic time.
 Shape strip(const Shape& lines, double half_width) {
   std::vector<Shape> parts;
   for_parts(lines.get(), [&](const GEOSGeometry* line) {
@@ -250,7 +250,7 @@ Shape filled(const Shape& shape) { return polygon(outer_ring(shape)); }
 
 namespace {
 
-// GEOS clips ears, and finds none in some areas with holes that nearly touch. Halves of these are easier.
+// GEOS clips ears, and finds none in some areas with holes that nearly touch. Such areas are halved first.
 void add_triangles(const Shape& polygon_in, int halvings, std::vector<std::array<Point, 3>>& out) {
   constexpr int kMostHalvings = 16;
   if (const Shape cut{GEOSConstrainedDelaunayTriangulation_r(context(), polygon_in.get())}) {
@@ -261,7 +261,7 @@ void add_triangles(const Shape& polygon_in, int halvings, std::vector<std::array
   if (halvings == kMostHalvings || last_error().find("bad_alloc") != std::string::npos) fail();
   const auto [low, high] = bounds(polygon_in);
   const bool wide = high.x - low.x > high.y - low.y;
-  // Not amid, where drawings are symmetric.
+  // Cuts beside the middle, since drawings are symmetric about it.
   constexpr double kPart = 0.47;
   const Point cut =
       wide ? Point{low.x + kPart * (high.x - low.x), high.y} : Point{high.x, low.y + kPart * (high.y - low.y)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Areas of a plan, in metres, and what GEOS does with them. Each function throws std::bad_alloc, or std::runtime_error
-// with GEOS's reason.
+// Areas of a plan, in metres, and operations of GEOS on them. Each function throws std::bad_alloc, or
+// std::runtime_error with GEOS's reason.
 #pragma once
 
 #include <geos_c.h>
@@ -19,7 +19,7 @@ struct DestroyShape {
 };
 using Shape = std::unique_ptr<GEOSGeometry, DestroyShape>;
 
-// Coordinates are rounded to it where shapes are combined, so that near coincidences do no harm.
+// Grid to which coordinates are rounded when shapes are combined, so that near coincidences do no harm.
 inline constexpr double kGrid = 1e-4;
 
 Shape no_area();
@@ -30,20 +30,20 @@ Shape united(std::vector<Shape> shapes);     // lines are cut where they meet
 Shape united(const Shape& a, const Shape& b);
 Shape common(const Shape& a, const Shape& b);
 Shape without(const Shape& a, const Shape& b);
-Shape odd(std::span<const Shape> shapes);                      // what an odd number of them covers
+Shape odd(std::span<const Shape> shapes);                      // areas that an odd number of them covers
 Shape grown(const Shape& shape, double by);                    // shrunk if negative; corners stay sharp
-Shape closed(const Shape& shape, double gap);                  // its gaps of up to this width filled
+Shape closed(const Shape& shape, double gap);                  // with gaps of up to this width filled
 Shape straightened(const Shape& shape, double error = kGrid);  // without corners on its straight sides
 Shape chained(const Shape& lines);                             // joined where two ends meet
 Shape strip(const Shape& lines, double half_width);            // ends are cut off flat
-Shape around(std::span<const Point> points);                   // the smallest rectangle, turned as it may be
+Shape around(std::span<const Point> points);                   // the smallest rectangle, in any direction
 Shape hull(std::span<const Point> points);
 Shape clone(const Shape& shape);
 std::vector<Shape> faces(const Shape& cut_lines);  // areas that lines enclose
 Shape areas(Shape shape);                          // its polygons alone
 std::vector<Shape> polygons(const Shape& shape);
 std::vector<Line> pieces(const Shape& lines);  // straight pieces of lines or of boundaries
-// Rings of a polygon or of several; what they enclose lies to the left.
+// Returns the rings of one or several polygons; their inside lies to the left.
 std::vector<std::vector<Point>> rings(const Shape& shape);
 std::vector<Point> outer_ring(const Shape& polygon);
 Shape filled(const Shape& polygon);  // without its holes
@@ -58,7 +58,7 @@ struct Bounds {
 };
 Bounds bounds(const Shape& shape);
 
-// Answers quickly for many points.
+// A shape prepared for fast queries of many points.
 class Region {
  public:
   explicit Region(Shape shape);

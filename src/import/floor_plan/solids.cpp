@@ -49,7 +49,7 @@ class Builder {
         for (std::size_t i = 0; i < ring.size(); ++i)
           upright(mesh(name), ring[i], ring[(i + 1) % ring.size()], 0, kTable_m);
       flat(name, piece.area, kTable_m, true);
-      mesh(name).surveyed = false;  // its form is made up
+      mesh(name).surveyed = false;  // its shape is assumed
     }
     std::vector<Mesh> out;
     for (auto& [name, made] : meshes_)
@@ -67,7 +67,7 @@ class Builder {
   static void triangle(Mesh& into, std::array<double, 3> a, std::array<double, 3> b, std::array<double, 3> c) {
     into.points.insert(into.points.end(), {a, b, c});
   }
-  // What is left of the way from a to b lies behind it.
+  // Adds an upright face. Seen from a towards b, its back is to the left.
   static void upright(Mesh& into, Point a, Point b, double low, double high) {
     triangle(into, {a.x, a.y, low}, {b.x, b.y, low}, {b.x, b.y, high});
     triangle(into, {a.x, a.y, low}, {b.x, b.y, high}, {a.x, a.y, high});
@@ -83,7 +83,7 @@ class Builder {
     return into;
   }
 
-  // All but its back, which the next step covers.
+  // Adds all faces of a step but the back, which the next step covers.
   void add_step(const Step& step) {
     Mesh& into = mesh("stairs");
     const auto& [a, b, c, d] = step.corners;
@@ -105,7 +105,7 @@ class Builder {
     return out;
   }
 
-  // A point just in front of an edge's middle.
+  // Returns a point just in front of an edge's middle.
   static Point before(Point a, Point b) {
     constexpr double kOff = 0.005;
     const Point along = (b - a) * (1 / distance(a, b));
@@ -117,7 +117,7 @@ class Builder {
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point a = ring[i], b = ring[(i + 1) % ring.size()], front = before(a, b);
         const auto opening = at(opening_grid_, openings_, front);
-        if (opening) {  // a reveal; above and below is wall
+        if (opening) {  // a reveal; wall lies above and below
           const bool window = plan_.openings[*opening].kind == Opening::window;
           upright(mesh("wall openings"), a, b, window ? kSill_m : low, std::min(high, kDoorHeight_m));
           continue;
@@ -126,7 +126,7 @@ class Builder {
       }
   }
 
-  // A side of a wall, of the room in front of it.
+  // Adds a side of a wall to the room in front of it.
   void facing(Point front, Point a, Point b, double low, double high) {
     const auto room = at(room_grid_, rooms_, front);
     Mesh& into = mesh(room ? "wall " + room_name(plan_.rooms, *room) : "outside");

@@ -29,16 +29,16 @@ struct Plan {
   Rooms rooms;
   std::vector<Furniture> furniture;
   std::vector<Step> steps;  // of stairs to the storey above
-  // Holes for stairs in the ceiling, whose sides reach up to the floor above, and in the floor; null: none.
+  // Holes in the ceiling, with sides up to the floor above, and in the floor, for stairs; null: none.
   Shape hole_above, hole_below;
   double wall_height_m = 2.7, slab_m = 0;  // `slab_m`: from the ceiling to the floor above
 };
 
-// A name for each room: that of its texts, else `room N`.
+// Returns a name for each room: the one of its texts, else `room N`.
 std::string room_name(const Rooms& rooms, std::size_t room);
 
-// Walls, floor and ceiling of each room, the walls' outsides, furniture. Faces are turned to the space in front of
-// them.
+// Returns walls, floor and ceiling of each room, the outsides of walls, and furniture. Faces are turned to the space in
+// front of them.
 std::vector<Mesh> meshes_of(const Plan& plan);
 
 }  // namespace vantage::floor_plan

@@ -17,12 +17,12 @@ constexpr double kLeastRiser_m = 0.13, kMostRiser_m = 0.21;
 constexpr std::size_t kLeastRisers = 4;
 constexpr double kSameGoing = 0.1, kSameWidth = 0.2, kSameWay = 0.035;  // shares; radians
 constexpr double kBetweenFlights_m = 0.6;
-constexpr double kBeyond_m = 0.4;  // floor must lie so far before a stair's ends
+constexpr double kBeyond_m = 0.4;  // floor must lie this far before a stair's ends
 constexpr double kLeastLanding_m = 0.6;
-constexpr double kThickness_m = 0.15;        // of a step below its riser
-constexpr double kTwice_m = 0.05;            // lines so near each other are one
+constexpr double kThickness_m = 0.15;        // of a step, below its riser
+constexpr double kTwice_m = 0.05;            // lines this near each other count as one
 constexpr std::size_t kMostTreads = 20'000;  // of a drawing; more are none
-constexpr double kWords_m = 1.5;             // texts so far from a flight speak of it
+constexpr double kWords_m = 1.5;             // texts this near a flight refer to it
 
 Point across(Point along) { return {-along.y, along.x}; }
 
@@ -31,11 +31,11 @@ struct Tread {
   double width = 0;
 };
 
-// Chains of parallel lines, each a going beyond the one before it.
+// Adds chains of parallel lines, each a going beyond the one before.
 void add_flights(std::vector<Tread> treads, Point way, std::vector<Flight>& out) {
-  const Point along = across(way);  // the flight goes across its lines
+  const Point along = across(way);  // direction of the flight, across its lines
   std::ranges::sort(treads, {}, [&](const Tread& t) { return dot(t.middle, along); });
-  // A line that is drawn twice is one.
+  // A line that is drawn twice counts once.
   std::vector<Tread> once;
   for (const Tread& tread : treads) {
     bool again = false;
@@ -80,7 +80,7 @@ void add_flights(std::vector<Tread> treads, Point way, std::vector<Flight>& out)
   }
 }
 
-// Floor of a storey by points of both drawings.
+// Floor of a storey, queried by points in the metres of both drawings.
 class Floor {
  public:
   explicit Floor(const StairStorey& storey) : origin_(storey.origin) {
@@ -100,13 +100,13 @@ class Floor {
     grid_.visit(p - origin_, p - origin_, [&](std::size_t r) { found = found || rooms_[r].holds(p - origin_); });
     return found;
   }
-  // Distance to the nearest door.
+  // Returns the distance to the nearest door.
   double to_door(Point p) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Point& door : doors_) nearest = std::min(nearest, distance(door, p));
     return nearest;
   }
-  // Length of floor from p on, at most `most`.
+  // Returns the length of floor from p on, at most `most`.
   double reach(Point p, Point along, double most) const {
     constexpr double kStep = 0.05;
     double far = 0;
@@ -126,7 +126,7 @@ std::array<Point, 4> box(Point front, Point along, double length, double width) 
   return {front + side, front - side, front - side + along * length, front + side + along * length};
 }
 
-// Steps of a flight that begins `low_m` above the lower floor. The last riser leads on to what is behind it.
+// Adds the steps of a flight that begins `low_m` above the lower floor. The last riser leads to the floor or landing.
 void add_steps(const Flight& flight, double low_m, double riser_m, std::vector<Step>& steps) {
   const double going = flight.length / static_cast<double>(flight.risers - 1);
   for (std::size_t k = 0; k + 1 < flight.risers; ++k) {
@@ -143,7 +143,7 @@ class StairFinder {
       : lower_(lower), upper_(upper), below_(lower), above_(upper), rise_m_(rise_m) {}
 
   StairsFound find() {
-    // A drawing shows what is below its cut, so stairs up are whole in the one above, or in both.
+    // A drawing shows what is below its cut, so a stair is complete in the upper drawing, or in both.
     for (const StairStorey* storey : {&lower_, &upper_}) {
       std::vector<Flight> flights = *storey->flights;
       for (Flight& flight : flights) flight.foot = flight.foot + storey->origin;
@@ -184,7 +184,7 @@ class StairFinder {
     const double riser = rise_m_ / static_cast<double>(risers);
     return riser >= kLeastRiser_m && riser <= kMostRiser_m;
   }
-  // What texts say of the end at `foot` of a flight: 1 that it is the lower one, -1 the upper.
+  // Returns what texts say about the end at `foot` of a flight: 1: the lower end, -1: the upper end, 0: nothing.
   int told(const Flight& flight) const {
     for (const StairStorey* storey : {&lower_, &upper_})
       for (const Text& text : *storey->texts) {
@@ -193,7 +193,7 @@ class StairFinder {
         const double to_foot = distance(at, flight.foot), to_head = distance(at, flight.head());
         if (way == 0 || std::min(to_foot, to_head) > kWords_m || std::abs(to_foot - to_head) < 0.25 * flight.length)
           continue;
-        // A way begins where its word is, up as well as down.
+        // A text stands where its way begins, for UP and DN alike.
         return way * (to_foot < to_head ? 1 : -1);
       }
     return 0;
@@ -219,7 +219,7 @@ class StairFinder {
     found_.stairs.push_back(std::move(stair));
   }
 
-  // Two flights side by side with a landing at one end of both.
+  // Joins two flights side by side that have a landing at one end of both.
   void pair_up(std::vector<Flight>& flights) {
     for (std::size_t a = 0; a < flights.size(); ++a)
       for (std::size_t b = a + 1; b < flights.size(); ++b) {
@@ -240,7 +240,7 @@ class StairFinder {
       }
   }
 
-  // Both go the same way. Tries a landing behind their heads, and behind their feet.
+  // Tries a landing behind the heads of two flights of the same direction, and behind their feet.
   bool landing(const Flight& one, const Flight& other) {
     struct Try {
       Flight first, second;  // first goes up to the landing, second would go up from there, seen towards the landing
@@ -270,13 +270,13 @@ class StairFinder {
     Stair stair{.steps = {}, .hole = {}, .foot = best.first.foot, .riser_m = riser, .assumed = assumed};
     add_steps(best.first, 0, riser, stair.steps);
     const double half = static_cast<double>(best.first.risers) * riser;
-    // The landing, over both flights and what lies between them.
+    // The landing covers both flights and the space between them.
     const Point a = best.first.head(), b = best.second.head();
     const Point side = across(along);
     const double low = std::min(dot(side, a) - 0.5 * best.first.width, dot(side, b) - 0.5 * best.second.width);
     const double high = std::max(dot(side, a) + 0.5 * best.first.width, dot(side, b) + 0.5 * best.second.width);
     const auto place = [&](double on, double beside) { return along * on + side * beside; };
-    for (const Flight& flight : {best.first, best.second}) {  // up to where the landing begins, if they differ
+    for (const Flight& flight : {best.first, best.second}) {  // extends to the landing if their lengths differ
       const double own = dot(along, flight.head());
       if (end - own > 0.01)
         stair.steps.push_back({box(flight.head(), along, end - own, flight.width), half - riser - kThickness_m, half});

@@ -13,8 +13,8 @@
 
 namespace vantage::floor_plan {
 
-// Lines of treads one after the other: `risers` of them, the first at `foot`, which is the middle of its line, the last
-// at foot + along · length. Which end is lower is not known.
+// Lines of treads one after the other, `risers` of them. The first is at `foot`, which is the middle of its line; the
+// last is at foot + along · length. It is not known which end is lower.
 struct Flight {
   Point foot, along;  // a unit vector
   double length = 0, width = 0;
@@ -24,10 +24,10 @@ struct Flight {
   Flight turned() const { return {head(), along * -1, length, width, risers}; }
 };
 
-// The flights that a drawing shows on layers or in blocks of stairs.
+// Returns the flights that a drawing shows on layers or in blocks of stairs.
 std::vector<Flight> find_flights(const Drawing& drawing);
 
-// A storey for its stairs: all in metres of the drawing, around `origin`.
+// Input of a storey for its stairs: all in metres of the drawing, around `origin`.
 struct StairStorey {
   const Rooms* rooms = nullptr;
   const std::vector<Opening>* openings = nullptr;
@@ -36,29 +36,29 @@ struct StairStorey {
   Point origin;
 };
 
-// A step's corners, and how high its face is above the lower floor; or a landing.
+// A step with its corners and the height of its face above the lower floor; or a landing.
 struct Step {
-  std::array<Point, 4> corners;  // counter-clockwise; the first two are the front, where one comes from
+  std::array<Point, 4> corners;  // counter-clockwise; the first two are the front
   double low_m = 0, high_m = 0;
 };
 
-// Stairs in metres of both drawings, without an origin.
+// A stair in metres of both drawings, without an origin.
 struct Stair {
   std::vector<Step> steps;
   std::vector<std::array<Point, 4>> hole;  // in the slab between the storeys
   Point foot;
   double riser_m = 0;
-  bool assumed = false;  // which end is the lower one
+  bool assumed = false;  // true: the lower end is a guess
 };
 
 struct StairsFound {
   std::vector<Stair> stairs;
-  // Middles of drawn flights that are part of none, and why.
+  // Middles of drawn flights that belong to no stair, with the reason.
   std::vector<std::pair<Point, std::string>> left_out;
 };
 
-// The stairs from one storey to the next, `rise_m` higher: one flight, or two side by side with a landing, whose risers
-// share the height as people climb it, and whose ends meet floor in both storeys.
+// Finds the stairs from one storey to the next, `rise_m` higher: one flight, or two side by side with a landing. Risers
+// share the height as people climb it, and the ends meet floor in both storeys.
 StairsFound find_stairs(const StairStorey& lower, const StairStorey& upper, double rise_m);
 
 }  // namespace vantage::floor_plan

@@ -9,11 +9,11 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kNarrowestLeaf = 0.45, kWidestLeaf = 1.6;  // leaves, cabinets' left out
+constexpr double kNarrowestLeaf = 0.45, kWidestLeaf = 1.6;  // leaves; narrower ones are cabinets'
 constexpr double kLeafThickness = 0.08;
 
-// A leaf is a line from the hinge to an end, open or closed, or the other long side beside it. A wall's line is one
-// only if it is as long as the door.
+// A leaf is a line from the hinge to an end, open or closed, or its other long side. A line of a wall counts only if it
+// is as long as the door.
 bool is_leaf(const Line& line, const Swing& swing) {
   constexpr double kExact = 0.03;
   return std::ranges::any_of(swing.ends, [&](const Point& end) {
@@ -33,7 +33,7 @@ bool is_leaf(const Line& line, const Swing& swing) {
   });
 }
 
-// Finds the line from the hinge to about where an arc begins or ends: a door that is drawn half open.
+// Finds the line from the hinge to about the begin or end of an arc: a door that is drawn half open.
 class Leaves {
  public:
   explicit Leaves(const std::vector<Line>& lines) : lines_(lines) {

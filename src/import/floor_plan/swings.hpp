@@ -7,18 +7,18 @@
 
 namespace vantage::floor_plan {
 
-// A door by the arc that its leaf's edge draws: the leaf is hinged at `hinge`, and one of the two ends is where it
-// closes. Metres.
+// A door, given by the arc that its leaf's edge draws. The leaf is hinged at `hinge` and closes at one of the two ends.
+// Metres.
 struct Swing {
   Point hinge, ends[2];
   double width = 0;
   int layer = 0;  // in Drawing::layers
 };
 
-// Whether an arc turns as far as a door does. Its radius may be of any unit.
+// Returns true if an arc turns as far as a door does. Its radius may be in any unit.
 bool may_swing(const Arc& arc);
 
-// Swings of a drawing in metres. Takes their arcs, and the lines that are leaves, out of it.
+// Takes the swings out of a drawing in metres, with their arcs and the lines that are leaves.
 std::vector<Swing> take_swings(Drawing& drawing);
 
 }  // namespace vantage::floor_plan

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kInch = 1;
 const std::array kUnits{*unit_of_code(6), *unit_of_code(5), *unit_of_code(4), *unit_of_code(kInch), *unit_of_code(2)};
-// Widths of doors. The ranges of any two of the units do not meet, so at most one fits.
+// Widths of doors. Ranges of different units do not overlap, so that at most one unit fits.
 constexpr double kNarrowestDoor = 0.65, kWidestDoor = 1.3;
 
 bool fits(double door, const DxfUnit& unit) {
@@ -29,7 +29,7 @@ const DxfUnit* by_doors(double width) {
   return found == kUnits.end() ? nullptr : &*found;
 }
 
-// The median radius of swings: those of doors by name if there are any, else all.
+// Returns the median radius of swings: of doors by name if there are any, else of all.
 std::optional<double> door_width(const Drawing& drawing) {
   for (const bool named : {true, false}) {
     std::vector<double> radii;
@@ -87,7 +87,7 @@ Scale scale_of(const Drawing& drawing, const std::string& unit) {
 }
 
 void doubt_unit(const Scale& scale, const std::vector<WallFace>& faces) {
-  // True if most lines are those of walls, and there is a room between them, if all were so many times as large.
+  // Returns true if, scaled by `factor`, most lines are those of walls with a room between them.
   const auto suits = [&](double factor) {
     constexpr double kRoom_m2 = 6;
     double walls_m = 0, others_m = 0;

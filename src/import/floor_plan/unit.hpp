@@ -10,17 +10,17 @@ namespace vantage::floor_plan {
 
 struct Scale {
   double metres = 0;       // in one unit of the drawing
-  std::string note;        // the unit, and what tells it
-  bool sure = true;        // false if the header alone tells it
-  std::string sizes = {};  // of the drawing, in each unit, if not
+  std::string note;        // the unit, and how it was found
+  bool sure = true;        // false if only the header gives it
+  std::string sizes = {};  // the drawing's size in each unit, if not sure
 };
 
 // `unit` is the user's, one of m, cm, mm, in and ft; empty: by the file's header, else by the width of doors. Throws
-// Refused, with a question, if none decides or both contradict.
+// Refused, with a question, if neither decides or both disagree.
 Scale scale_of(const Drawing& drawing, const std::string& unit);
 
-// Throws Refused, with a question, if walls are as thick as walls and rooms as large as rooms in another unit than the
-// one that the header alone tells. `faces` are those of that one.
+// Throws Refused, with a question, if another unit than the one that only the header gives makes walls as thick as
+// walls and rooms as large as rooms. `faces` are in the header's unit.
 void doubt_unit(const Scale& scale, const std::vector<WallFace>& faces);
 
 }  // namespace vantage::floor_plan

@@ -13,11 +13,11 @@
 namespace vantage::floor_plan {
 namespace {
 
-constexpr double kSmallest_m2 = 1.2, kLargest_m2 = 2000;  // rooms, where layers are judged by them
+constexpr double kSmallest_m2 = 1.2, kLargest_m2 = 2000;  // rooms, to judge layers by them
 
-constexpr double kBeside_m = 0.01;  // lines so near a wall are its own
+constexpr double kBeside_m = 0.01;  // lines this near a wall belong to it
 
-// How many ends of lines meet at a point.
+// Counts the ends of lines at a point.
 class Meetings {
  public:
   explicit Meetings(const std::vector<Line>& lines) {
@@ -42,7 +42,7 @@ std::vector<Line> lines_of(const Drawing& drawing, const auto& wanted) {
   return out;
 }
 
-// Whether nothing as wide as kThickestWall_m fits in.
+// Returns true if nothing as wide as kThickestWall_m fits into the face.
 bool is_wall(const Shape& face) {
   const Bounds box = bounds(face);
   if (std::min(box.high.x - box.low.x, box.high.y - box.low.y) <= kThickestWall_m) return true;
@@ -50,7 +50,7 @@ bool is_wall(const Shape& face) {
   return is_empty(grown(face, -kThickestWall_m / 2));
 }
 
-// Whether lines cross so often that their faces would be too many, as those of an exploded hatch.
+// Returns true if lines cross so often that they would enclose too many faces, as in an exploded hatch.
 bool crosses_often(const std::vector<Line>& lines_in) {
   constexpr std::size_t kMost = 100'000;
   constexpr double kEnd_m = 0.01;  // lines that end at others do not cross them
@@ -74,12 +74,12 @@ bool crosses_often(const std::vector<Line>& lines_in) {
   return crossings > kMost;
 }
 
-// Cuts lines where they meet, by snap rounding (Hobby: Practical segment intersection with finite precision output,
-// 1999): ends and crossings are rounded to the grid, and each line goes through all of these whose square it touches.
-// GEOS would compare slanted lines each with each.
+// Cuts lines at their crossings by snap rounding (Hobby: Practical segment intersection with finite precision output,
+// 1999). Ends and crossings are rounded to the grid; each line goes through all of them whose square it touches. GEOS
+// would compare each slanted line with every other.
 std::vector<Line> cut_where_they_meet(const std::vector<Line>& lines_in) {
   constexpr double kMostCells = 4000;          // that a line passes
-  constexpr double kHalf = 1.001 * kGrid / 2;  // what was rounded is not exact
+  constexpr double kHalf = 1.001 * kGrid / 2;  // allows for rounding
   double cell = 1;
   for (const Line& line : lines_in)
     cell = std::max(cell, (std::abs(line.b.x - line.a.x) + std::abs(line.b.y - line.a.y)) / kMostCells);
@@ -144,7 +144,7 @@ Faces faces_of(const std::vector<Line>& lines_in) {
   return out;
 }
 
-// Pieces of lines that reach out of `solid`, without stubs that are no longer than lines miss each other by.
+// Returns the pieces of lines outside `solid`, without stubs no longer than the tolerance of joins.
 std::vector<Line> single_lines(const std::vector<Line>& cut, const Shape& solid) {
   const Region beside(grown(solid, kBeside_m));
   std::vector<Line> rest, touching;
@@ -152,7 +152,7 @@ std::vector<Line> single_lines(const std::vector<Line>& cut, const Shape& solid)
   const auto outside = pieces(without(lines(touching), beside.shape()));
   rest.insert(rest.end(), outside.begin(), outside.end());
   std::erase_if(rest, [](const Line& line) { return distance(line.a, line.b) <= 1e-3; });
-  // A stub ends where nothing else does.
+  // A stub has a loose end.
   const Meetings meetings(rest);
   std::erase_if(rest, [&](const Line& line) {
     const bool loose = meetings.at(line.a) == 1 || meetings.at(line.b) == 1;
@@ -161,7 +161,7 @@ std::vector<Line> single_lines(const std::vector<Line>& cut, const Shape& solid)
   return rest;
 }
 
-// Walls of single lines. Their ends at other walls reach into these.
+// Returns walls of single lines. Their ends at other walls reach into those.
 Shape single_walls(const std::vector<Line>& rest, const Shape& solid) {
   constexpr double kHalf_m = kSingleLine_m / 2;
   const Region beside(grown(solid, 1.5 * kBeside_m));
@@ -173,12 +173,12 @@ Shape single_walls(const std::vector<Line>& rest, const Shape& solid) {
     const bool from_wall = meetings.at(line.a) == 1 && beside.holds(line.a),
                to_wall = meetings.at(line.b) == 1 && beside.holds(line.b);
     for (const Point& end : {line.a, line.b})
-      if (meetings.at(end) > 2) all.push_back(disc(end, kHalf_m));  // fills what flat ends leave between them
+      if (meetings.at(end) > 2) all.push_back(disc(end, kHalf_m));  // fills corners between flat ends
     if (from_wall) line.a = line.a - further;
     if (to_wall) line.b = line.b + further;
   }
   all.push_back(strip(chained(lines(longer)), kHalf_m));
-  // What has reached through a wall comes out of it as a part of its own.
+  // Drops parts that come out behind a wall: they hold neither begin nor middle of a line.
   Grid grid(1.0);
   for (std::size_t l = 0; l < rest.size(); ++l) grid.add(l, rest[l].a, rest[l].a);
   std::vector<Shape> kept;
@@ -211,7 +211,7 @@ Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const 
     std::vector<Shape> rings;
     for (const auto& ring : filled.rings) rings.push_back(polygon(ring));
     Shape shape = odd(rings);
-    // Elsewhere a hatch may be that of a floor.
+    // On other layers, a hatch may fill a floor.
     if (!is_empty(shape) && (by_name || is_wall(shape))) parts.push_back(std::move(shape));
   }
   Shape solid = straightened(areas(united(std::move(parts))));
@@ -220,7 +220,7 @@ Shape solid_of(const Drawing& drawing, const std::vector<Line>& lines_in, const 
   return solid;
 }
 
-// Fills what walls miss each other by, with their ends drawn.
+// Fills gaps of up to kTolerance_m between walls whose ends are drawn.
 void fill_gaps(Walls& walls) {
   constexpr double kLeast_m2 = 1e-5;  // rounding leaves less
   std::vector<Shape> all;
@@ -237,18 +237,18 @@ void fill_gaps(Walls& walls) {
   walls.solid = areas(united(std::move(all)));
 }
 
-// How much lines look like those of walls: rooms that they enclose, and the length of double lines.
+// Scores how much lines look like walls, by the rooms that they enclose and the length of double lines.
 double likeness(const std::vector<Line>& lines_in) {
   const Faces found = faces_of(join_ends(lines_in).lines);
   double score = 0;
   for (const Shape& face : found.others)
     if (const double m2 = area(face); m2 >= kSmallest_m2 && m2 <= kLargest_m2) score += 1;
-  constexpr double kMetresEach = 8;  // of double lines, which count as a room
+  constexpr double kMetresEach = 8;  // length of double lines that counts as a room
   for (const Shape& face : found.walls) score += perimeter(face) / 2 / kMetresEach;
   return score;
 }
 
-// The layers whose lines look like walls: the best, and each that adds to it.
+// Returns the layers whose lines look most like walls: the best one, and each that adds to its score.
 std::set<int> enclosing_layers(const Drawing& drawing) {
   std::map<int, std::vector<Line>> by_layer;
   for (const Line& line : lines_of(drawing, [](const Origin& from) { return from.kind == Kind::other; }))

@@ -153,7 +153,7 @@ Source read_source(const std::filesystem::path& file) {
   for (const json& buffer : source.document.value("buffers", json::array())) {
     if (buffer.contains("uri"))
       source.buffers.push_back(read_uri(source, buffer["uri"].get<std::string>()));
-    else  // one without a name is the GLB's, or stands for what is decoded
+    else  // a buffer without a URI is the GLB's, or stands for decoded bytes
       source.buffers.push_back(source.buffers.empty() ? binary : std::string());
   }
   return source;

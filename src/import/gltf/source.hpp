@@ -19,10 +19,10 @@ struct Source {
 // Throws Refused.
 Source read_source(const std::filesystem::path& file);
 
-// Bytes of a URI, either data or a file below the folder. Throws Refused.
+// Returns the bytes of a URI, which is either data or a file below the folder. Throws Refused.
 std::string read_uri(const Source& source, const std::string& uri);
 
-// A part of some bytes. Throws Refused if it is incomplete.
+// Returns a part of some bytes. Throws Refused if it is incomplete.
 std::string_view part_of(std::string_view bytes, std::size_t offset, std::size_t length);
 
 }  // namespace vantage::importer

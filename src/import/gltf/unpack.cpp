@@ -56,7 +56,7 @@ class Unpacker {
                    where.at("byteLength").get<std::size_t>());
   }
 
-  // Position of bytes that were added to the binary chunk.
+  // Appends bytes to the binary chunk and returns the buffer view of them.
   json placed(std::string_view added) {
     binary_.resize((binary_.size() + 3) / 4 * 4);
     const json view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", added.size()}};
@@ -116,7 +116,7 @@ class Unpacker {
     try {
       mesh = decode_draco(packed, wanted, types);
     } catch (const Refused&) {
-      // A file may have the same primitive without Draco, for readers that do not know it.
+      // A file may also hold the primitive without Draco, for readers that do not know it.
       if (!has_fallback(primitive)) throw;
       return;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions, placements and transformation operators, by the functions of the IFC schema (IfcBuildAxes, IfcBaseAxis):
-// directions have no length, and axes that are given are made upright to each other.
+// Directions, placements and transformation operators, by the functions of the IFC schema (IfcBuildAxes, IfcBaseAxis).
+// Directions are made unit vectors, and given axes are made perpendicular to each other.
 
-// Vectors of any length. All else is made of these: loops take half as long as functions of arrays do.
+// Vectors of any length. All else is built on these loops, which take half as long as functions of arrays.
 export function dot(a, b) {
   let sum = 0;
   for (let i = 0; i < a.length; ++i) sum += a[i] * b[i];
@@ -20,7 +20,7 @@ export const unit = (a) => {
   const long = length(a);
   return long > 0 && Number.isFinite(long) ? a.map((v) => v / long) : null;
 };
-const rid = (v, axis) => plus(v, axis, -dot(v, axis));  // what of a vector is upright to an axis
+const rid = (v, axis) => plus(v, axis, -dot(v, axis));  // component of a vector perpendicular to an axis
 
 export class Axes {
   constructor(step) {
@@ -28,17 +28,17 @@ export class Axes {
     this.locals = new Map();
   }
 
-  // Always of three numbers.
+  // Returns three coordinates, whatever the number in the file.
   point(ref) {
     const [values] = this.step.args(ref.ref);
     return [...values, 0, 0].slice(0, 3);
   }
-  // Of length 1; null if there is none.
+  // Returns a unit vector; null if there is no direction.
   direction(ref) {
     return ref ? unit(this.point(ref)) : null;
   }
 
-  // Origin and axes {o, x, y, z} of a placement with two or three dimensions, or with one axis; the identity for none.
+  // Returns the axes {o, x, y, z} of a placement in two or three dimensions or with one axis; identity for none.
   placement(ref) {
     if (!ref) return { o: [0, 0, 0], x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
     const type = this.step.type(ref.ref), args = this.step.args(ref.ref);
@@ -48,7 +48,7 @@ export class Axes {
     return { o, x, y: cross(z, x), z };
   }
 
-  // That of a product, in the model's coordinates, by its chain of local placements.
+  // Returns the placement of a product in the model's coordinates, from its chain of local placements.
   local(ref) {
     if (!ref || this.step.type(ref.ref) !== "IFCLOCALPLACEMENT") return this.placement(null);
     if (this.locals.has(ref.ref)) return this.locals.get(ref.ref);
@@ -58,7 +58,7 @@ export class Axes {
     return place;
   }
 
-  // That of an IfcCartesianTransformationOperator, scales included.
+  // Returns the placement of an IfcCartesianTransformationOperator, scales included.
   operator(id) {
     const type = this.step.type(id), args = this.step.args(id);
     const o = this.point(args[2]), scale = args[3] ?? 1;
@@ -82,11 +82,11 @@ export class Axes {
   }
 }
 
-// One placement within another.
+// Returns placement b, given within a, in the coordinates of a's parent.
 export const composed = (a, b) => {
   const turned = (v) => minus(placed(a, v), a.o);
   return { o: placed(a, b.o), x: turned(b.x), y: turned(b.y), z: turned(b.z) };
 };
 export const placed = ({ o, x, y, z }, p) => o.map((v, i) => v + x[i] * p[0] + y[i] * p[1] + z[i] * (p[2] ?? 0));
-// Coordinates of a point in orthonormal axes.
+// Returns the coordinates of a point in orthonormal axes.
 export const within = ({ o, x, y, z }, p) => [x, y, z].map((axis) => dot(minus(p, o), axis));

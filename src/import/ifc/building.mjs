@@ -5,18 +5,18 @@ import { determinant, identity, inverse, product, transformed } from "./matrix.m
 import { box, footprint } from "./rooms.mjs";
 import { taken } from "./step.mjs";
 
-// Products without a body: openings, air, drawings.
+// Products without a body: openings, spaces of air, drawings.
 const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoidingFeature", "IfcSpace", "IfcSpatialZone",
   "IfcExternalSpatialElement", "IfcVirtualElement", "IfcAnnotation", "IfcGrid"]);
 const DOORS = new Set(["IfcDoor", "IfcDoorStandardCase"]);
 
-// Where spaces and what they are in have their long names.
+// Attribute with the long name of spaces and of the elements that contain them.
 const LONG_NAME = new Map([["IfcProject", 5], ["IfcSite", 7], ["IfcBuilding", 7], ["IfcBuildingStorey", 7], ["IfcSpace", 7]]);
 
-// Share of a solid's surface that may be missing: rounding.
+// Largest missing share of a solid's surface, for rounding.
 const OPEN = 1e-4;
 
-// What several models become together.
+// One site, joined from several models.
 export class Site {
   constructor() {
     this.glb = new Glb();
@@ -30,7 +30,7 @@ export class Site {
     this.shapes = new Map();      // mesh and place, by node
     this.extent = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
     this.crs = "";
-    this.place = undefined;       // of the models on the map; null if they have several
+    this.place = undefined;       // transform from the model to the map; null if the models have several
   }
 
   toGlb() {
@@ -49,7 +49,7 @@ export class Site {
     });
   }
 
-  // A whole passes no transform to its parts: its own shape, if any, is a node below it.
+  // A whole passes no transform to its parts, so its own shape becomes a node below it.
   #addShapes() {
     for (const [index, shape] of this.shapes) {
       const node = this.nodes[index];
@@ -58,7 +58,7 @@ export class Site {
     }
   }
 
-  // -1 if the product has no colour of its own: web-ifc makes that white.
+  // Returns -1 if the product has no colour of its own, which web-ifc makes white.
   material(colour) {
     if (colour.every((value) => value === 1)) return -1;
     const key = colour.join(" ");
@@ -76,13 +76,13 @@ export class Site {
 
 // Adds one model to a site.
 export class Building {
-  // `opened`: products with openings. `place` takes the model, in metres with Y up, to the site.
+  // `opened`: products with openings. `place` transforms the model, in metres with Y up, to the site.
   constructor(site, step, opened, place = identity()) {
     Object.assign(this, { site, step, opened, place, ifc: step.ifc, api: step.api, model: step.model });
     this.nodeOf = new Map();    // by express id
-    this.meshesOf = new Map();  // by their first geometry: what is known of them
+    this.meshesOf = new Map();  // by their first geometry: meshes made so far
     this.parents = this.#parents();
-    this.elsewhere = new Set(site.shown);  // in files before this one
+    this.elsewhere = new Set(site.shown);  // products in earlier files
     this.twice = [];
   }
 
@@ -90,8 +90,8 @@ export class Building {
     return !NO_BODY.has(this.step.className(id));
   }
 
-  // Adds a product. `parts`: lists of geometries, one of each of which must have a surface; `isClosed` tells
-  // geometries that have to be. Returns how many have no surface, and how many are open; null if the product is in the site already.
+  // Adds a product. `parts`: lists of geometries; of each list, one must have a surface. `isClosed` tells which must be closed.
+  // Returns how many have no surface, and how many are open; null if the product is in the site already.
   add(id, parts, isClosed) {
     const guid = this.step.args(id)[0];
     let index = -1, place = null, shown = new Map();
@@ -100,18 +100,18 @@ export class Building {
       for (const { geometryExpressID, color: { x, y, z, w }, flatTransformation } of taken(geometries))
         if (flatTransformation.every(Number.isFinite)) sound.push({ geometry: geometryExpressID, colour: [x, y, z, w], place: flatTransformation, turned: false });
       if (sound.length === 0) return;
-      // Equal products share a mesh if their parts lie equally to the first.
+      // Products share a mesh if their parts have the same places relative to the first part.
       const back = inverse(sound[0].place);
       place = back ? sound[0].place : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...sound[0].place.slice(12)];
       const toFirst = back ?? inverse(place);
-      // web-ifc turns a geometry's faces each time that a product places it mirrored: all places see what is left.
+      // web-ifc flips a geometry's faces for each mirrored place of a product; all places then see the last state.
       const mirrored = new Map();
       for (const part of sound) if (determinant(part.place) < 0) mirrored.set(part.geometry, !mirrored.get(part.geometry));
       for (const part of sound) {
         part.turned = mirrored.get(part.geometry) ?? false;
         part.place = product(toFirst, part.place);
       }
-      // An opening is cut out of the geometry itself: only products without one have it in common.
+      // web-ifc cuts openings out of the geometry itself, so only products without openings share it.
       const mesh = this.#mesh(sound, this.opened.size > 0 && this.#isOpened(id) ? id : 0, isClosed);
       ({ index, shown } = mesh);
       if (index >= 0) this.#extend(mesh.bounds, place);
@@ -119,7 +119,7 @@ export class Building {
     try {
       this.api.StreamMeshes(this.model, [id], take);
     } catch {
-      shown = new Map();  // web-ifc gave the product up
+      shown = new Map();  // web-ifc failed on the product
     }
     if (index >= 0) {
       if (guid && this.elsewhere.has(guid)) { this.twice.push(id); return null; }
@@ -132,13 +132,13 @@ export class Building {
     };
   }
 
-  // Whether an opening is cut out of a product or of one that it is a part of.
+  // Returns true if an opening is cut out of a product or of a whole that it belongs to.
   #isOpened(id) {
     for (let at = id, steps = 0; at !== undefined && steps < 100; at = this.parents.get(at), ++steps) if (this.opened.has(at)) return true;
     return false;
   }
 
-  // Parent of each element: its whole, storey or building.
+  // Returns the parent of each element: its whole, storey or building.
   #parents() {
     const { step } = this, parents = new Map();
     const collect = (name, whole, parts) => {
@@ -154,7 +154,7 @@ export class Building {
     return parents;
   }
 
-  // Node of an element, below those of its parents.
+  // Returns the node of an element, below those of its parents.
   node(id, visiting = new Set()) {
     if (this.nodeOf.has(id)) return this.nodeOf.get(id);
     visiting.add(id);
@@ -176,7 +176,7 @@ export class Building {
     return index;
   }
 
-  // `own`: the product that the parts' geometry is cut for, or 0; `shown` tells what geometries lack that have to be closed.
+  // `own`: the product that the geometry is cut for, or 0. `shown`: the missing share of geometries that must be closed.
   #mesh(parts, own, isClosed) {
     const first = parts[0].geometry, alike = this.meshesOf.get(first) ?? [];
     const known = alike.find((one) => one.own === own && one.parts.length === parts.length && one.parts.every((part, i) => same(part, parts[i])));
@@ -211,12 +211,12 @@ export class Building {
     }
   }
 
-  // Vertices come with a normal each, already placed.
+  // Vertices come with one normal each, already placed.
   #geometry(id, m, turned = false) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
     const from = geometry.GetVertexData() / 4, count = Math.floor(geometry.GetVertexDataSize() / 6);
     const first = geometry.GetIndexData() / 4, size = geometry.GetIndexDataSize();
-    const { HEAPF32, HEAPU32 } = api.wasmModule;  // asked for last: web-ifc's memory moves as it grows
+    const { HEAPF32, HEAPU32 } = api.wasmModule;  // read last: web-ifc's memory moves as it grows
     const positions = new Float64Array(3 * count), indices = HEAPU32.slice(first, first + size);
     let sound = true;
     for (let i = 0; i < indices.length; ++i) if (indices[i] >= count) sound = false;
@@ -232,11 +232,11 @@ export class Building {
     return { positions, indices };
   }
 
-  // Rooms are nodes without a mesh: the extras have their box and outline, in metres, Y up.
+  // Rooms are nodes without a mesh. Their extras hold a box and an outline, in metres, Y up.
   addRooms() {
     for (const id of this.step.ids("IFCSPACE")) {
       const guid = this.step.args(id)[0], triangles = [];
-      if (guid && this.elsewhere.has(guid)) continue;  // in another file, too
+      if (guid && this.elsewhere.has(guid)) continue;  // it is also in another file
       this.site.shown.add(guid);
       for (const part of taken(this.api.GetFlatMesh(this.model, id).geometries)) {
         const { positions, indices } = this.#geometry(part.geometryExpressID, product(this.place, part.flatTransformation));
@@ -249,11 +249,11 @@ export class Building {
   }
 }
 
-// True if two parts look the same, to a micrometre.
+// Returns true if two parts look the same, to a micrometre.
 const same = (a, b) => a.geometry === b.geometry && a.turned === b.turned && a.colour.every((v, i) => v === b.colour[i]) &&
   a.place.every((v, i) => v === b.place[i] || (Math.abs(v - b.place[i]) < 2e-6 && v.toFixed(6) === b.place[i].toFixed(6)));
 
-// One list of vertices and triangles of several.
+// Joins several lists of vertices and triangles to one.
 function joined(geometries) {
   let vertices = 0, corners = 0;
   for (const one of geometries) vertices += one.positions.length, corners += one.indices.length;
@@ -267,7 +267,7 @@ function joined(geometries) {
   return { positions, indices };
 }
 
-// What a surface lacks to be closed, as a share of it: areas as vectors cancel each other all around a solid.
+// Returns the share of area that a surface lacks to be closed: area vectors of a closed surface sum to zero.
 function missing({ positions: p, indices }) {
   let x = 0, y = 0, z = 0, all = 0;
   for (let i = 0; i + 2 < indices.length; i += 3) {

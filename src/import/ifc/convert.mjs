@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// IFC models of one site as one GLB.
+// Converts the IFC models of one site to one GLB.
 import fs from "node:fs";
 import path from "node:path";
 import { Site } from "./building.mjs";
@@ -7,11 +7,11 @@ import { choices } from "./doubt.mjs";
 import { identity } from "./matrix.mjs";
 import { open, Question, read } from "./model.mjs";
 
-// `unit`: m, cm, mm, in or ft, which the files' own gives way to; or none. Throws Question for what a person has to
-// say, and other errors for models at fault.
+// `unit`: m, cm, mm, in or ft, which replaces the files' own; or none. Throws Question for what a person must answer,
+// and other errors for models at fault.
 export function convert(ifc, api, files, unit) {
   const one = files.length === 1;
-  // A single file stays open; of several, one at a time is.
+  // A single file stays open; several files are open one at a time.
   const models = files.map((file) => {
     const opened = open(ifc, api, fs.readFileSync(file), unit);
     if (!one) api.CloseModel(opened.step.model);
@@ -34,7 +34,7 @@ export function convert(ifc, api, files, unit) {
   return site.toGlb();
 }
 
-// Where each file stands. Files without a map conversion stand as one with: they were drawn in its coordinates.
+// Returns each file's place. Files without a map conversion use that of the others: they share coordinates.
 function places(models) {
   const notes = [], mapped = models.filter(({ located }) => located?.place), first = mapped[0];
   const crs = [...new Set(mapped.map(({ located }) => located.crs).filter(Boolean))];

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves as polylines that are nowhere farther from them than a chord error.
+// Approximates curves by polylines within a chord error.
 import { cross, dot, length, minus, placed, plus, unit, within } from "./axes.mjs";
 
 export class Unread extends Error {}
 
 const LEAST = 12;    // chords of a full circle, however small
-const MOST = 20_000;  // of any arc: that of a circle of 200 km
+const MOST = 20_000;  // of any arc: enough for a circle of 200 km
 
 export class Curves {
-  // `chord`: in the model's unit; `radians`: of its unit of angles.
+  // `chord`: in the model's unit; `radians`: in the model's unit of angles.
   constructor(step, axes, chord, radians) {
-    Object.assign(this, { step, axes, chord, radians, like: 0 });  // `like`: a radius; smaller circles get its chords
+    Object.assign(this, { step, axes, chord, radians, like: 0 });  // `like`: a radius whose chords smaller circles get
   }
 
-  // Number of chords for an angle in radians.
+  // Returns the number of chords for an angle in radians.
   chords(radius, angle) {
     const most = 2 * Math.acos(1 - this.chord / Math.max(radius, this.like, this.chord));
     const count = Math.max(1, Math.ceil(Math.abs(angle) / Math.min(most, 2 * Math.PI / LEAST) - 1e-9));
@@ -21,7 +21,7 @@ export class Curves {
     return count;
   }
 
-  // Points of three numbers from the curve's start to its end. Throws Unread.
+  // Returns points of three coordinates from the curve's start to its end. Throws Unread.
   points(ref) {
     const { step, axes } = this, id = ref.ref, type = step.type(id), args = step.args(id);
     switch (type) {
@@ -42,7 +42,7 @@ export class Curves {
     }
   }
 
-  // From one parameter to another, either way; both ends are exact.
+  // Returns an arc from one parameter to another, in either direction; both ends are exact.
   arc(axes, a, b, from, to) {
     const n = this.chords(Math.max(a, b), to - from), points = [];
     for (let i = 0; i <= n; ++i) {
@@ -62,7 +62,7 @@ export class Curves {
     }));
   }
 
-  // The arc through three points; a chord if they lie on a line.
+  // Returns the arc through three points; chords if they lie on a line.
   #through(a, b, c) {
     const u = minus(b, a), v = minus(c, a), n = cross(u, v), nn = dot(n, n);
     if (!(nn > 1e-18 * dot(u, u) * dot(v, v))) return [a, b, c];
@@ -77,7 +77,7 @@ export class Curves {
   #trimmed([basis, first, second, same, preference]) {
     const { step, axes } = this, type = step.type(basis.ref), args = step.args(basis.ref);
     const point = (trim) => trim.find((one) => one?.ref), number = (trim) => trim.find((one) => one?.typed)?.value;
-    // A parameter of the basis curve, and the point if the file prefers it.
+    // Returns a parameter of the basis curve, from the point if the file prefers it.
     const at = (trim, parameter) => {
       const p = point(trim), t = number(trim);
       return p && (preference === "CARTESIAN" || t === undefined) ? parameter(axes.point(p)) : t;
@@ -86,7 +86,7 @@ export class Curves {
       const o = axes.point(args[0]), [direction, magnitude] = step.args(args[1].ref), d = axes.direction(direction).map((v) => v * magnitude);
       const along = (p) => dot(minus(p, o), d) / dot(d, d), on = (t) => plus(o, d, t);
       const ends = [on(at(first, along)), on(at(second, along))];
-      return ends;  // whichever way the line runs, from the first to the second
+      return ends;  // from the first to the second, whatever the line's direction
     }
     if (type === "IFCCIRCLE" || type === "IFCELLIPSE") {
       const place = axes.placement(args[0]), a = args[1], b = type === "IFCCIRCLE" ? a : args[2];
@@ -98,7 +98,7 @@ export class Curves {
       to = same === false ? from - (turn(from - to) || whole) : from + (turn(to - from) || whole);
       return this.arc(place, a, b, from, to);
     }
-    // By points of the polyline that the basis curve is; parameters count its corners.
+    // Cuts the polyline of the basis curve; parameters count its corners.
     const all = this.points(basis);
     if (type !== "IFCPOLYLINE" && (number(first) !== undefined && preference !== "CARTESIAN" || !point(first) || !point(second))) throw new Unread(`IFCTRIMMEDCURVE of ${type}`);
     const nearest = (p) => {
@@ -152,7 +152,7 @@ const away = (p, a, b) => {
   return length(minus(p, plus(a, d, t)));
 };
 
-// Chains of points one behind the other, without the points that two share.
+// Joins chains of points end to end, without the points that two of them share.
 function joined(chains) {
   const all = [];
   for (const chain of chains)

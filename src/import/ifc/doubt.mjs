@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a person fits in a model as its unit has it.
+// Doubts a model's unit if no person fits into the model.
 
 const UNITS = [["m", 1, "metres"], ["ft", 0.3048, "feet"], ["in", 0.0254, "inches"], ["cm", 0.01, "centimetres"], ["mm", 0.001, "millimetres"]];
-// Sizes in metres: what is outside of them is built for nobody. Low walls alone may be a terrace's.
+// Plausible sizes in metres. Low walls alone may belong to a terrace.
 const SITE = [0.5, 50_000], WALL = [1, 80], STOREY = [0.5, 25], DOOR = [1, 12], SMALL = 5;
 
 const middle = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
@@ -10,17 +10,17 @@ const outside = (value, [low, high]) => value !== undefined && (value < low || v
 const text = (metres) => (metres >= 1 ? metres.toPrecision(3).replace(/e.*$/, (e) => `e${Number(e.slice(1))}`) : metres.toFixed(3));
 export const sizes = (size) => `${size.map((v) => (v >= 1000 ? v.toFixed(0) : text(v))).join(" x ")} m`;
 
-// Sizes in x, z and y: height last.
+// Returns sizes in x, z and y: height last.
 export const sizeOf = ({ min, max }) => [max[0] - min[0], max[2] - min[2], max[1] - min[1]];
 
-// What the model would be in each unit, one of its own units being so many metres now.
+// Returns the model's size in each unit. `metres`: its present unit, which `wanted` sizes replace.
 export function choices(extent, metres, wanted = () => true) {
   const size = sizeOf(extent).map((v) => v / metres);
   return UNITS.map(([name, unit, plural]) => ({ name, plural, size: size.map((v) => v * unit) })).filter(({ size: found }) => wanted(found))
     .map(({ name, plural, size: found }) => `${name} for ${plural} (${sizes(found)})`);
 }
 
-// A question, or null. Heights are those of extruded walls and of doors' attributes.
+// Returns a question, or null. Heights come from extruded walls and from doors' attributes.
 export function doubt(step, extent, length, metres) {
   const size = sizeOf(extent), longest = Math.max(...size);
   const doors = step.ids("IFCDOOR", "IFCDOORSTANDARDCASE").map((id) => step.args(id)[8]).filter((v) => typeof v === "number" && v > 0).map((v) => v * metres);
@@ -35,7 +35,7 @@ export function doubt(step, extent, length, metres) {
     choices(extent, metres, (found) => !outside(Math.max(...found), [2, 5000])).join(", ");
 }
 
-// Of walls that are extruded upwards, as most are; from their axes' parts where a wall is clipped.
+// Returns heights of extruded walls, as most are; a clipped wall counts by the solid before clipping.
 function wallHeights(step) {
   const heights = [];
   for (const id of step.ids("IFCWALL", "IFCWALLSTANDARDCASE").slice(0, 200)) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a model stands on a map: IfcMapConversion and its like, and the property sets that stand for them in IFC 2x3.
+// Place of a model on a map: IfcMapConversion and its like, and the property sets that replace them in IFC 2x3.
 import { metresOf } from "./units.mjs";
 
 const value = (one) => (typeof one === "object" && one ? one.value : one);
 
-// null, or {crs, feet, name, place, notes}: `crs` is EPSG:N, well-known text or "", also if it counts in `feet`; `place` takes the model, in metres with Y
-// up, to the map, null if the conversion is empty. `metres`: of the model's unit.
+// Returns null, or {crs, feet, name, place, notes}. `crs` is EPSG:N, well-known text or "", which it also is if it counts in `feet`. `place` takes the
+// model, in metres with Y up, to the map; null if the conversion is empty. `metres`: in the model's unit.
 export function geolocation(step, metres, mentions) {
   const given = conversion(step, mentions);
   if (!given) return null;
@@ -13,13 +13,13 @@ export function geolocation(step, metres, mentions) {
   const name = target.name ?? "", crs = target.text || code(name) || code(target.description ?? "");
   if (![east, north].every(Number.isFinite)) return { crs, name, place: null, notes: ["its map conversion has no numbers, and is not applied"] };
   if (east === 0 && north === 0) return { crs, name, place: null, notes: ["its map conversion has the origin of the map, as programs write that know none; it is not applied"] };
-  // A scale of the model's unit takes it to metres; else coordinates of the map are in its unit, or the model's.
+  // A scale equal to the model's unit gives metres; else map coordinates are in the map's unit, or the model's.
   let unit = target.unit ?? (Math.abs(scale / metres - 1) < 0.1 ? 1 : metres);
   if (!target.unit && unit < 0.5 && Math.hypot(east, north) * unit < 20_000 && Math.hypot(east, north) >= 20_000) {
     unit = 1;
     notes.push("its map conversion has no unit of the map; easting and northing are taken as metres");
   }
-  // The site is in metres: coordinates of a system in feet are no longer its own. Millimetres are those of the file, as
+  // The site is in metres, so a system in feet no longer fits its coordinates. Millimetres belong to the file, since
   // systems count in metres or feet.
   const metric = Math.abs(Math.log10(unit) - Math.round(Math.log10(unit))) < 1e-9;
   if (crs && !metric) notes.push(`its coordinate system${name ? `, "${name}",` : ""} counts in units of ${unit} m, and the site is in metres: it is not used for maps`);
@@ -29,7 +29,7 @@ export function geolocation(step, metres, mentions) {
     grow = 1;
   }
   const long = Math.hypot(abscissa, ordinate) || 1, [c, s] = [abscissa / long, ordinate / long], [fx, fy, fz] = factors.map((f) => f * grow);
-  // (x, y, z) is (x, z, -y) with Y up.
+  // With Y up, (x, y, z) becomes (x, z, -y).
   const place = [c * fx, 0, -s * fx, 0, 0, fz, 0, 0, s * fy, 0, c * fy, 0, east * unit, height * unit, -north * unit, 1];
   return { crs: metric ? crs : "", feet: Boolean(crs) && !metric, name, place, notes };
 }

@@ -12,7 +12,7 @@ export class Glb {
   }
 
   #add(array, count, componentType, type, more = {}) {
-    const bytes = Buffer.from(array.buffer, array.byteOffset, array.byteLength);  // of four-byte numbers: aligned
+    const bytes = Buffer.from(array.buffer, array.byteOffset, array.byteLength);  // four-byte numbers keep it aligned
     this.views.push({ buffer: 0, byteOffset: this.size, byteLength: bytes.length });
     this.parts.push(bytes);
     this.size += bytes.length;

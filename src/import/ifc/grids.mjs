@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where two axes of a grid meet.
+// Finds where two axes of a grid meet.
 import { cross, dot, length, minus, plus, unit } from "./axes.mjs";
 import { Unread } from "./curves.mjs";
 
-// {parent, place, unturned} of an IfcGridPlacement's attributes: the placement that it is relative to, and {o, x, y, z}
-// within it. `unturned`: no direction was given, and it keeps the grid's axes.
+// Returns {parent, place, unturned} from an IfcGridPlacement's attributes: the parent placement, and {o, x, y, z}
+// within it. `unturned`: no direction is given, so that the grid's axes hold.
 export function gridPlace(step, axes, curves, args) {
   const [location, direction] = args.slice(-2), own = args.length > 2 ? args[0] : null;  // IFC 4.3 names the placement
   const [crossing] = step.args(location.ref);
@@ -25,7 +25,7 @@ function gridOf(step, axis) {
   return step.ids("IFCGRID").find((id) => step.args(id).slice(7, 10).some((axes) => axes?.some(({ ref }) => ref === axis)));
 }
 
-// Of an IfcVirtualGridIntersection: its axes moved to their left by its distances, and up by the third.
+// Returns the point of an IfcVirtualGridIntersection: axes are offset to their left, and the third distance is height.
 function meeting(step, curves, id) {
   const [[first, second], distances] = step.args(id), [left = 0, other = 0, height = 0] = distances ?? [];
   const [a, b] = [[first, left], [second, other]].map(([axis, by]) => {
@@ -39,14 +39,14 @@ function meeting(step, curves, id) {
       const d = minus(a[i + 1], a[i]), e = minus(b[k + 1], b[k]), n = d[0] * e[1] - d[1] * e[0], to = minus(b[k], a[i]);
       if (Math.abs(n) < 1e-12 * length(d) * length(e)) continue;
       const t = (to[0] * e[1] - to[1] * e[0]) / n, s = (to[0] * d[1] - to[1] * d[0]) / n;
-      const beyond = Math.max(0, -t, t - 1) * length(d) + Math.max(0, -s, s - 1) * length(e);  // axes go on past their ends
+      const beyond = Math.max(0, -t, t - 1) * length(d) + Math.max(0, -s, s - 1) * length(e);  // axes extend beyond ends
       if (!best || beyond < best.beyond) best = { beyond, point: plus(a[i], d, t) };
     }
   if (!best) throw new Unread("axes of a grid that do not meet");
   return [best.point[0], best.point[1], height];
 }
 
-// Curves of axes; a line has no ends.
+// Returns the points of an axis; a line has no ends.
 function line(step, curves, curve) {
   if (step.type(curve.ref) !== "IFCLINE") return curves.points(curve).map(([x, y]) => [x, y]);
   const [point, vector] = step.args(curve.ref), [direction] = step.args(vector.ref);

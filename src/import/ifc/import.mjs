@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node import.mjs [unit=m|cm|mm|in|ft] FILE...: writes IFC models of one site to standard output, as GLB. Exit codes are
-// those of sysexits.h: 65 if a model is at fault, 69 if web-ifc is not installed, each with a line that says so.
+// node import.mjs [unit=m|cm|mm|in|ft] FILE...: writes IFC models of one site to standard output, as GLB. Exit codes of
+// sysexits.h: 65 if a model is at fault, 69 if web-ifc is not installed, each with a line that says so.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
@@ -18,8 +18,8 @@ function fail(code, message) {
 const settings = process.argv.slice(2).filter((word) => word.startsWith("unit="));
 const files = process.argv.slice(2 + settings.length);
 if (files.length === 0) fail(USAGE, "usage: node import.mjs [unit=UNIT] FILE... >site.glb");
-// WebAssembly is optimized once it has run for a while: most models are read sooner than web-ifc would be compiled again.
-// For the same reason functions are optimized on their own, and little is copied into those that call them.
+// Delays optimisation of WebAssembly: most models are read sooner than web-ifc would be compiled again. For the same
+// reason functions are optimised on their own, and little is inlined.
 v8.setFlagsFromString("--wasm-tiering-budget=500000000");
 v8.setFlagsFromString("--max-inlined-bytecode-size-cumulative=200");
 for (const talk of ["log", "info", "warn", "error", "debug"]) console[talk] = () => {};  // standard output is the GLB's

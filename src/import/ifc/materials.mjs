@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glass that a model tells by materials: of a product or its type, of constituents by shape aspects, by colour maps. web-ifc
-// sees styles of items and one colour a product; the others are written as such. Must run before it makes any geometry.
+// Finds glass by the materials of a product or its type, of constituents by shape aspects, and by colour maps. web-ifc reads
+// only styles of items and one colour a product, so the others become such styles. Must run before it makes any geometry.
 import { enumeration } from "./step.mjs";
 
-const CLEAR = 0.8;  // transparency of a material that is glass by its category and has no style
+const CLEAR = 0.8;  // transparency of a glass material that has a category and no style
 
 export class Materials {
   constructor(step) {
     this.step = step;
-    this.guessed = [];   // products with a material that is glass by its category alone
-    this.unsaid = [];    // products of glass and others that do not say which part is which
+    this.guessed = [];   // products whose material is glass only by its category
+    this.unsaid = [];    // products of glass and other materials that do not assign them to parts
     this.styleOf = new Map();
     for (const id of step.ids("IFCMATERIALDEFINITIONREPRESENTATION")) {
       const [, , representations, material] = step.args(id);
@@ -22,7 +22,7 @@ export class Materials {
   apply() {
     const { step } = this;
     this.#colourMaps();
-    this.glass = new Map();  // by material: its style
+    this.glass = new Map();  // style by material
     for (const [material, style] of this.styleOf) if (this.#transparency(style) > 0) this.glass.set(material, style);
     this.byCategory = new Set();
     for (const id of step.ids("IFCMATERIAL")) {
@@ -55,7 +55,7 @@ export class Materials {
     }
   }
 
-  // Materials with the names that their parts have.
+  // Returns materials with the names of their parts.
   #parts(id) {
     const { step } = this, type = step.type(id), args = step.args(id), all = (list, more) => (list ?? []).flatMap((one) => this.#parts(one.ref).map((part) => ({ ...part, ...more?.(one) })));
     const named = (place) => (one) => ({ name: step.args(one.ref)[place] });
@@ -95,13 +95,13 @@ export class Materials {
             paint(item.ref, this.glass.get(part.id) ?? this.#opaque(part.id));
           }
       }
-    // A style of the product itself is what its other items get.
+    // The product's own style goes to its remaining items.
     if (panes.length === parts.length) return paint(product, this.glass.get(panes[0].id));
     paint(product, this.#opaque(parts.find(({ id }) => !this.glass.has(id)).id));
     if (!pane && !items.all.every((item) => styled.has(item))) this.unsaid.push(product);
   }
 
-  // Items of a product's shape, and the maps that it uses.
+  // Returns the items of a product's shape, and the maps that it uses.
   #items(shape) {
     const { step } = this, all = [], maps = [];
     const collect = (representation) => {
@@ -116,7 +116,7 @@ export class Materials {
     return { all, maps };
   }
 
-  // Transparency of a style, through what wraps it.
+  // Returns the transparency of a style, also inside wrappers.
   #transparency(style) {
     const { step } = this, type = step.type(style.ref), args = step.args(style.ref);
     const most = (list) => Math.max(0, ...(list ?? []).map((one) => this.#transparency(one)));

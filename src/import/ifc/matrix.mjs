@@ -19,12 +19,12 @@ export function product(a, b) {
 
 export const identity = () => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-// Below 0 if it mirrors.
+// Returns a value below 0 if the map mirrors.
 export const determinant = (m) => m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 
 const OTHERS = [[1, 2], [0, 2], [0, 1]];
 
-// Null if it flattens space.
+// Returns null if the map is singular.
 export function inverse(m) {
   const minor = (i, j) => {  // of the upper left 3 by 3, row i and column j
     const [a, b] = OTHERS[i], c = 4 * OTHERS[j][0], d = 4 * OTHERS[j][1];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads one IFC file into a site: opens it, makes it plain, adds its products, and notes what is not read.
+// Reads one IFC file into a site: opens it, rewrites it for web-ifc, adds its products, and notes what is not read.
 import { Building } from "./building.mjs";
 import { geolocation } from "./geolocation.mjs";
 import { Materials } from "./materials.mjs";
@@ -11,16 +11,16 @@ import { stateLength, units } from "./units.mjs";
 
 const CHORD_M = 0.005, CHORDS = 12, MOST_CHORDS = 400;
 const LISTED = 10;  // products in a note
-// Products that are no part of what stands on the site.
+// Products that do not stand on the site.
 const DRAWN = /^IFC(ANNOTATION|GRID|VIRTUALELEMENT|REFERENT|ALIGNMENT.*|LINEARPOSITIONINGELEMENT|STRUCTURAL.*|.*PORT)$/;
 
-// Names that a model's unit may be given by.
+// Units that a user may give, in metres.
 const METRES = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, ft: 0.3048 };
 
-// What a person has to answer, in one line.
+// A question that a person must answer, in one line.
 export class Question extends Error {}
 
-// `unit`: one of METRES, or none for what the file says. Returns what readTogether() needs.
+// `unit`: one of METRES, or none for the file's own. Returns what read() needs.
 export function open(ifc, api, bytes, unit) {
   const mentions = (text) => bytes.includes(text);
   const schema = /FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'/.exec(bytes.subarray(0, 65536).toString("latin1"))?.[1] ?? "";
@@ -28,7 +28,7 @@ export function open(ifc, api, bytes, unit) {
   if (model < 0) throw new Error(`its schema${schema ? `, ${schema},` : ""} is not known; IFC 2x3, IFC 4 and IFC 4.3 are read`);
   let step = new Step(ifc, api, model);
   const { length, angle } = units(step), metres = METRES[unit] ?? length?.value ?? null;
-  // Circles that remain web-ifc's get one number of chords each, which is chosen for the largest.
+  // Circles left to web-ifc all get the same number of chords, chosen for the largest circle.
   const chords = metres === null ? CHORDS : largestChords(step, metres);
   if (chords > CHORDS) {
     api.CloseModel(model);
@@ -46,18 +46,18 @@ function largestChords(step, metres) {
   return radius > CHORD_M ? Math.min(MOST_CHORDS, Math.ceil(Math.PI / Math.acos(1 - CHORD_M / radius))) : CHORDS;
 }
 
-// Number of a list of web-ifc's, which is freed.
+// Returns the length of a list of web-ifc, and frees the list.
 function sizeOf(list) {
   const size = list.size();
   list.delete();
   return size;
 }
 
-// {code, name, count} of the classes of entities that a model has, names in capitals.
+// Returns {code, name, count} for each class of entity in a model, names in capitals.
 const typesOf = (api, model) => api.GetIfcEntityList(model).map((code) => ({ code, count: sizeOf(api.GetLineIDsWithType(model, code)) }))
   .filter(({ count }) => count > 0).map((type) => ({ ...type, name: api.GetNameFromTypeCode(type.code).toUpperCase() }));
 
-// Entities that the reader does not know, by name: how many, and the first ones.
+// Returns entities that the reader does not know, by name: their number, and the first ones.
 function unknownEntities(step, bytes, types) {
   const BLOCK = 1 << 24, OVERLAP = 4096, found = new Map(), names = new Map(), { api, model } = step;
   if (types.reduce((sum, { count }) => sum + count, 0) === sizeOf(api.GetAllLines(model))) return found;
@@ -78,7 +78,7 @@ function unknownEntities(step, bytes, types) {
   return found;
 }
 
-// What a damaged part of a model gives instead of an error.
+// Returns a default if a damaged part of a model throws an error.
 function attempt(make, instead) {
   try {
     return make();
@@ -91,7 +91,7 @@ function attempt(make, instead) {
 const several = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
 const listed = (all) => all.slice(0, LISTED).join("; ") + (all.length > LISTED ? `; and ${all.length - LISTED} more` : "");
 
-// Adds an open model. `place` takes it to the site. Returns its notes.
+// Adds an open model. `place` transforms it to the site. Returns its notes.
 export function read(site, { schema, step, metres, given, length, angle, types, unknown }, place) {
   const { api, model } = step;
   if (given || !length || length.value !== 1) stateLength(step, metres);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rewrites in an open model what web-ifc leaves to its caller or reads otherwise than the standard means, as entities of
-// the same shape that it reads rightly. Must run before web-ifc makes any geometry. What cannot be rewritten is told.
+// Rewrites entities of an open model that web-ifc does not read, or not as the standard means, as entities of the same
+// shape that it reads correctly. Must run before web-ifc makes any geometry. Reports what cannot be rewritten.
 import { Axes, unit } from "./axes.mjs";
 import { Bodies } from "./bodies.mjs";
 import { Curves, Unread } from "./curves.mjs";
@@ -12,11 +12,11 @@ import { enumeration, integer } from "./step.mjs";
 const LINES = /^IFC(POLYLINE|.*CURVE|.*CURVEWITHKNOTS|CIRCLE|ELLIPSE|LINE|CLOTHOID|EDGE|.*POINT|TEXTLITERAL.*|ANNOTATIONFILLAREA|GEOMETRICCURVESET|PATH|VERTEX.*|.*DIMENSION.*|.*HATCHING)$/;
 const AS_IT_IS = ["IFCPLANE", "IFCCYLINDRICALSURFACE", "IFCBSPLINESURFACEWITHKNOTS", "IFCRATIONALBSPLINESURFACEWITHKNOTS", "IFCSURFACEOFREVOLUTION", "IFCSURFACEOFLINEAREXTRUSION"];
 
-// What eleven corners, which web-ifc makes of twelve, miss of a circle of radius 1.
+// Largest error of a unit circle with eleven corners, which web-ifc makes of twelve.
 const AS_ELEVEN = 1 - Math.cos(Math.PI / 11);
 
 export class Plain {
-  // `chord`: what a chord may miss of an arc, in the model's unit; `radians`: of its unit of angles.
+  // `chord`: largest chord error of an arc, in the model's unit; `radians`: in its unit of angles.
   constructor(step, chord, radians) {
     this.step = step;
     this.axes = new Axes(step);
@@ -24,20 +24,20 @@ export class Plain {
     this.profiles = new Profiles(step, this.axes, this.curves);
     this.solids = new Solids(step, this.axes, this.curves, this.profiles);
     this.bodies = new Bodies(step);
-    this.items = new Map();     // what became of each item
-    this.shapes = new Map();    // and of each product's shape
-    this.cut = new Set();       // solids of which web-ifc cuts others out
-    this.solid = new Set();     // and others that are closed
-    this.copies = new Map();    // items made apart, and what they were
+    this.items = new Map();     // result for each item
+    this.shapes = new Map();    // result for each product's shape
+    this.cut = new Set();       // solids from which web-ifc cuts others
+    this.solid = new Set();     // other closed solids
+    this.copies = new Map();    // copied items, with their originals
     this.done = new Set();      // placements, profiles and operators
     this.ones = new Set();      // directions of length 1
     this.curved = step.ids("IFCADVANCEDFACE", "IFCFACESURFACE").length > 0;
     this.gridAxes = 0;          // products on a grid without a direction
-    this.local = step.ids("IFCGRIDPLACEMENT", "IFCLINEARPLACEMENT").length === 0;  // no placement is of another kind
+    this.local = step.ids("IFCGRIDPLACEMENT", "IFCLINEARPLACEMENT").length === 0;  // all placements are local
   }
 
-  // Makes a product plain. Returns {parts, problems, left}: parts are lists of the geometries that web-ifc may give one
-  // item, problems say what is not read, and left are the names of representations that are no body.
+  // Rewrites a product. Returns {parts, problems, left}: lists of the geometries that web-ifc may give an item, what is
+  // not read, and the names of representations that are no body.
   product(id, opened) {
     const [, , , , , placement, shape] = this.step.args(id);
     const problems = [];
@@ -49,8 +49,8 @@ export class Plain {
     return { parts, problems: [...problems, ...more], left };
   }
 
-  // web-ifc cuts openings out of each place of an item that a product has several times, and shows all cuts at each:
-  // every place but the first gets an item of its own. Returns the parts of these.
+  // web-ifc cuts openings out of each place of a repeated item, and shows all cuts at each place. Every place but the
+  // first therefore gets its own copy. Returns the parts of the copies.
   #apart(representations) {
     const { step } = this, seen = new Set(), parts = [];
     const copy = (id) => { const to = step.api.GetMaxExpressID(step.model) + 1; step.copy(id, to); return { ref: to }; };
@@ -69,7 +69,7 @@ export class Plain {
     return parts;
   }
 
-  // Items that were made apart look like those that they were.
+  // Gives copied items the styles of their originals.
   styleCopies() {
     if (this.copies.size === 0) return;
     const { step } = this, styles = new Map();
@@ -84,7 +84,7 @@ export class Plain {
     return made;
   }
 
-  // Adds the parts and problems of a representation. Items that are not read are left out, so that they take no other with them.
+  // Adds the parts and problems of a representation. Removes unread items, as web-ifc would drop others with them.
   #representation(id, { parts, problems }) {
     const items = this.step.args(id)[3] ?? [], read = [];
     for (const item of items) {
@@ -95,7 +95,7 @@ export class Plain {
     if (read.length < items.length) this.step.change(id, { 3: read });
   }
 
-  // {parts, problems, lost}: an item that is lost must not reach web-ifc.
+  // Returns {parts, problems, lost}. A lost item must not reach web-ifc.
   #item(id) {
     const known = this.items.get(id);
     if (known) return known;
@@ -179,7 +179,7 @@ export class Plain {
     if (a.lost) throw new Unread(`the first operand of ${step.type(id)} (${a.problems[0] ?? "without a surface"})`);
     const problems = [...a.problems, ...b.problems];
     if (b.lost) {
-      // Half of a solid is more than none.
+      // Half of a solid is better than none.
       step.copy(first.ref, id);
       return { parts: [[id]], problems: [...problems, `${shown(this.step, step.type(id))} is read without its second operand`] };
     }
@@ -195,7 +195,7 @@ export class Plain {
     this.step.write(id, "IFCTRIANGULATEDFACESET", [list, null, enumeration("T"), triangles.map((triangle) => triangle.map((i) => integer(i + 1))), null]);
   }
 
-  // Indices of a face set may go through a list of their own.
+  // Indices of a face set may refer to a second list of indices.
   #indexed(id, args, place) {
     const through = args[place];
     if (!Array.isArray(through)) return;
@@ -248,7 +248,7 @@ export class Plain {
     step.change(id, { 0: direction(0), 1: direction(1), 3: lengths[0], 4: direction(2), ...(three ? { 5: lengths[1], 6: lengths[2] } : {}) });
   }
 
-  // Placements on a grid become local ones. Returns problems.
+  // Turns placements on a grid into local ones. Returns problems.
   #placement(id) {
     const problems = [], { step } = this;
     for (let at = id; at && !this.done.has(at);) {
@@ -279,7 +279,7 @@ export class Plain {
     return this.step.add("IFCAXIS2PLACEMENT3D", [this.step.add("IFCCARTESIANPOINT", [[0, 0, 0]]), null, null]);
   }
 
-  // Classes of surfaces, of faces in these shells, that web-ifc flattens.
+  // Returns the classes of curved surfaces, of faces in these shells, that web-ifc flattens.
   #surfaces(shells) {
     const { step } = this, flat = new Set();
     if (!this.curved) return [];
@@ -293,5 +293,5 @@ export class Plain {
   }
 }
 
-// Classes in a text as people write them: IfcSweptDiskSolid.
+// Writes classes in a text as people do: IfcSweptDiskSolid.
 export const shown = (step, text) => text.replace(/\bIFC[A-Z0-9]+/g, (name) => (step.ifc[name] && step.api.GetNameFromTypeCode(step.ifc[name])) || name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Profiles as regions of a plane: an outer ring and holes, each a list of points [x, y] without the first one again.
+// Profiles as regions of a plane: an outer ring and holes, each a list of points [x, y] without a repeated end.
 import { length, minus, placed, plus, unit } from "./axes.mjs";
 import { Unread } from "./curves.mjs";
 
@@ -36,12 +36,12 @@ export class Profiles {
     return ring;
   }
 
-  // A parametrised profile around its own origin.
+  // Returns a parametrised profile around its own origin.
   #shape(type, a) {
     const solid = (...corners) => ({ outer: this.#rounded(corners), holes: [] });
     const box = (w, h, r = 0) => this.#rounded([[-w / 2, -h / 2, r], [w / 2, -h / 2, r], [w / 2, h / 2, r], [-w / 2, h / 2, r]]);
     const circle = (r, s = r) => this.curves.arc({ o: [0, 0, 0], x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }, r, s, 0, 2 * Math.PI).slice(0, -1).map(([x, y]) => [x, y]);
-    // A sloped face differs from an even one by less than the chord error, or is not read.
+    // Reads a sloped face as level if the error is below the chord error; else throws Unread.
     const even = (slope, long) => { if (slope && Math.abs(Math.tan(slope * this.curves.radians)) * long / 2 > this.curves.chord) throw new Unread(`${type} with a slope`); };
     switch (type) {
       case "IFCRECTANGLEPROFILEDEF": return { outer: box(a[0], a[1]), holes: [] };
@@ -92,7 +92,7 @@ export class Profiles {
     }
   }
 
-  // Corners [x, y, radius], each replaced by an arc that touches both its edges, if it has a radius.
+  // Replaces corners [x, y, radius] that have a radius by arcs that touch both their edges.
   #rounded(corners) {
     return corners.flatMap(([x, y, radius], i) => {
       const here = [x, y];
@@ -118,7 +118,7 @@ function girder(bottom, top, h, web, low, high, fillet, topFillet, edge, topEdge
     [-t, y - high, topEdge], [-s, y - high, topFillet], [-s, -y + low, fillet], [-b, -y + low, edge]];
 }
 
-// The band around a line, with mitred corners.
+// Returns the band around a line, with mitred corners.
 function thickened(line, half) {
   const side = (sign) => line.map((here, i) => {
     const along = [line[i - 1] && unit(minus(here, line[i - 1])), line[i + 1] && unit(minus(line[i + 1], here))].filter(Boolean);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outline and heights of a room from its body.
+// Finds outline and heights of a room from its body.
 
 const MILLIMETRES = 1000;
 
-// The loops around the triangles at the body's foot: lists of [x, z], in metres. `triangles` are triples of points [x,
-// y, z], Y up.
+// Returns the loops around the triangles at the body's lowest level: lists of [x, z], in metres. `triangles` are
+// triples of points [x, y, z], Y up.
 export function footprint(triangles) {
   let foot = Infinity;
   for (const triangle of triangles) for (const [, y] of triangle) foot = Math.min(foot, y);
   const key = ([x, , z]) => `${Math.round(x * MILLIMETRES)} ${Math.round(z * MILLIMETRES)}`;
-  const places = new Map(), edges = new Map();  // edges by their starting place
+  const places = new Map(), edges = new Map();  // edges by their start
   for (const triangle of triangles) {
     if (triangle.some(([, y]) => y > foot + 1 / MILLIMETRES)) continue;
     const keys = triangle.map(key);
@@ -17,7 +17,7 @@ export function footprint(triangles) {
     for (let i = 0; i < 3; ++i) {
       const from = keys[i], to = keys[(i + 1) % 3];
       if (from === to) continue;
-      if (edges.get(to)?.delete(from)) continue;  // between two triangles
+      if (edges.get(to)?.delete(from)) continue;  // it lies between two triangles
       if (!edges.has(from)) edges.set(from, new Set());
       edges.get(from).add(to);
     }

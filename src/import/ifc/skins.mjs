@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Openings that stop a little before a face of what they open: the skin that they leave closes a door or a window.
+// Mends openings that stop just before a face of their wall and leave a thin skin over a door or window.
 import { composed, cross, dot, length, minus, placed, plus, unit } from "./axes.mjs";
 import { Unread } from "./curves.mjs";
 
 const TOLD_M = 0.05, OPENED_M = 0.01, NOTHING_M = 1e-4, BEYOND_M = 0.01;
-const MANY = 500;  // faces, above which a body is not looked at
+const MANY = 500;  // faces; larger bodies are skipped
 
 export class Skins {
   constructor(step, axes, solids, metres) {
     Object.assign(this, { step, axes, solids, metres });
-    this.hosts = new Map();  // what is opened, maybe in several places: its bodies, the direction through it, and its ends in that
-    this.shapes = new Map(); // of extrusions, by all that they are made of
+    this.hosts = new Map();  // opened products: the bodies of all their places, the direction through these, the ends along it
+    this.shapes = new Map(); // extrusions, by all entities that they consist of
   }
 
-  // Opens skins of up to a centimetre. Returns {opening, host, skin_m, opened} of all that are left or were.
+  // Opens skins of up to a centimetre. Returns {opening, host, skin_m, opened} of all skins, opened or left.
   mend() {
     const { step } = this, found = [];
     for (const id of step.ids("IFCRELVOIDSELEMENT")) {
       const [, , , , host, opening] = step.args(id);
       if (!host || !opening || this.#isRecess(opening.ref)) continue;
       if (!this.hosts.has(host.ref)) this.hosts.set(host.ref, { bodies: this.#bodies(host.ref, true) });
-      // Openings are many, and most reach through: their corners tell.
+      // Openings are many and most reach through; corners suffice to see that.
       const wall = this.hosts.get(host.ref), hole = this.#bodies(opening.ref, false);
       if (wall.bodies.length === 0 || hole.length === 0) continue;
       wall.across ??= mainNormal(wall.bodies);
@@ -40,8 +40,8 @@ export class Skins {
     return [args[4], args[8]].some((type) => typeof type === "string" && /recess|niche/i.test(type));
   }
 
-  // {points, triangles, item, place, shared}, points in the model's coordinates; [] if they are not simple. Extrusions have
-  // triangles only if they are asked for whole.
+  // Returns {points, triangles, item, place, shared}, points in the model's coordinates; [] if the bodies are not simple.
+  // Extrusions have triangles only with `whole`.
   #bodies(id, whole) {
     const { step, axes } = this, args = step.args(id), shape = args[6];
     if (!shape) return [];
@@ -95,7 +95,7 @@ export class Skins {
     return { points, triangles, closed: false };
   }
 
-  // Moves an opening's end through the face that it stops before. False if the body is another one's, too.
+  // Moves the end of an opening through the face that it stops before. Returns false if others share the body.
   #stretch(body, across, gaps) {
     if (body.shared || body.closed === false) return false;
     const along = body.points.map((point) => dot(point, across)), [from, to] = ends([body], across), end = NOTHING_M / this.metres;
@@ -111,7 +111,7 @@ export class Skins {
   }
 }
 
-// From where to where bodies reach in a direction.
+// Returns the range of bodies along a direction.
 function ends(bodies, direction) {
   let low = Infinity, high = -Infinity;
   for (const { points } of bodies)
@@ -122,7 +122,7 @@ function ends(bodies, direction) {
   return [low, high];
 }
 
-// The direction that most of the surface of bodies faces, either way.
+// Returns the direction, up to its sign, that most of the bodies' surface faces.
 function mainNormal(bodies) {
   const sums = [];
   for (const { points, triangles } of bodies)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solids as triangles, seen from outside: those of which web-ifc makes nothing, or something else.
+// Triangulates solids, seen from outside, that web-ifc does not read, or reads wrongly.
 import { cross, dot, length, minus, placed, plus, unit } from "./axes.mjs";
 import { Unread } from "./curves.mjs";
 import { triangulated } from "./triangulate.mjs";
@@ -10,7 +10,7 @@ class Faces {
   add(point) { return this.points.push(point) - 1; }
   ring(points) { return points.map((point) => this.add(point)); }
   face(a, b, c) { if (a !== b && b !== c && c !== a) this.triangles.push([a, b, c]); }
-  // The strip between two rings, b ahead of a; a ring runs anticlockwise seen from ahead.
+  // Adds the strip between two rings, b ahead of a; a ring runs anticlockwise seen from ahead.
   strip(a, b, closed = true) {
     for (let i = 0; i < a.length - (closed ? 0 : 1); ++i) {
       const j = (i + 1) % a.length;
@@ -28,7 +28,7 @@ export class Solids {
     Object.assign(this, { step, axes, curves, profiles });
   }
 
-  // {points, triangles, told}, in the item's coordinates; `told`, if any, is what is not sure. Throws Unread.
+  // Returns {points, triangles, told}, in the item's coordinates; `told`, if any, is a doubt to report. Throws Unread.
   of(id) {
     const { step, axes } = this, type = step.type(id), args = step.args(id), faces = new Faces();
     switch (type) {
@@ -65,7 +65,7 @@ export class Solids {
     return faces;
   }
 
-  // Corners of an IfcExtrudedAreaSolid alone.
+  // Returns only the corners of an IfcExtrudedAreaSolid.
   corners(id) {
     const args = this.step.args(id), { from, low, high } = this.#ends([...args, args[0]]), flat = from.flatMap(({ outer, holes }) => [outer, ...holes].flat());
     return [...flat.map(low), ...flat.map(high)];
@@ -107,14 +107,14 @@ export class Solids {
     for (const region of this.profiles.regions(profile)) {
       const rings = [region.outer, ...region.holes], far = rings[0].map((p) => dot(minus([...p, 0], o), right));
       if (Math.min(...far) < -1e-6 * (1 + Math.max(...far)) && Math.max(...far) > 1e-6) throw new Unread("IFCREVOLVEDAREASOLID whose axis crosses its profile");
-      const side = Math.max(...far) > 1e-9 ? 1 : -1;  // of the axis
+      const side = Math.max(...far) > 1e-9 ? 1 : -1;  // side of the axis
       const n = this.curves.chords(Math.max(...far.map(Math.abs)), turn);
       const spun = (p, t) => {  // around the axis, anticlockwise seen against it
         const d = minus([...p, 0], o), along = dot(d, z), out = minus(d, z.map((v) => v * along)), across = cross(z, out);
         return placed(at, plus(o, plus(plus(z.map((v) => v * along), out, Math.cos(t)), across, Math.sin(t))));
       };
       rings.forEach((ring, k) => {
-        // Anticlockwise seen from where the profile moves to.
+        // The ring runs anticlockwise seen from where the profile moves to.
         const points = turned(ring, (k === 0 ? 1 : -1) * -side);
         let before = faces.ring(points.map((p) => spun(p, 0)));
         const first = before;
@@ -130,10 +130,10 @@ export class Solids {
     }
   }
 
-  // Profiles of both ends, where their points lie, and whether the second one is below.
+  // Returns the profiles of both ends, functions that place their points, and whether the second end is below.
   #ends([profile, position, direction, depth, end]) {
     const at = this.axes.placement(position), d = this.axes.direction(direction);
-    // Circles of either end get the chords of the larger one.
+    // Circles of both ends get as many chords as the larger one.
     const radius = (one) => { const [, , , size] = this.step.args(one.ref); return typeof size === "number" ? size : 0; };
     this.curves.like = Math.max(0, radius(profile), radius(end));
     let from, to;
@@ -165,7 +165,7 @@ export class Solids {
     });
   }
 
-  // A round bar or pipe along a line, mitred at its corners.
+  // Adds a round bar or pipe along a line, mitred at its corners.
   #disk(faces, [directrix, radius, inner, start, end]) {
     if (start !== null && start !== 0 || end !== null && end !== undefined && !this.#isWhole(directrix, end)) faces.told = "IFCSWEPTDISKSOLID of a part of its directrix is read along all of it";
     const line = this.curves.points(directrix), close = length(minus(line[0], line.at(-1))) <= 1e-6 * radius + 1e-12;
@@ -174,7 +174,7 @@ export class Solids {
     if (count < 2) throw new Unread("IFCSWEPTDISKSOLID along nothing");
     const segments = Array.from({ length: close ? count : count - 1 }, (_, i) => along(i));
     if (segments.some((d) => !d)) throw new Unread("IFCSWEPTDISKSOLID along a line that stands still");
-    // Axes across the first segment, carried on without a twist.
+    // Carries axes across the first segment on to the others, without twist.
     let x = unit(cross(segments[0], Math.abs(segments[0][2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
     const frames = segments.map((d, i) => {
       if (i > 0) {
@@ -186,7 +186,7 @@ export class Solids {
     const around = this.curves.chords(radius, 2 * Math.PI);
     const rings = (r) => Array.from({ length: count }, (_, i) => {
       const before = close || i > 0 ? frames.at(i - 1) : frames[0], after = i < frames.length ? frames[i] : close ? frames[0] : before;
-      const plane = unit(plus(before.d, after.d)) ?? after.d;  // of the mitre
+      const plane = unit(plus(before.d, after.d)) ?? after.d;  // plane of the mitre
       return faces.ring(Array.from({ length: around }, (_, k) => {
         const t = 2 * Math.PI * k / around, p = plus(before.x.map((v) => v * r * Math.cos(t)), before.y, r * Math.sin(t));
         const slide = -dot(p, plane) / Math.max(0.2, dot(before.d, plane));
@@ -199,7 +199,7 @@ export class Solids {
       if (hollow) faces.strip([...hollow[i]].reverse(), [...hollow[i + 1]].reverse());
     }
     if (close) {
-      // The frame has turned on its way round: the nearest point begins.
+      // The frame has turned on its way round, so the ring starts at the nearest point.
       const last = outer.at(-1), shifted = (ring, by) => ring.map((_, k) => ring[(k + by) % around]);
       const by = around === 0 ? 0 : last.reduce((best, _, k) => (length(minus(faces.points[outer[0][k]], faces.points[last[0]])) < length(minus(faces.points[outer[0][best]], faces.points[last[0]])) ? k : best), 0);
       faces.strip(last, shifted(outer[0], by));
@@ -213,7 +213,7 @@ export class Solids {
     }
   }
 
-  // Whether a parameter is that of a directrix' end.
+  // Returns true if a parameter is the end of the directrix.
   #isWhole(directrix, end) {
     const { step } = this, type = step.type(directrix.ref), args = step.args(directrix.ref);
     const last = type === "IFCPOLYLINE" ? args[0].length - 1 : type === "IFCCOMPOSITECURVE" ? args[0].length : type === "IFCINDEXEDPOLYCURVE" && args[1] ? args[1].length : NaN;

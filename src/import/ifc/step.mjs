@@ -6,7 +6,7 @@ const [STRING, TYPED, ENUM, REAL, REF, INTEGER] = [1, 2, 3, 4, 5, 10];
 
 const MOST = 100_000;
 
-// The values of a list of web-ifc's, which is freed: lists left in its memory slow down whatever asks for some later.
+// Returns the values of a list of web-ifc, and frees it: lists left in its memory slow down later requests.
 export function taken(list) {
   const all = [];
   for (let i = 0, size = list.size(); i < size; ++i) all.push(list.get(i));
@@ -14,7 +14,7 @@ export function taken(list) {
   return all;
 }
 
-// Lists become their values in place.
+// Replaces lists by their values, in place.
 const decode = (token) => {
   if (token === null || token === undefined) return null;
   if (Array.isArray(token)) {
@@ -45,29 +45,29 @@ const encode = (value) => {
 
 export class Step {
   #names = new Map();
-  #read = new Map();  // attributes of entities, as many as MOST
+  #read = new Map();  // attributes of entities, at most MOST
 
   constructor(ifc, api, model) {
     Object.assign(this, { ifc, api, model });
   }
 
-  // Numbers of all entities of these types, by their names in capitals; types that the schema lacks have none.
+  // Returns the numbers of all entities of these types, named in capitals; none for types that the schema lacks.
   ids(...names) {
     return names.flatMap((name) => {
       const code = this.ifc[name];
       return taken(this.api.GetLineIDsWithType(this.model, code)).filter((id) => this.api.GetLineType(this.model, id) === code);
     });
   }
-  // Those of a type and all below it.
+  // Returns the numbers of a type and of all its subtypes.
   kinds(name) {
     return taken(this.api.GetLineIDsWithType(this.model, this.ifc[name], true));
   }
 
-  // Name in capitals; "" if there is no such entity.
+  // Returns the type's name in capitals; "" if there is no such entity.
   type(id) {
     return this.#name(id).capitals;
   }
-  // As people write it: IfcWall.
+  // Returns the type's name as people write it: IfcWall.
   className(id) {
     return this.#name(id).name;
   }
@@ -80,7 +80,7 @@ export class Step {
     return both;
   }
 
-  // Attributes in the order of the schema, which are not to be changed; [] if there is no such entity.
+  // Returns attributes in the order of the schema, which the caller must not change; [] if there is no such entity.
   args(id) {
     const known = this.#read.get(id);
     if (known) return known;
@@ -90,7 +90,7 @@ export class Step {
     return args;
   }
 
-  // Replaces an entity, or makes it.
+  // Replaces or creates an entity.
   write(id, name, args) {
     const is = this.type(id);
     this.#read.delete(id);
@@ -102,20 +102,20 @@ export class Step {
     this.write(id, name, args);
     return { ref: id };
   }
-  // Changes some attributes of an entity, by their places.
+  // Changes some attributes of an entity, given by position.
   change(id, changes) {
     this.#read.delete(id);
     const { type, arguments: raw } = this.api.GetRawLineData(this.model, id);
     this.api.WriteRawLineData(this.model, { ID: id, type, arguments: raw.map((token, i) => (i in changes ? encode(changes[i]) : this.#kept(token))) });
   }
-  // Makes an entity what another one is.
+  // Copies an entity over another.
   copy(from, to) {
     this.#read.delete(to);
     const { type, arguments: raw } = this.api.GetRawLineData(this.model, from);
     if (this.type(to)) this.api.DeleteLine(this.model, to);
     this.api.WriteRawLineData(this.model, { ID: to, type, arguments: raw.map((token) => this.#kept(token)) });
   }
-  // What was read as it has to be given to write it.
+  // Converts a token that was read to the form for writing.
   #kept(token) {
     if (Array.isArray(token)) return token.map((one) => this.#kept(one));
     if (token?.type === REAL) return Number(token.value);
@@ -126,7 +126,7 @@ export class Step {
     return Number.isNaN(number) ? { type: TYPED, label, valueType: STRING, value } : measure(label, number);
   }
 
-  // A product as messages name it: class, name and GlobalId.
+  // Returns a product's name in messages: class, name and GlobalId.
   label(id) {
     const [guid, , name] = this.args(id);
     return [this.className(id), (typeof name === "string" ? name : "").replace(/\s+/g, " ").trim(), guid].filter(Boolean).join(" ");

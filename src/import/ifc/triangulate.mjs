@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangulates a region of a plane by cutting ears off, after bridges to its holes.
+// Triangulates a region of a plane by ear clipping, after bridging its holes.
 
 const twice = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
 const area = (ring) => ring.reduce((sum, [x, y], i) => { const [u, v] = ring[(i + 1) % ring.length]; return sum + x * v - u * y; }, 0);
 
-// {points, triangles}: anticlockwise triples of indices of `points`, which are those of the outer ring and the holes.
+// Returns {points, triangles}: anticlockwise triples of indices of `points`, which are those of outer ring and holes.
 export function triangulated({ outer, holes }) {
   const points = [...outer, ...holes.flat()];
   const oriented = (ring, first, sign) => {
@@ -17,7 +17,7 @@ export function triangulated({ outer, holes }) {
     first += hole.length;
     return indices;
   });
-  // The hole that reaches farthest in x is joined first: nothing lies between it and the ring.
+  // Joins holes from the largest x on, so that no other hole lies between a hole and the ring.
   const reach = (hole) => Math.max(...hole.map((i) => points[i][0]));
   for (const hole of inner.sort((a, b) => reach(b) - reach(a))) ring = bridged(points, ring, hole);
   return { points, triangles: ears(points, ring) };
@@ -27,7 +27,7 @@ function bridged(points, ring, hole) {
   let start = 0;
   hole.forEach((index, k) => { if (points[index][0] > points[hole[start]][0]) start = k; });
   const from = points[hole[start]];
-  // The nearest corner of the ring that nothing hides.
+  // Takes the nearest visible corner of the ring.
   const order = ring.map((_, i) => i).sort((a, b) => far(points[ring[a]], from) - far(points[ring[b]], from));
   const hidden = (i) => [ring, hole].some((loop) => loop.some((index, k) => crosses(from, points[ring[i]], points[index], points[loop[(k + 1) % loop.length]])));
   const inside = (i) => {  // the bridge leaves the corner into the region
@@ -50,7 +50,7 @@ function ears(points, ring) {
     const turn = twice(points[a], points[b], points[c]);
     const ear = turn > 0 && !left.some((p) => !same(p, a) && !same(p, b) && !same(p, c) &&
       twice(points[a], points[b], points[p]) >= 0 && twice(points[b], points[c], points[p]) >= 0 && twice(points[c], points[a], points[p]) >= 0);
-    if (ear || misses > n) {  // past all: what is left touches itself, and any cut is as good
+    if (ear || misses > n) {  // after a full round, the rest touches itself, and any cut is as good
       if (turn !== 0) triangles.push([a, b, c]);
       left.splice(i % n, 1);
       misses = 0;

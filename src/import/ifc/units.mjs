@@ -5,14 +5,14 @@ import { enumeration, measure } from "./step.mjs";
 const PREFIXES = { EXA: 1e18, PETA: 1e15, TERA: 1e12, GIGA: 1e9, MEGA: 1e6, KILO: 1e3, HECTO: 1e2, DECA: 10, DECI: 0.1, CENTI: 0.01, MILLI: 1e-3,
   MICRO: 1e-6, NANO: 1e-9, PICO: 1e-12, FEMTO: 1e-15, ATTO: 1e-18 };
 
-// How much of the SI unit (metre, radian) a unit is, and its name; null if that is not told. Conversions may be based on
-// one another.
+// Returns a unit in terms of the SI unit (metre, radian), and its name; null if the file does not tell. Conversions may
+// be based on one another.
 function size(step, ref, seen = new Set()) {
   if (!ref || seen.has(ref.ref)) return null;
   seen.add(ref.ref);
   const type = step.type(ref.ref), args = step.args(ref.ref);
   if (type === "IFCSIUNIT") {
-    const [, kind, prefix, name] = args.length === 4 ? args : [null, ...args];  // the first one is derived: *
+    const [, kind, prefix, name] = args.length === 4 ? args : [null, ...args];  // the first attribute is derived: *
     if (!["METRE", "RADIAN"].includes(name)) return null;
     return { kind, value: prefix ? PREFIXES[prefix] : 1, name: `${prefix ?? ""}${name}`.toLowerCase() };
   }
@@ -23,7 +23,7 @@ function size(step, ref, seen = new Set()) {
   return { kind, value: number * of.value, name: String(name).toLowerCase() };
 }
 
-// {length, angle}: each {value, name}; length is null where the project states none.
+// Returns {length, angle}: each {value, name}; length is null if the project states none.
 export function units(step) {
   const found = { length: null, angle: null };
   for (const project of step.ids("IFCPROJECT")) {
@@ -40,7 +40,7 @@ export function units(step) {
 
 export const metresOf = (step, ref) => size(step, ref)?.value ?? null;
 
-// Makes the model state a length in metres in the form that web-ifc reads.
+// Makes the model declare a length in metres in the form that web-ifc reads.
 export function stateLength(step, metres) {
   const project = step.ids("IFCPROJECT")[0];
   if (!project) return false;

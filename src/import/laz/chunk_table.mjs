@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of chunks of LAZ, which laz-perf reads only of a file that is in memory as a whole. Its numbers are coded
+// Reads the chunk table of LAZ, which laz-perf reads only if the whole file is in memory. Its numbers are coded
 // arithmetically (Said: Introduction to Arithmetic Coding, 2004; Isenburg: LASzip: lossless compression of LiDAR data,
 // 2013): the difference to the number before, as its length in bits and the bits.
 
 export const DAMAGED = "it is truncated, or its chunks of compressed points are damaged; copy or export it again";
 const LEAST_LENGTH = 2 ** 24;
 
-// How often each of `count` symbols was seen.
+// Frequencies of `count` symbols.
 class Symbols {
   static BITS = 15;
 
@@ -41,7 +41,7 @@ class Symbols {
   }
 }
 
-// How often a bit was 0.
+// Frequency of a bit being 0.
 class Bit {
   static BITS = 13;
 
@@ -99,7 +99,7 @@ class Decoder {
     return bits;
   }
 
-  // Writers end with as many bytes as readers ask for.
+  // Writers append as many bytes as readers request.
   #byte() {
     if (this.at >= this.bytes.length) throw new Error(DAMAGED);
     return this.bytes[this.at++];
@@ -116,7 +116,7 @@ class Decoder {
   }
 }
 
-// Whole numbers of 32 bits, each near the one before in its context.
+// 32-bit integers, each near the previous one in its context.
 class Numbers {
   static CODED_BITS = 8;
 
@@ -143,8 +143,8 @@ class Numbers {
   }
 }
 
-// Points and bytes of each of `count` chunks, from the bytes behind the table's head. `points`: of each chunk; 2^32 - 1
-// if the table tells them.
+// Returns points and bytes of each of `count` chunks, from the bytes behind the table's head. `points`: of each chunk;
+// 2^32 - 1 if the table tells them.
 export function chunkTable(bytes, count, points) {
   const decoder = new Decoder(bytes), numbers = new Numbers(decoder, 2), chunks = [];
   for (let k = 0, size = 0, told = 0; k < count; ++k) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // node records.mjs FILE FIRST COUNT FORMAT RECORD CHUNK: writes the records of a LAZ file to standard output,
-// uncompressed; those of formats 6 to 10 as format 6, with place, classification and flags alone. FIRST: byte of the
-// points; RECORD: bytes of each; CHUNK: points of a chunk, or 4294967295. Exit codes are those of sysexits.h: 65 if the
-// file is at fault, 69 if laz-perf is not installed, each with a line that says so.
+// decompressed. Formats 6 to 10 become format 6, with only position, classification and flags. FIRST: byte of the
+// points; RECORD: bytes of each; CHUNK: points of a chunk, or 4294967295. Exit codes of sysexits.h: 65 if the file is
+// at fault, 69 if laz-perf is not installed, each with a line that says so.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
@@ -10,7 +10,7 @@ import { chunkTable, DAMAGED } from "./chunk_table.mjs";
 
 const [DATA, UNAVAILABLE, USAGE] = [65, 69, 64];
 const LATE = { format: 6, record: 30, layers: 9 };
-const LAYERS = { 6: 9, 7: 10, 8: 11, 9: 10, 10: 12 };  // of each late format, without those of extra bytes
+const LAYERS = { 6: 9, 7: 10, 8: 11, 9: 10, 10: 12 };  // of each late format, without extra bytes
 const NEEDED_LAYERS = [0, 1, 2, 3];                    // returns with x and y, z, classification, flags
 
 function fail(code, message) {
@@ -47,16 +47,16 @@ function read(place, bytes) {
 
 function readChunks() {
   let place = Number(read(first, 8).readBigInt64LE());
-  if (place < 0) place = Number(read(size - 8, 8).readBigInt64LE());  // written in one pass
+  if (place < 0) place = Number(read(size - 8, 8).readBigInt64LE());  // file written in one pass
   const count_ = read(place, 8).readUInt32LE(4);
-  if (count_ * (late ? LATE.record : record) > size) throw new Error(DAMAGED);  // a chunk begins with a whole point
+  if (count_ * (late ? LATE.record : record) > size) throw new Error(DAMAGED);  // a chunk begins with a raw point
   const bytes = Math.min(size - place - 8, 16 * count_ + 64);
   const chunks = count_ > 0 ? chunkTable(read(place + 8, bytes), count_, chunk) : [];
   if (chunks.reduce((sum, { bytes }) => sum + bytes, first + 8) > place) throw new Error(DAMAGED);  // it follows them
   return chunks;
 }
 
-// Memory of laz-perf for at least so many bytes.
+// Memory of laz-perf for at least the requested bytes.
 class Room {
   #pointer = 0;
   #bytes = 0;
@@ -72,7 +72,7 @@ class Room {
   }
 }
 
-// A chunk of a late format as one of format 6, with the needed layers.
+// Converts a chunk of a late format to one of format 6, with the needed layers.
 function withNeededLayers(bytes) {
   const sizes = record + 4, extra = record - { 6: 30, 7: 36, 8: 38, 9: 59, 10: 67 }[format];
   const layers = LAYERS[format] + extra;
@@ -103,7 +103,7 @@ function write(bytes) {
 const [AS, EACH] = late ? [LATE.format, LATE.record] : [format, record];
 const MOST = 4096;
 
-// Decodes a chunk, followed by bytes of `filler`, to which the decoder may go on.
+// Decodes a chunk, followed by bytes of `filler`, into which the decoder may read.
 class Chunk {
   static SLACK = 64;
   #encoded = new Room();
@@ -133,8 +133,8 @@ try {
     if (left === 0) break;
     const raw = read(place, bytes);
     place += bytes;
-    // Late formats tell how many points a chunk has. The last one of another format may have less than announced: what
-    // lies behind it counts for points then.
+    // Late formats store the number of points of a chunk. The last chunk of an older format may have fewer than
+    // announced; bytes behind it then decode to points.
     if (late && raw.readUInt32LE(record) < Math.min(points, left)) throw new Error(DAMAGED);
     const unsure = !late && points >= left;
     const encoded = late ? withNeededLayers(raw) : raw;
@@ -142,7 +142,7 @@ try {
     if (unsure) again.open(encoded, 0xFF);
     for (let rest = Math.min(points, left); rest > 0;) {
       const now = Math.min(rest, MOST), records = chunk_.next(now);
-      // A copy, as memory may move when the second one grows it.
+      // Copies, as memory may move when the second one grows it.
       const copy = unsure ? Buffer.from(records) : records;
       if (unsure && !copy.equals(again.next(now))) throw new Error(DAMAGED);
       write(copy);

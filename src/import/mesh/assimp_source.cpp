@@ -16,7 +16,7 @@
 namespace vantage::importer {
 namespace {
 
-// Shows the file under a name with the extension of its format, by which assimp chooses the reader.
+// Shows the file under a name with its format's extension, by which assimp chooses the reader.
 class RenamedFile : public Assimp::DefaultIOSystem {
  public:
   RenamedFile(const std::filesystem::path& file, const std::string& format)
@@ -88,7 +88,7 @@ class AssimpScene {
     return part;
   }
 
-  // -1 if the file gives none; assimp then makes one up.
+  // Returns -1 if the file gives no material; assimp then makes one up.
   int material_of(unsigned index) {
     const auto [known, is_new] = material_indices_.try_emplace(index, -1);
     if (!is_new || index >= scene_.mNumMaterials) return known->second;

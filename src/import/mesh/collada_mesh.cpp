@@ -11,7 +11,7 @@
 namespace vantage::importer {
 namespace {
 
-// Rows of an accessor, as many numbers of each as it names.
+// Rows of an accessor; each row has as many numbers as the accessor names.
 struct Rows {
   std::vector<double> values;
   std::size_t offset = 0, stride = 1, count = 0;
@@ -148,7 +148,7 @@ class Primitives {
     return static_cast<std::uint32_t>(part_.positions.size() - 1);
   }
 
-  // Loops of tuples: an outline and its holes.
+  // Adds a polygon. Its loops of tuples are an outline and its holes.
   void add_polygon(const std::vector<std::vector<std::uint32_t>>& loops) {
     const std::size_t first = part_.positions.size();
     std::vector<std::size_t> sizes;

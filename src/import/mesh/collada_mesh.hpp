@@ -11,10 +11,10 @@ namespace vantage::importer {
 
 using XmlIds = std::map<std::string, const XmlElement*>;
 
-// An attribute of an element; empty if it has none.
+// Returns an attribute of an element; empty if it has none.
 std::string attribute_of_element(const XmlElement& element, const char* name);
 
-// The element that a reference "#id" names; null if it is in another file or missing.
+// Returns the element that a reference "#id" names; null if it is in another file or missing.
 const XmlElement* find_by_reference(const XmlIds& ids, const std::string& reference);
 
 // The triangles of one material symbol.
@@ -22,7 +22,7 @@ struct ColladaPart {
   std::string symbol;
   Part part;
 };
-// Those of a `mesh`. Counts lines in `lines`. Throws Refused.
+// Returns the parts of a `mesh`. Counts lines in `lines`. Throws Refused.
 std::vector<ColladaPart> collada_parts(const XmlElement& mesh, const XmlIds& ids, std::size_t& lines);
 
 }  // namespace vantage::importer

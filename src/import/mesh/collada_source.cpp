@@ -11,7 +11,7 @@
 namespace vantage::importer {
 namespace {
 
-// The first element of that name below another, at any depth; null if there is none.
+// Returns the first element of that name below another, at any depth; null if there is none.
 const XmlElement* descendant(const XmlElement& element, std::string_view name) {
   for (const XmlElement& child : element.children) {
     if (child.name == name) return &child;
@@ -71,7 +71,7 @@ class ColladaReader {
     return values;
   }
 
-  // One of a node's transformations; 1 for other elements.
+  // Returns the matrix of one of a node's transformations; identity for other elements.
   static glm::dmat4 step_of(const XmlElement& element) {
     glm::dmat4 m(1);
     if (element.name == "matrix") {
@@ -94,7 +94,7 @@ class ColladaReader {
       const glm::dvec3 z = normalize(eye - to), x = normalize(cross(up, z));
       m = {glm::dvec4(x, 0), glm::dvec4(cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(eye, 1)};
     } else if (element.name == "skew") {
-      // By an angle, along the second axis, by the height above it in the direction of the first.
+      // Shears along the second axis, by tan(angle) times the height towards the first axis.
       const std::vector<double> v = numbers(element, 7);
       const glm::dvec3 turned(v[1], v[2], v[3]), along(v[4], v[5], v[6]);
       if (length(turned) > 0 && length(along) > 0) {
@@ -134,7 +134,7 @@ class ColladaReader {
     }
   }
 
-  // The geometry that a skin or a morph changes, in the end.
+  // Returns the geometry at the end of a chain of skins and morphs.
   std::string base_of(std::string url) const {
     for (int steps = 0; steps < 8; ++steps) {
       const XmlElement* controller = find_by_reference(ids_, url);
@@ -177,7 +177,7 @@ class ColladaReader {
     model_.nodes[node].meshes.push_back(known->second);
   }
 
-  // Numbers of a colour or a share, which may be a parameter's.
+  // Returns the numbers of a colour or a share, which a parameter may hold.
   std::vector<double> effect_numbers(const XmlElement& effect, const XmlElement& place, const char* kind) const {
     const XmlElement* value = place.child(kind);
     if (!value) {
@@ -225,7 +225,7 @@ class ColladaReader {
     return known->second = static_cast<int>(model_.materials.size()) - 1;
   }
 
-  // By the mode that `transparent` names (COLLADA 1.4.1, chapter 7).
+  // Returns the opacity by the mode that `transparent` names (COLLADA 1.4.1, chapter 7).
   double opacity_of(const XmlElement& effect, const XmlElement& technique) const {
     const XmlElement *transparent = technique.child("transparent"), *transparency = technique.child("transparency");
     if (transparent && transparent->child("texture")) return 1;

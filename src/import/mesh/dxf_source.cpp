@@ -25,7 +25,7 @@ enum class LayerState {
   shown,
   off,
   frozen
-};  // what is placed on a layer that is off may show; on a frozen one it does not
+};  // blocks placed on a layer that is off may show; blocks placed on a frozen layer do not
 
 struct PlacedBlock {
   std::string block;
@@ -72,7 +72,7 @@ class DxfModel {
           listed(hidden_));
     if (smoothed_ > 0)
       model_.notes.push_back(std::to_string(smoothed_) + " MESH are read as their frames, without smoothing");
-    // Types alone, if there are too many layers to be told.
+    // Lists types only if layers and types together are too many for a message.
     constexpr std::size_t kMostTold = 40;
     if (model_.left_out.size() > kMostTold) {
       Counts types;
@@ -104,7 +104,7 @@ class DxfModel {
     block_->base = point_of(block, 10);
     block_->external = (block.integer(70) & kExternal) != 0;
   }
-  // Case does not matter in names, which are told as they come first.
+  // Names ignore case; messages use the spelling that came first.
   std::string key(std::string_view name) {
     const std::string plain = floor_plan::plain_name(std::string(name), code_page_);
     std::string lower = floor_plan::lower_case(plain);
@@ -129,7 +129,7 @@ class DxfModel {
     return out;
   }
 
-  // True if this type is read.
+  // Returns true if this type is read.
   bool draw(const Entity& entity, const std::vector<Entity>& parts, const std::string& layer, DxfContent& into) {
     if (entity.type == "INSERT") return add_insert(entity, layer, into);
     Part& part = into.faces[layer];
@@ -156,7 +156,7 @@ class DxfModel {
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) add_triangle(part, ring[0], ring[i], ring[i + 1]);
   }
 
-  // A corner that is missing is the one before it.
+  // A missing corner repeats the one before it.
   static bool add_corners(const Entity& entity, const std::array<int, 4>& codes, const glm::dmat4& system, Part& part) {
     std::vector<glm::dvec3> ring;
     for (const int code : codes)
@@ -164,7 +164,7 @@ class DxfModel {
     add_fan(part, ring);
     return true;
   }
-  // A prism if it has a thickness.
+  // Adds a filled quadrilateral, or a prism if it has a thickness.
   static bool add_solid(const Entity& entity, Part& part) {
     const double thickness = entity.number(39);
     const glm::dmat4 system = world_from_object(entity);
@@ -184,7 +184,7 @@ class DxfModel {
     return true;
   }
 
-  // Vertices first, then faces by their numbers, which are negative before an edge that does not show.
+  // Reads vertices first, then faces as vertex numbers; a negative number begins an edge that does not show.
   static bool add_faces(const std::vector<Entity>& vertices, Part& part) {
     constexpr int kPlace = 64;
     std::vector<glm::dvec3> places, ring;
@@ -203,7 +203,7 @@ class DxfModel {
     return true;
   }
 
-  // A grid of vertices; those of a smooth surface replace its frame's.
+  // Adds a grid of vertices; the vertices of a smoothed surface replace those of its frame.
   static bool add_polygons(const Entity& entity, const std::vector<Entity>& vertices, Part& part) {
     constexpr int kClosedM = 1, kSmooth = 4, kClosedN = 32, kFrame = 16;
     const int flags = entity.integer(70);
@@ -222,7 +222,7 @@ class DxfModel {
     return true;
   }
 
-  // The frame of a surface that may be smoother: places, then the corners of faces, as many numbers as group 93 says.
+  // Reads the frame of a surface that may be smoother: places, then the corners of each face, counted by group 93.
   bool add_mesh(const Entity& entity, Part& part) {
     std::vector<glm::dvec3> places, ring;
     std::size_t left = 0, corners = 0;
@@ -268,7 +268,7 @@ class DxfModel {
     return found == layers_.end() ? LayerState::shown : found->second;
   }
 
-  // Adds a content to a node. `outer` is the layer of its insert, which content on layer 0 has too.
+  // Adds a content to a node. `outer` is the layer of its insert, which content on layer 0 takes.
   void place(DxfContent& content, std::size_t node, const std::string& outer, int depth) {
     const auto on = [&](const std::string& own) { return own == "0" && !outer.empty() ? outer : own; };
     for (const auto& [kind, times] : content.hidden) hidden_[kind] += times;
@@ -322,7 +322,7 @@ class DxfModel {
   std::map<std::string, LayerState> layers_;
   std::map<std::string, std::string> names_;
   std::string code_page_;
-  double metres_ = 0;  // of the unit, if it is known
+  double metres_ = 0;  // in a unit; 0: unknown
   Counts hidden_;
   std::size_t placed_ = 0, smoothed_ = 0;
 };

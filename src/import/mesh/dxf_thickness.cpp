@@ -49,7 +49,7 @@ class ThickLine {
     return {entity_.number(code), entity_.number(code + 10), entity_.number(code + 20)};
   }
 
-  // Its ends are in the world, as is all of a line but its extrusion.
+  // The ends of a LINE are in world coordinates; only its extrusion is in object coordinates.
   void add_line() {
     const glm::dvec3 a = point(10), b = point(11), up = glm::dvec3(system_[2]) * entity_.number(39);
     faces_.push_back({a, b, b + up, a + up});
@@ -97,7 +97,7 @@ class ThickLine {
     return corners;
   }
 
-  // A polyline whose width changes has its least.
+  // A polyline of changing width is read with its least width.
   void add_polyline(const std::vector<Corner>& corners, double elevation) {
     const bool closed = (entity_.integer(70) & 1) != 0;
     const std::size_t edges = corners.size() < 2 ? 0 : corners.size() - (closed ? 0 : 1);
@@ -123,7 +123,7 @@ class ThickLine {
       stand_on(line, elevation);
   }
 
-  // Chords within 5 mm of an arc and a fiftieth of its radius, or a thousandth if the unit is not known.
+  // Keeps chords within 5 mm and 1/50 of the radius of an arc, or within 1/1000 if the unit is not known.
   std::vector<Point> chords(const floor_plan::Arc& arc) const {
     const double radius = arc.radius();
     return floor_plan::chain(arc, metres_ > 0 ? std::min(floor_plan::kCurve_m / metres_, radius / 50) : radius / 1000);
@@ -138,7 +138,7 @@ class ThickLine {
   void stand_on(const std::vector<Point>& line, double elevation) {
     for (std::size_t k = 0; k + 1 < line.size(); ++k) add_side(line[k], line[k + 1], elevation);
   }
-  // The ring is counter-clockwise; the upper lid shows up, the lower one down.
+  // Adds both lids of a counter-clockwise ring; the upper one faces up, the lower one down.
   void add_lids(const std::vector<Point>& ring, double elevation) {
     std::vector<glm::dvec3> upper, lower;
     for (const Point& p : ring)
@@ -146,7 +146,7 @@ class ThickLine {
     std::ranges::reverse(lower);
     faces_.push_back(std::move(upper)), faces_.push_back(std::move(lower));
   }
-  // A body so wide to each side of a line, with mitred corners. A closed line ends where it begins.
+  // Adds a body that reaches `half` to each side of a line, with mitred corners. A closed line ends where it begins.
   void stand_on_band(const std::vector<Point>& line, bool closed, double half, double elevation) {
     const std::size_t edges = line.size() - 1;
     const auto across = [&](std::size_t k) {  // the k-th edge
@@ -157,7 +157,7 @@ class ThickLine {
     for (std::size_t k = 0; k <= edges; ++k) {
       const Point before = across(k > 0 ? k - 1 : closed ? edges - 1 : 0);
       const Point after = across(k < edges ? k : closed ? 0 : edges - 1);
-      constexpr double kSharpest = 0.2;  // so that no mitre is longer than five widths
+      constexpr double kSharpest = 0.2;  // no mitre is longer than five widths
       const Point mitre = (before + after) * (half / std::max(1 + dot(before, after), kSharpest));
       left.push_back(line[k] + mitre), right.push_back(line[k] - mitre);
     }

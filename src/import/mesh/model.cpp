@@ -17,7 +17,7 @@ using nlohmann::json;
 
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Around the corners that are finite; empty without one.
+// Bounds of all finite corners; empty without one.
 struct Bounds {
   glm::dvec3 low = glm::dvec3(INFINITY), high = glm::dvec3(-INFINITY);
 
@@ -30,7 +30,7 @@ struct Bounds {
   double extent() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };
 
-// Zero while no coordinate is larger than `near` times the mesh; else the middle of the mesh, rounded.
+// Returns zero while no coordinate exceeds `near` times the mesh's extent; else the mesh's middle, rounded.
 glm::dvec3 origin_of(const Mesh& mesh, double near) {
   Bounds bounds;
   bounds.extend(mesh);
@@ -43,8 +43,8 @@ glm::dvec3 origin_of(const Mesh& mesh, double near) {
   return {step * std::round(middle.x / step), step * std::round(middle.y / step), step * std::round(middle.z / step)};
 }
 
-// Models about their own origin keep their coordinates, but for meshes far from it. Others, on a site's grid or a
-// national one, lie as far from 0 as they are wide, and float32 would round them all.
+// Models about their own origin keep their coordinates, except meshes far from it. Models on a site's or a national
+// grid lie at least as far from 0 as they are wide, so that float32 would round them all.
 double near_of(const Model& model) {
   constexpr double kLocal = 64, kElsewhere = 1, kFar = 1.5;
   if (model.rounded) return kLocal;  // no origin is chosen
@@ -55,7 +55,7 @@ double near_of(const Model& model) {
   return std::max({far.x, far.y, far.z}) > kFar * bounds.extent() ? kElsewhere : kLocal;
 }
 
-// Corners as they are stored, each once.
+// Stores each distinct corner once.
 class Vertices {
  public:
   Vertices(const Part& part, const glm::dvec3& origin) : part_(part), origin_(origin) {
@@ -82,7 +82,7 @@ class Vertices {
     return known_[v] = table_[at];
   }
 
-  // Three values of each row from a column on.
+  // Returns three values of each row from a column on.
   std::vector<float> triples(std::size_t column) const {
     std::vector<float> out;
     out.reserve(3 * rows_.size());
@@ -229,7 +229,7 @@ class Writer {
       }
   }
 
-  // A mesh about an origin of its own, or beside others of its node, gets a node below that.
+  // Adds a node. A mesh about its own origin, or beside other meshes of its node, gets a node below.
   int add_node(std::size_t index) {
     const Node& node = model_.nodes[index];
     const auto at = static_cast<int>(nodes_.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model of triangles as it was read, with coordinates in double, and its way to glTF.
+// A model of triangles as read, with coordinates in double, and its conversion to glTF.
 #pragma once
 
 #include <array>
@@ -51,12 +51,12 @@ struct Model {
   std::vector<std::string> notes;
 
   std::size_t add_mesh(Mesh mesh);
-  // A child of `parent`; returns its index.
+  // Adds a child of `parent`; returns its index.
   std::size_t add_node(std::size_t parent, std::string name, const glm::dmat4& outer_from_node = glm::dmat4(1));
 };
 
 // Returns the bytes of a GLB. A mesh whose coordinates float32 would round, such as national ones, is stored about an
-// origin that is subtracted before, in double. Throws Refused: no triangle, an index or a transform that is not sound.
+// origin that is subtracted in double. Throws Refused if there is no triangle, or an index or a transform is not sound.
 std::string glb_of(const Model& model);
 
 // A change of axes, to Y up as glTF has it.

@@ -128,7 +128,7 @@ class ObjReader {
     }
   }
 
-  // Those of the object, group and material that are open; the same names later go on with them.
+  // Returns the faces of the open object, group and material; a name that comes again continues its faces.
   ObjFaces& current() {
     if (faces_) return *faces_;
     const std::string group = group_ == "default" || group_ == "off" || group_ == "(null)" ? "" : group_;
@@ -137,7 +137,7 @@ class ObjReader {
     return *(faces_ = &meshes_[known->second].second[material_]);
   }
 
-  // A line names one table, or several if it is no file as a whole.
+  // A line names one table, or several if the whole line is no file.
   void read_table(std::string_view line) {
     const std::string_view whole = trimmed_text(line);
     if (read_table_file(whole)) return;

@@ -195,7 +195,7 @@ class PlyReader {
     return 0;
   }
 
-  // Floats are shares, integers are of their type's largest.
+  // Floats are shares of 1; integers are shares of their type's largest value.
   static std::uint8_t byte_of(double value, PlyType type) {
     const double largest = type == PlyType::f32 || type == PlyType::f64 ? 1
                            : type == PlyType::u16                       ? 65535
@@ -205,7 +205,7 @@ class PlyReader {
                                 : 0;
   }
 
-  // Faces and strips; the lists of vertices are kept until all vertices are read.
+  // Reads faces and strips; the lists of vertices are kept until all vertices are read.
   void read_others(const PlyElement& element) {
     check_count(element.properties.empty() ? 0 : static_cast<double>(element.count));
     const std::size_t list = element.place_of({"vertex_indices", "vertex_index"}, true);

@@ -15,7 +15,7 @@ double cross_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// By Newell's sum, which concave corners and small unevenness do not turn.
+// Returns the normal by Newell's sum, which concave corners and small unevenness do not turn.
 glm::dvec3 normal_of(std::span<const glm::dvec3> points) {
   glm::dvec3 sum(0);
   for (std::size_t i = 2; i < points.size(); ++i) sum += cross(points[i - 1] - points[0], points[i] - points[0]);
@@ -31,7 +31,7 @@ class Cutter {
  public:
   explicit Cutter(std::vector<glm::dvec2> points) : points_(std::move(points)) {}
 
-  // A ring of point numbers, counterclockwise.
+  // Cuts off ears from a counterclockwise ring of point numbers.
   void clip(std::vector<std::uint32_t> ring, std::vector<std::uint32_t>& out) const {
     const std::size_t n = ring.size();
     std::vector<std::uint32_t> next(n), before(n);
@@ -93,7 +93,7 @@ class Cutter {
   }
 
  private:
-  // Whether a way from corner r of a counterclockwise ring begins inside it.
+  // Returns true if the segment from corner r to `to` begins inside the counterclockwise ring.
   bool within(const std::vector<std::uint32_t>& ring, std::size_t r, const glm::dvec2& to) const {
     const glm::dvec2 &a = points_[ring[(r + ring.size() - 1) % ring.size()]], &b = points_[ring[r]],
                      &c = points_[ring[(r + 1) % ring.size()]];
@@ -122,7 +122,7 @@ void cut_into_triangles(std::span<const glm::dvec3> points, std::span<const std:
   }
   const glm::dvec3 normal = normal_of(points.first(outline));
   if (outline == 4 && loop_sizes.size() == 1) {
-    // The diagonal from the first corner, unless the second or the last is the concave one.
+    // Cuts along the diagonal from the first corner, unless the second or the last corner is concave.
     const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
       return dot(cross(points[b] - points[a], points[c] - points[a]), normal);
     };
@@ -132,7 +132,7 @@ void cut_into_triangles(std::span<const glm::dvec3> points, std::span<const std:
       out.insert(out.end(), {0, 1, 3, 1, 2, 3});
     return;
   }
-  // The axis along which the polygon is seen largest is left out.
+  // Projects along the axis in which the polygon appears largest.
   const glm::dvec3 size = abs(normal);
   const int drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const int u = (drop + 1) % 3, v = (drop + 2) % 3;

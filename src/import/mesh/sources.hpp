@@ -15,7 +15,7 @@ Model read_obj(const std::filesystem::path& file);
 Model read_x3d(const std::filesystem::path& file);
 Model read_collada(const std::filesystem::path& file);
 Model read_dxf(const std::filesystem::path& file);
-// FBX and 3DS, of which `format` is the extension, without the dot.
+// Reads FBX and 3DS; `format` is the extension without the dot.
 Model read_with_assimp(const std::filesystem::path& file, const std::string& format);
 
 }  // namespace vantage::importer

@@ -25,8 +25,8 @@ Model read_binary_stl(std::string_view bytes) {
   if (count > (bytes.size() - kStlHeader) / kStlFacet)
     throw Refused("it is truncated: its header announces " + std::to_string(count) +
                   " triangles; copy or export it again");
-  // Colours of five bits a channel, in two dialects: after COLOR= in the header, red is lowest and a set bit 15 means
-  // the whole object's colour.
+  // Colours have five bits a channel, in two dialects. After COLOR= in the header, red is lowest, and a set bit 15
+  // stands for the colour of the whole object.
   const std::size_t mark = bytes.substr(0, 80).find("COLOR=");
   const bool materialise = mark <= 70;
   Rgba object{255, 255, 255, 255};
@@ -80,7 +80,7 @@ Model read_text_stl(std::string_view text) {
   const auto read_word = [&](const std::string& word, std::string_view& line, std::size_t number) {
     if (word == "solid") {
       finish_solid();
-      // All may stand in one line.
+      // Some writers put the whole solid into one line.
       const std::size_t end = std::min(lower_case(std::string(line)).find(" facet normal"), line.size());
       name = trimmed_text(line.substr(0, end));
       line.remove_prefix(end);

@@ -23,7 +23,7 @@ inline std::string_view trimmed_text(std::string_view text) {
   return text;
 }
 
-// The next word, which is removed; empty at the end.
+// Returns the next word and removes it; empty at the end.
 inline std::string_view take_word(std::string_view& text) {
   std::size_t begin = 0;
   while (begin < text.size() && is_blank(text[begin])) ++begin;
@@ -34,7 +34,7 @@ inline std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-// The next line without its end, which is removed: a line feed, a carriage return, or both. REQUIRES: not empty.
+// Removes the next line and its end, a line feed, a carriage return, or both; returns the line. REQUIRES: not empty.
 inline std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
   const std::string_view line = text.substr(0, end);
@@ -43,7 +43,7 @@ inline std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-// A whole word as a number; empty if it is none. Also reads nan and inf, which some programs write.
+// Parses a whole word as a number; empty if it is none. Also reads nan and inf, which some programs write.
 template <class T>
 std::optional<T> value_of(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -53,7 +53,7 @@ std::optional<T> value_of(std::string_view word) {
   return value;
 }
 
-// A list of numbers between blanks, or commas. Throws Refused, which names the list by `what`.
+// Parses a list of numbers between blanks or commas. Throws Refused, which names the list by `what`.
 template <class T>
 std::vector<T> values_of(std::string_view text, const std::string& what) {
   std::vector<T> values;

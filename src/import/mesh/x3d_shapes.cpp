@@ -106,7 +106,7 @@ class Surface {
     if (!colours_.empty()) part_.colours.push_back(colour.value_or(Rgba{255, 255, 255, 255}));
     return static_cast<std::uint32_t>(part_.positions.size() - 1);
   }
-  // Of a point of the file, which has its own colour.
+  // Adds a point of the file, with its own colour if it has one.
   std::uint32_t add_point(std::uint32_t point) {
     return add_corner(points_[point], point < colours_.size() ? std::optional(colours_[point]) : std::nullopt);
   }
@@ -114,7 +114,7 @@ class Surface {
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     part_.indices.insert(part_.indices.end(), {a, b, c});
   }
-  // Corners of points that it adds.
+  // Adds a triangle and its three corners.
   void triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const std::uint32_t first = add_corner(a);
     add_corner(b), add_corner(c);
@@ -123,7 +123,7 @@ class Surface {
   void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
     triangle(a, b, c), triangle(a, c, d);
   }
-  // A flat face of added points; `turned`: the other way round.
+  // Adds a flat face and its corners; `turned` reverses its winding.
   void face(std::vector<glm::dvec3> corners, bool turned = false) {
     if (turned) std::ranges::reverse(corners);
     Corners cut;
@@ -234,13 +234,13 @@ class Surface {
       }
   }
 
-  // Corners of a circle, by the error of its chords.
+  // Returns how many corners keep the chords of a circle within kChordError_m of it.
   int segments(double radius) const {
     const double share = kChordError_m / (std::abs(radius) * units_.metres);
     const double n = share < 1 ? pi / std::acos(1 - share) : 0;
     return static_cast<int>(std::clamp(std::ceil(n / 4) * 4, 16.0, 256.0));
   }
-  // Level, counterclockwise seen from above.
+  // Returns corner k of n on a level circle, counterclockwise seen from above.
   static glm::dvec3 on_circle(double radius, double height, int k, int n) {
     const double angle = 2 * pi * (k % n) / n;
     return {radius * std::sin(angle), height, radius * std::cos(angle)};
@@ -306,7 +306,7 @@ class Surface {
       }
   }
 
-  // Cross-sections along a spine, each in the plane that the spine's neighbours give (ISO/IEC 19775-1, 13.3.5).
+  // Adds cross-sections along a spine, each in the plane given by the spine's neighbours (ISO/IEC 19775-1, 13.3.5).
   void extrusion() {
     const auto pairs = [](const std::vector<double>& values) {
       std::vector<glm::dvec2> out;
@@ -358,7 +358,7 @@ class Surface {
       if ((!first && !last) || closed) zs[k] = cross(after - spine[k], before - spine[k]);
     }
     const auto some = [](const glm::dvec3& v) { return length(v) > 1e-12; };
-    // Where the spine is straight, the plane goes on from its neighbours.
+    // A straight part of the spine takes over the plane of its neighbours.
     for (std::size_t k = 1; k < n; ++k) {
       if (!some(ys[k])) ys[k] = ys[k - 1];
       if (!some(zs[k])) zs[k] = zs[k - 1];

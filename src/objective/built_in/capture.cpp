@@ -9,7 +9,7 @@
 namespace vantage::built_in {
 namespace {
 
-// A share of what is attainable. Whoever measures counts it, on voxels whose attainable counts are known
+// Share of the attainable coverage. It is counted during measurement, on voxels whose attainable counts are known
 // (attainable.cpp).
 Objective share_captured() {
   return {.name = "capture",

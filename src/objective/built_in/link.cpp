@@ -3,7 +3,7 @@
 
 namespace vantage::built_in {
 
-// Weakest link of the strongest spanning tree, by scan overlap over all surfaces, surveyed or not. Practice asks for at
+// Weakest link of the strongest spanning tree, by scan overlap over all surfaces, surveyed or not. Practice requires at
 // least 30 %. 0 if the network is not connected.
 Objective link(const ObjectiveSettings&) {
   return {.name = "link",

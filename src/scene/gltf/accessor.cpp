@@ -20,7 +20,7 @@ std::size_t component_size(int type) {
   }
 }
 
-// glTF aligns to the component, but a broken file may not. Its order is little endian, as ours.
+// glTF aligns values to the component, but a broken file may not. Its byte order is little endian, as the host's.
 template <class T>
 T load(const std::uint8_t* at) {
   T value;

@@ -12,10 +12,10 @@
 
 namespace vantage::gltf {
 
-// Elements of an accessor without a buffer view, which nothing in the file bounds, at most.
+// Most elements of an accessor without a buffer view, since nothing in the file bounds their number.
 inline constexpr std::size_t kLargestWithoutBuffer = std::size_t{1} << 26;
 
-// An index that ends a strip or a fan and begins another.
+// An index that ends a strip or a fan and begins a new one.
 inline constexpr std::uint32_t kRestart = 0xFFFFFFFF;
 
 class Accessor {
@@ -31,8 +31,8 @@ class Accessor {
   // Reads `n` elements from `first` as doubles, components() each. Integers are unchanged, or scaled to [0, 1] or [-1,
   // 1] if the accessor is normalized. REQUIRES: first + n <= count(). Safe from several threads.
   void read(std::size_t first, std::size_t n, double* out) const;
-  // All elements as unsigned integers. With `restart`, the largest of its type is one, and becomes kRestart. Throws
-  // Error malformed_file unless it holds unsigned scalars below `limit`.
+  // Returns all elements as unsigned integers. With `restart`, the largest value of its type becomes kRestart. Throws
+  // Error malformed_file unless the accessor holds unsigned scalars below `limit`.
   std::vector<std::uint32_t> read_indices(std::size_t limit, bool restart = false) const;
 
   // Number and user of the accessor, for messages.

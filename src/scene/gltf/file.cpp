@@ -19,8 +19,8 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67, kTileMagic = 0x6D643362, kJsonCh
                         kBinaryChunk = 0x004E4942;
 constexpr int kDeepestJson = 128;  // readers recurse; real files nest about ten levels
 
-// Extensions that a file may require. Those that change positions are understood; the others only change how surfaces
-// look or behave, or carry information that a survey does not need. A name that ends in _ stands for all that begin so.
+// Extensions that a file may require. Those that change positions are implemented; the others only change how surfaces
+// look or behave, or carry information that a survey does not need. A name ending in _ stands for all with that prefix.
 constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",
                                             "EXT_mesh_gpu_instancing",
                                             "KHR_texture_transform",
@@ -78,7 +78,7 @@ std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
          static_cast<std::uint32_t>(bytes[offset + 2]) << 16 | static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
 }
 
-// Outline of a JSON text before it is parsed; brackets and commas inside strings do not count.
+// Outline of a JSON text before parsing; brackets and commas inside strings do not count.
 struct Outline {
   int deepest = 0;  // nesting of arrays and objects
   std::uint64_t containers = 0, values = 0, members = 0, strings = 0;
@@ -121,8 +121,8 @@ Outline outline_of(Bytes text) {
   return outline;
 }
 
-// A copy without the parts that only this program reads; tinygltf would make an object of over a hundred bytes from
-// each number in them.
+// Returns a copy without the parts that only this program reads; tinygltf would make an object of over a hundred bytes
+// from each number in them.
 json without_extras(const json& element) {
   const auto part = [](const json& value) { return value.is_structured() ? without_extras(value) : value; };
   if (element.is_array()) {
@@ -156,7 +156,7 @@ std::string percent_decoded(const std::string& uri) {
   return out;
 }
 
-// tinygltf takes a default for integers that are negative, fractional or too large; here each is an error.
+// tinygltf silently replaces negative, fractional or too large integers by a default; each is an error here.
 void check_members(const File& file, const json& object, const std::string& where,
                    std::initializer_list<const char*> names) {
   for (const char* name : names) {
@@ -203,8 +203,8 @@ Error File::malformed(const std::string& what, std::vector<std::string> details)
   return Error(Errc::malformed_file, path_.string() + ": " + what, std::move(details));
 }
 
-// A tile of 3D Tiles 1.0 (b3dm) is a header of 28 bytes, four tables whose lengths that states, and a GLB. Gives where
-// the GLB begins, and leaves the JSON of the first table in `features`.
+// Returns where the GLB of a tile of 3D Tiles 1.0 (b3dm) begins, and leaves the JSON of the first table in `features`.
+// A tile is a header of 28 bytes, four tables whose lengths the header states, and a GLB.
 std::size_t File::skip_tile_header(Bytes all, Bytes& features) const {
   constexpr std::size_t kHeader = 28;
   if (all.size() < kHeader)
@@ -267,7 +267,7 @@ Bytes File::open_glb(Bytes all) {
   return binary;
 }
 
-// Names of Latin-1 are no JSON. Says where, with the words around.
+// Throws if the text is no UTF-8, such as names in Latin-1; the message shows the place and the words around it.
 void File::require_utf8(Bytes text) const {
   const std::string_view all(reinterpret_cast<const char*>(text.data()), text.size());
   for (std::size_t at = 0; at < all.size();) {
@@ -404,7 +404,7 @@ std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::stri
   if (uri.starts_with("data:")) {
     budget_.keep(uri.size(), "the data URI of " + what);
     budget_.require(4 * uri.size(), "decoding the data URI of " + what);
-    // tinygltf knows few media types, and no parameters of theirs.
+    // tinygltf knows few media types and no parameters.
     constexpr std::string_view kKnown = "data:application/octet-stream;base64,";
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
@@ -455,7 +455,7 @@ void File::load_buffers(Bytes glb_chunk) {
 }
 
 std::uint64_t File::model_bytes() const {
-  // Lists grow by doubling. A node is also kept with its place and names (node_tree.hpp).
+  // Counts lists twice, as they grow by doubling. A node is also stored with its place and names (node_tree.hpp).
   constexpr std::uint64_t kPlacedNode = 1000;
   std::uint64_t primitives = 0;
   if (const auto meshes = json_.find("meshes"); meshes != json_.end())

@@ -24,34 +24,34 @@ namespace vantage::gltf {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// tinygltf parses scenes, nodes, meshes, accessors and materials. Buffers and images are read here, where each can be
-// checked and named in a message. Nothing in `model` is trusted: indices and ranges are checked on use.
+// A parsed file. tinygltf parses scenes, nodes, meshes, accessors and materials; buffers and images are read here, to
+// check each and name it in messages. Nothing in `model` is trusted: indices and ranges are checked on use.
 class File {
  public:
   // Buffers and images may lie below the file's own folder, or anywhere if `allow_outside`. `budget` must outlive the
   // file. Throws Error: io, malformed_file, out_of_memory if the budget is too small.
   File(const std::filesystem::path& path, bool allow_outside, LoadBudget& budget);
-  // From memory, with buffers and images inside; messages begin with `name`. Throws Error: malformed_file,
+  // Reads from memory, with buffers and images inside; messages begin with `name`. Throws Error: malformed_file,
   // out_of_memory.
   File(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
   const tinygltf::Model& model() const { return model_; }
   const nlohmann::json& document() const { return json_; }
-  // Bytes of a buffer view. Throws Error malformed_file if it, or its buffer, does not exist or ends too early.
+  // Returns a buffer view's bytes. Throws Error malformed_file if it, or its buffer, does not exist or ends too early.
   Bytes view(int index, const std::string& user) const;
-  // Encoded bytes of an image, in the file or in `own`. Throws Error: io, malformed_file.
+  // Returns the encoded bytes of an image, in the file or in `own`. Throws Error: io, malformed_file.
   Bytes image(int index, std::vector<std::uint8_t>& own) const;
-  // Whether the file names an extension among those that it uses.
+  // Returns true if the file lists the extension among those that it uses.
   bool uses(std::string_view extension) const;
-  // Number of elements in an array of the document, such as "materials".
+  // Returns the number of elements in an array of the document, such as "materials".
   std::size_t count(const char* array) const;
-  // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null if absent.
+  // Returns a member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null if absent.
   const nlohmann::json& find(const char* array, int index, std::initializer_list<const char*> path) const;
 
-  // The same of the asset's extras.
+  // Returns a member of the asset's extras; null if absent.
   const nlohmann::json& asset_extras(const char* key) const;
 
-  // An error in this file: "FILE: what".
+  // Returns an error in this file: "FILE: what".
   Error malformed(const std::string& what, std::vector<std::string> details = {}) const;
 
  private:
@@ -81,7 +81,7 @@ class File {
   tinygltf::Model model_;
 };
 
-// "TEXT" in quotes, shortened if long, for messages.
+// Returns "TEXT" in quotes, shortened if long, for messages.
 std::string quoted(const std::string& text);
 
 }  // namespace vantage::gltf

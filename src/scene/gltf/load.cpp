@@ -39,21 +39,21 @@ namespace {
 constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
 
-// Bytes per vertex and triangle until the scene is finished. Vertex: in double, in float, its new number and back.
-// Triangle: corners, entry among possible duplicates, whether it is kept; with both roles, also leaves of two trees and
-// its list. Triangle while read: indices, corners.
+// Bytes per vertex and triangle until the scene is finished. Vertex: position in double and in float, new number and
+// old one. Triangle: corners, entry among possible duplicates, flag of being kept; with both roles also leaves of two
+// trees, and its list. Triangle while read: indices, corners.
 constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100, kSearchVertex = 24 + 24 + 3 * 16 + 8,
                  kSearchTriangle = 3 * 12;
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
-// Likewise of a mesh that is stored once: corners, corners in order, whether it is kept.
+// Bytes of a mesh that is stored once: corners, sorted corners, flag of being kept.
 constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
-// A scene with both roles keeps its other meshes beside them once more: NearPlaced.
+// A scene with both roles stores its shared meshes once more beside them: NearPlaced.
 constexpr double kVertexBeside = 12, kTriangleBeside = 12 + 4;
-// Of the scene, above which SharedMeshes::automatic shares; of a mesh, below which it does not: a tree of trees pays
-// for larger ones alone.
+// SharedMeshes::automatic shares meshes of at least kFewTriangles in scenes of more than kManyTriangles: a second level
+// of the tree pays only for larger meshes.
 constexpr double kManyTriangles = 8e6;
 constexpr std::uint64_t kFewTriangles = 256;
-// Triangles of shared meshes that tell the unit and axis of a large file.
+// Triangles of shared meshes that suffice to recognise the unit and axis of a large file.
 constexpr std::size_t kRecognised = 4'000'000;
 
 // A mesh to read: one primitive, placed by one node.
@@ -69,14 +69,14 @@ struct Job {
   bool shared = false;  // stored once
 };
 
-// Whether a member of an object is this text. Comparing JSON with text would allocate where nothing may be thrown.
+// Returns true if a member of an object is this text. Comparing JSON with text allocates; code here may not throw.
 bool is_text(const nlohmann::json& object, const char* key, std::string_view text) {
   const auto member = object.find(key);
   const auto* const found = member == object.end() ? nullptr : member->get_ptr<const std::string*>();
   return found && *found == text;
 }
 
-// Whether a primitive's positions are numbers that float holds.
+// Returns true if float holds a primitive's positions exactly.
 bool is_exact(const File& file, int mesh, std::size_t index) {
   const tinygltf::Primitive& primitive = file.model().meshes[static_cast<std::size_t>(mesh)].primitives[index];
   const auto position = primitive.attributes.find("POSITION");
@@ -87,11 +87,11 @@ bool is_exact(const File& file, int mesh, std::size_t index) {
   return !accessor.normalized && accessor.componentType != TINYGLTF_COMPONENT_TYPE_DOUBLE;
 }
 
-// Whether the transform turns right-handed axes into left-handed ones.
+// Returns true if the transform turns right-handed axes into left-handed ones.
 bool mirrors(const glm::dmat3& m) { return dot(m[0], cross(m[1], m[2])) < 0; }
 
-// Maps normals as the inverse transpose does, up to a positive length: the cofactors, signed by the determinant, which
-// stay defined where the matrix flattens space.
+// Maps normals as the inverse transpose does, up to a positive length. Uses cofactors, signed by the determinant, which
+// stay defined if the matrix flattens space.
 glm::dmat3 normal_map(const glm::dmat3& m) {
   const double sign = mirrors(m) ? -1.0 : 1.0;
   return {cross(m[1], m[2]) * sign, cross(m[2], m[0]) * sign, cross(m[0], m[1]) * sign};
@@ -126,8 +126,8 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  // Borrows all arguments. `converted`: the file is in metres with Y up, and the options' unit is another one's, from
-  // which it was made.
+  // Borrows all arguments. `converted`: an importer has already turned the model to metres with Y up, from the unit in
+  // the options.
   Loader(const File& file, const SceneOptions& options, LoadBudget& budget, bool converted)
       : file_(file), options_(options), converted_(converted), budget_(budget), materials_(file, budget, raw_.notes) {
     raw_.options = options;
@@ -157,8 +157,8 @@ class Loader {
   }
 
  private:
-  // A file marked for this program follows glTF's rule. A file that only declares some of its axes, as importers do, is
-  // examined for the others.
+  // Returns true for a file marked for this program, which follows glTF's rule. A file that declares only some of its
+  // axes, as importers do, is examined for the others.
   bool prepared() const {
     const nlohmann::json& document = file_.document();
     const auto marked = [](const nlohmann::json& element) {
@@ -171,14 +171,14 @@ class Loader {
     return marked(document.at("asset")) && declared("unit").empty() && declared("up").empty();
   }
 
-  // Unit or axis that `vantage` in the asset's extras declares; empty if it does not.
+  // Returns the unit or axis that `vantage` in the asset's extras declares; empty if none.
   std::string declared(const char* key) const {
     const nlohmann::json& value = file_.asset_extras("vantage");
     return value.is_object() && value.contains(key) && value[key].is_string() ? value[key].get<std::string>() : "";
   }
 
   void settle_axes() {
-    // An importer that takes these settings has applied them; it declares no unit where the model tells none.
+    // An importer that takes these settings has applied them; it declares no unit if the model gives none.
     if (converted_ && !declared("unit").empty()) return reinterpret_axes(raw_, Unit::metre, UpAxis::y);
     std::optional<Unit> unit = converted_ ? std::nullopt : options_.unit;
     std::optional<UpAxis> up = converted_ ? std::nullopt : options_.up;
@@ -189,7 +189,7 @@ class Loader {
       throw file_.malformed(std::string("asset.extras.vantage: ") + error.what());
     }
     Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
-    // A mesh of OBJ, STL or PLY was in no unit and had no axis up.
+    // A mesh of OBJ, STL or PLY has neither unit nor axis.
     const bool glTF = !is_text(file_.document().at("asset"), "generator", "vantage-import-mesh");
     if (!prepared())
       axes =
@@ -249,7 +249,7 @@ class Loader {
     return jobs;
   }
 
-  // A kind of surface, and where patterns, marks and materials tell it.
+  // A kind of surface, with the members by which patterns, marks and materials select it.
   struct Kind {
     std::vector<std::string> SceneOptions::*patterns;
     std::string_view none;  // the entry of the patterns that rules the kind out
@@ -270,7 +270,7 @@ class Loader {
     return material.*kind.made;
   }
 
-  // Marks the primitives that are stored once: those of which that makes less and that nothing but the node changes.
+  // Marks primitives to be stored once, if that saves memory and nothing but the node changes them.
   void choose_shared(std::vector<Job>& jobs) const {
     if (options_.shared_meshes == SharedMeshes::never) return;
     const bool always = options_.shared_meshes == SharedMeshes::always;
@@ -343,7 +343,7 @@ class Loader {
     raw_.spare_bytes = budget_.left();
   }
 
-  // Leaves that the file marks are open: they stop neither rays nor people, unless a pattern names them.
+  // Opens leaves that the file marks: they stop neither rays nor people, unless a pattern names them.
   void leave_out_doors(std::vector<Job>& jobs) {
     if (std::ranges::count(options_.doors, kClosedDoors) > 0) return;
     std::vector<std::string> names;
@@ -355,7 +355,7 @@ class Loader {
     doors_ = std::move(names);
   }
 
-  // So are those that only their names or shapes tell, in a file that marks nothing. REQUIRES: lengths in metres, Z up.
+  // Opens leaves that only name or shape shows, in a file without marks. REQUIRES: lengths in metres, Z up.
   void find_doors() {
     if (!prepared() && std::ranges::count(options_.doors, kClosedDoors) == 0)
       for (std::string& name : open_doors(raw_, may_be_door_)) doors_.push_back(std::move(name));
@@ -366,7 +366,7 @@ class Loader {
                          some_of(doors_) + "; the word closed for the setting doors keeps them");
   }
 
-  // Area and names of meshes, as text; empty: there are none. REQUIRES: lengths in metres.
+  // Area and names of meshes, as text; empty if there are none. REQUIRES: lengths in metres.
   struct Extent {
     std::string metres, names;
   };
@@ -397,7 +397,7 @@ class Loader {
                            mirrors->names + "; the word none for the setting mirror makes them matt");
   }
 
-  // Some of the names, each once with how often it occurs if that is more.
+  // Lists some of the names, each once, with its count if above 1.
   static std::string some_of(const std::vector<std::string>& names) {
     constexpr std::size_t kNamed = 3;
     std::string some;
@@ -434,7 +434,7 @@ class Loader {
       append(*primitive, *job.material, world_from_mesh);
   }
 
-  // Adds a mesh, whose own triangles are the next.
+  // Adds a mesh that owns the next triangles.
   void add_range(const Job& job, std::size_t triangles) {
     const Marks& marks = job.placed->marks;
     may_be_door_.push_back(!job.placed->pattern_role && !marks.role && !job.placed->door && !marks.door);
@@ -454,7 +454,7 @@ class Loader {
     if (!raw_.placed.empty()) raw_.placed.resize(raw_.ranges.size());
   }
 
-  // Adds a mesh of which only the places are its own.
+  // Adds a mesh that owns only its places.
   void place_shared(const Job& job) {
     const auto [known, first] =
         shared_.emplace(std::tuple(job.placed->mesh, job.primitive, job.material->index), Shared{});
@@ -483,7 +483,7 @@ class Loader {
     Shared shared;
     const auto primitive = read_primitive(file_, job.placed->mesh, job.primitive, skipped_);
     if (!primitive || primitive->triangles.empty()) return shared;
-    // Read as if it stood in the survey frame, then moved out of there.
+    // Reads it as if it stood in the survey frame, then moves it out of there.
     RawScene alone;
     std::swap(raw_, alone);
     append(*primitive, *job.material, std::nullopt);
@@ -497,7 +497,7 @@ class Loader {
     return shared;
   }
 
-  // Without a transform, as they are in the file.
+  // Transform to apply; empty: positions stay as in the file.
   using Transform = std::optional<glm::dmat4>;
 
   void append_triangles(const Primitive& primitive, const Transform& world_from_mesh, std::size_t first_vertex,
@@ -523,7 +523,7 @@ class Loader {
       note_spacing(farthest_of(*primitive.position), *world_from_mesh);
   }
 
-  // The largest coordinate.
+  // Returns the largest absolute coordinate.
   static double farthest_of(const Accessor& position) {
     double farthest = 0;
     std::mutex mutex;
@@ -607,7 +607,7 @@ class Loader {
     for (std::size_t i = 0; i < count; ++i) raw_.search_uvs.push_back({values[2 * i], values[2 * i + 1]});
   }
 
-  // Nodes without a mesh that importers describe: a box in metres, Y up, whatever the file's axes are.
+  // Reads nodes without a mesh that importers describe: a box in metres, Y up, whatever the file's axes are.
   void read_rooms() {
     const auto& nodes = file_.model().nodes;
     std::vector<int> above(nodes.size(), -1);
@@ -642,7 +642,7 @@ class Loader {
     }
   }
 
-  // Name of the storey that a node is below, each of which has the one above it in `above`; "" if there is none.
+  // Returns the storey's name above a node, whose parents are in `above`; "" if there is none.
   std::string storey_above(int node, const std::vector<int>& above) const {
     for (std::size_t steps = 0; node >= 0 && steps <= above.size(); ++steps) {  // a cycle was refused
       const nlohmann::json& marks = file_.find("nodes", node, {"extras", "vantage"});
@@ -656,7 +656,7 @@ class Loader {
     return {};
   }
 
-  // Loops of corners (x, z), Y up.
+  // Reads loops of corners (x, z), Y up.
   std::vector<std::vector<std::array<double, 2>>> read_outline(const nlohmann::json& loops, std::size_t node) const {
     std::vector<std::vector<std::array<double, 2>>> outline;
     const auto refuse = [&] {
@@ -718,7 +718,7 @@ class Loader {
 
 namespace {
 
-// `open` returns the glTF file; `note`, unless empty, becomes the scene's first. `converted` as of Loader.
+// `open` returns the glTF file; `note`, unless empty, becomes the scene's first note. `converted`: see Loader.
 template <class Open>
 Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options, const std::string& note = {},
                  bool converted = false) {

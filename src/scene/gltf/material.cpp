@@ -18,7 +18,7 @@ double number_in(const json& object, const char* name, double fallback) {
   return it != object.end() && it->is_number() ? it->get<double>() : fallback;
 }
 
-// n numbers, or the fallback if the member is absent or of another type.
+// Returns n numbers, or the fallback if the member is absent or of another type.
 template <std::size_t N>
 std::array<double, N> numbers(const json& object, const char* name, std::array<double, N> fallback) {
   const auto it = object.find(name);
@@ -58,7 +58,7 @@ const MaterialInfo& MaterialTable::get(int index) {
     const auto* const name = file_.find("materials", index, {"name"}).get_ptr<const std::string*>();
     material.water = name && is_water(*name);
     const json& pbr = file_.find("materials", index, {"pbrMetallicRoughness"});
-    // Polished metal. Without a factor a material is rough; with a texture it is so here and there.
+    // Detects polished metal. Without a roughness factor a material is rough; with a texture it is rough in places.
     constexpr double kMetallic = 0.9, kSmooth = 0.05;
     info.mirror = pbr.is_object() && !pbr.contains("metallicRoughnessTexture") &&
                   number_in(pbr, "metallicFactor", 1) >= kMetallic && number_in(pbr, "roughnessFactor", 1) <= kSmooth;
@@ -98,14 +98,14 @@ const MaterialInfo& MaterialTable::get(int index) {
   return read_.emplace(index, info).first->second;
 }
 
-// Blended surfaces have no cut-off of their own. With a texture they are mostly leaves, and cut at one half as in
-// practice; where alpha stays below that, light passes all of the surface.
+// Blended surfaces have no cut-off of their own. With a texture they are mostly leaves, and are cut at one half as
+// usual in practice. If alpha stays below that, light passes the whole surface.
 double MaterialTable::read_transparency(int index, const Material& material, MaterialInfo& info) const {
   constexpr double kHalf = 0.5, kTransmits = 0.1;
   const json& transmission = file_.find("materials", index, {"extensions", "KHR_materials_transmission"});
   info.glass = transmission.is_object() && number_in(transmission, "transmissionFactor", 0) >= kTransmits;
   if (info.glass) return 0;
-  // As text: comparing JSON with a literal allocates where it may not throw.
+  // Compared as text: comparing JSON with a literal allocates in code that must not throw.
   const auto* const named = file_.find("materials", index, {"alphaMode"}).get_ptr<const std::string*>();
   const std::string_view mode = named ? *named : std::string_view();
   if (mode == "MASK") {

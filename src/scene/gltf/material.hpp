@@ -20,7 +20,7 @@ struct MaterialInfo {
   Marks marks;                                   // of its extras
   bool glass = false;                            // light passes the whole surface
   bool mirror = false;                           // polished metal
-  std::optional<double> luminance;               // of the base colour factor, if the file gives one and no texture
+  std::optional<double> luminance;               // of the base colour factor, if given and without a texture
   int texcoord_set = -1;                         // of the base colour texture; -1 without one
   double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)
 };
@@ -31,7 +31,7 @@ class MaterialTable {
  public:
   MaterialTable(const File& file, LoadBudget& budget, std::vector<std::string>& notes)
       : file_(file), budget_(budget), notes_(notes) {}
-  // -1 is the default material. Throws Error malformed_file.
+  // Returns a material; -1 is the default one. Throws Error malformed_file.
   const MaterialInfo& get(int material);
 
   std::vector<Material> materials;

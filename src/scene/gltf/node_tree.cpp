@@ -15,12 +15,12 @@ namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-// Patterns of names with their values for matching nodes, and whether each has matched.
+// Patterns of names, with values for matching nodes and a flag for patterns that have matched.
 template <class Value>
 class Patterns {
  public:
   void add(const std::string& pattern, Value value) { entries_.push_back({pattern, value, letters_of(pattern)}); }
-  // Among patterns that match the node, the one with most letters wins; among equals, the last.
+  // Returns the value of the matching pattern with most letters; among equals, the last one.
   std::optional<Value> find(const std::string& name) {
     const Entry* best = nullptr;
     for (Entry& entry : entries_) {
@@ -99,7 +99,7 @@ Patterns<double> length_patterns(const std::vector<std::pair<std::string, double
   return lengths;
 }
 
-// Cuts between characters of UTF-8.
+// Shortens a name between characters of UTF-8.
 std::string cut_name(const std::string& name) {
   if (name.size() <= kLongestName) return name;
   constexpr std::string_view kMore = "…";
@@ -108,7 +108,7 @@ std::string cut_name(const std::string& name) {
   return name.substr(0, end).append(kMore);
 }
 
-// `above`: of the nearest node above that has one. Converters name a product and leave its meshes without.
+// `above`: the name of the nearest named node above. Converters name a product and leave its meshes without.
 std::string node_name(const tinygltf::Model& model, int index, const std::string& above) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
   if (!node.name.empty()) return cut_name(node.name);
@@ -121,7 +121,7 @@ std::string node_name(const tinygltf::Model& model, int index, const std::string
 // (x, y, z) ↦ (x, −z, y): glTF's Y up becomes the survey frame's Z up.
 constexpr glm::dmat4 survey_from_gltf{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
 
-// CESIUM_RTC's centre, to which all positions are relative: with Z up, as in tiles. Everything else is the identity.
+// Returns CESIUM_RTC's centre, to which all positions are relative: with Z up, as in tiles. Otherwise the identity.
 glm::dmat4 origin_of(const File& file) {
   const auto extensions = file.document().find("extensions");
   if (extensions == file.document().end() || !extensions->contains("CESIUM_RTC")) return glm::dmat4(1);
@@ -144,7 +144,7 @@ glm::dvec3 vec3(std::span<const double> values, double fallback) {
   return values.size() == 3 ? glm::dvec3{values[0], values[1], values[2]} : glm::dvec3(fallback);
 }
 
-// From x, y, z, w of a file. Divides by the length, since GLM's normalize rounds differently.
+// Returns a quaternion from x, y, z, w. Divides by the length itself, since GLM's normalize rounds differently.
 glm::dquat unit_quaternion(const double* q, const File& file, const std::string& where) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(length > 1e-6) || !std::isfinite(length)) throw file.malformed(where + ": its rotation is no unit quaternion");
@@ -171,7 +171,7 @@ glm::dmat4 local_transform(const File& file, const tinygltf::Node& node, const s
   return from_trs(vec3(node.translation, 0), rotation, vec3(node.scale, 1));
 }
 
-// Transforms of EXT_mesh_gpu_instancing, relative to the node.
+// Returns the transforms of EXT_mesh_gpu_instancing, relative to the node.
 std::vector<glm::dmat4> instance_transforms(const File& file, int node, const std::string& where, LoadBudget& budget) {
   if (file.find("nodes", node, {"extensions", kInstancing}).is_null()) return {glm::dmat4(1)};
   std::unique_ptr<Accessor> parts[3];
@@ -283,7 +283,7 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
 }
 
 namespace {
-// Nodes that MSFT_lod names as coarser levels of others that the scene shows. Files may have them in the scene, too.
+// Finds nodes that MSFT_lod names as coarser levels of shown ones. Files may also have them in the scene.
 std::vector<bool> coarser_levels(const File& file, const std::vector<int>& roots) {
   const auto& nodes = file.model().nodes;
   std::vector<bool> coarser(nodes.size()), reached(nodes.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of one glTF scene, flattened: places of meshes, and the marks inherited from their nodes.
+// The nodes of one glTF scene, flattened: placed meshes, with the marks inherited from nodes.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct Marks {
   std::optional<bool> glass;  // rays pass it, unless SceneOptions::glass says otherwise
   std::optional<bool> mirror;
 };
-// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, or a
-// detail or accuracy that is not above 0.
+// Reads the marks in an element's extras. Throws Error malformed_file for an unknown role, a diffuse coefficient
+// outside [0, 1], a weight outside 1 … 255, or a detail or accuracy that is not above 0.
 Marks read_marks(const File& file, const char* array, int index, const std::string& name);
 
 // Names are cut to this many bytes, since they are copied to every mesh, table and page.
@@ -48,13 +48,13 @@ struct PlacedMesh {
   std::optional<Role> pattern_role;         // from the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
   std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
-  bool door = false, station_area = false;  // whether a pattern matches it or a node above it
+  bool door = false, station_area = false;  // true if a pattern matches it or a node above it
   Marks marks = {};                         // from the nearest node that has them
   bool glass = false, mirror = false;       // likewise
-  bool own_role = false;                    // whether a role's pattern matches this node itself
+  bool own_role = false;                    // true if a role's pattern matches this node itself
 };
 
-// Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),
+// Flattens the scene. Throws Error: malformed_file (cycles, nodes with two parents, matrices not finite or not affine),
 // invalid_argument (scene index out of range, a pattern that matches no node), out_of_memory (instances).
 std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, LoadBudget& budget,
                                       std::vector<std::string>& notes);

@@ -7,8 +7,8 @@
 namespace vantage::gltf {
 namespace {
 
-// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans restart by kRestart, or by repeated
-// indices, which make no triangle.
+// Returns the triangles of the three modes; `at` gives the i-th of n indices. Strips and fans restart at kRestart, or
+// by repeated indices, which make no triangle.
 template <class At>
 std::vector<Triangle> triangulate(int mode, std::size_t n, At&& at) {
   std::vector<Triangle> out;
@@ -49,7 +49,7 @@ PrimitiveSize primitive_size(const File& file, int mesh, std::size_t index) {
     const auto& accessors = file.model().accessors;
     const bool known = accessor >= 0 && static_cast<std::size_t>(accessor) < accessors.size();
     if (!known) return 0;
-    // No more than reading will accept: an accessor that claims more is refused there, by its name.
+    // Claims no more than reading will accept: an accessor that claims more is refused there, by its name.
     const tinygltf::Accessor& claimed = accessors[static_cast<std::size_t>(accessor)];
     const auto& views = file.model().bufferViews;
     const bool viewed = claimed.bufferView >= 0 && static_cast<std::size_t>(claimed.bufferView) < views.size();

@@ -35,7 +35,7 @@ struct PrimitiveSize {
 };
 PrimitiveSize primitive_size(const File& file, int mesh, std::size_t primitive);
 
-// Null for points, lines and primitives without positions. Throws Error malformed_file.
+// Returns null for points, lines and primitives without positions. Throws Error malformed_file.
 std::unique_ptr<Primitive> read_primitive(const File& file, int mesh, std::size_t primitive,
                                           SkippedPrimitives& skipped);
 

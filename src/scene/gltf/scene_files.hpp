@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of a scene: which of them it may refer to, and their bytes.
+// Finds and reads the files that a scene refers to.
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,7 @@ class Tally {
   }
 
   PassField& field() { return field_; }
-  // Adds a station's sums beside the field.
+  // Adds a station's sums, which the field does not hold.
   void add(const TraceStation& station, const StationTotals& totals) {
     rays_ += totals.rays;
     on_surveyed_[station.bit()] = totals.points_on_surveyed;
@@ -84,7 +84,7 @@ std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
   const std::size_t voxels = scanners.front().grid().size();
   SharedStations shared(scanners, networks, voxels * sizeof(std::uint32_t));  // at most the memory of the counts
   PointBuckets points(voxels);
-  PassField alone;  // of a station whose points are needed again
+  PassField alone;  // field of one station whose points are needed again
   std::size_t traced = 0;
   for (const std::size_t n : shared.order()) {
     if (progress.stopped()) break;

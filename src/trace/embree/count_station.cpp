@@ -19,7 +19,7 @@
 namespace vantage {
 namespace {
 
-// Adds the points of `hits`, which are on surveyed meshes and have their ranges.
+// Adds the points of `hits`, which lie on surveyed meshes and have their ranges.
 [[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const TraceStation& station,
                                                 const Hits& hits, const PaneView* panes, VoxelLookup& voxels,
                                                 PointBuckets::Local& points, std::uint32_t shift,
@@ -82,12 +82,12 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   return totals;
 }
 
-// As RayCaster::safe().
+// Replaces tiny components as RayCaster::safe() does.
 [[gnu::always_inline]] inline void make_safe(Floats8& v) {
   v = (v >= RayCaster::least_component) | (v <= -RayCaster::least_component) ? v : Floats8{};
 }
 
-// Adds rays row to row + many of a column, with their common triangle.
+// Adds rays row to row + many of a column, which hit the same triangle.
 [[gnu::always_inline]] inline void add_run(const StationRays& station_rays, const TraceStation& station,
                                            const Picture& picture, std::uint32_t column, std::uint32_t row,
                                            std::uint32_t many, std::uint32_t triangle, const Planes::Seen& plane,
@@ -131,7 +131,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   hits.size += many;
 }
 
-// Where a run of a triangle ends. Reads up to eight elements past `end`, and may return a place there.
+// Returns the end of a triangle's run. Reads up to eight elements past `end`, and may return a place there.
 [[gnu::always_inline]] inline std::uint32_t end_of_run(const std::uint32_t* triangles, std::uint32_t at,
                                                        std::uint32_t end, std::uint32_t triangle) {
   for (; at < end; at += 8) {
@@ -143,7 +143,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   return at;
 }
 
-// Points that lie in the voxel of one of them, of several voxels.
+// Points by voxel: `many` of them lie in the voxel of each `point`.
 struct SettledPoints {
   std::uint32_t size = 0;
   std::array<Float3, VoxelLookup::capacity> point;
@@ -223,7 +223,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
   return totals;
 }
 
-// Adds up totals of parts first to end, in parallel.
+// Sums up the totals of parts first to end, in parallel.
 template <class Part>
 StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, const StationRays& rays,
                      PointBuckets& points, const Part& part) {
@@ -250,7 +250,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
       picture ? std::make_unique<const RunSteps>(rays, station, *picture) : nullptr;
   tbb::enumerable_thread_specific<Picture::Strip> strips;
   const std::size_t parts = picture ? picture->strips() : tiles.size();
-  // About a tenth of a second between checks of the stop token.
+  // Checks the stop token about every tenth of a second.
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t chunk = threads * (picture ? std::max<std::size_t>(1, 4096 / ends.tall) : 1024);
   for (std::size_t first = 0; first < parts; first += chunk) {

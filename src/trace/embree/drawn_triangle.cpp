@@ -14,12 +14,12 @@ namespace {
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 // Embree's edge test, (edge × sum of its corners)·d, has some 26 roundings of 2^−24 of its factors, and counts twice.
-// Corners relative to the head are rounded, too, which moves the whole triangle. This is more than twice all of that.
+// Corners relative to the head are rounded, too, which moves the whole triangle. The bound is more than twice all that.
 double edge_doubt(double farthest, double side, double longest) {
   return farthest * (0x1p-19 * side + 0x1p-20 * longest);
 }
 
-// Zeniths of what lies between the corners of a triangle, and whether the axis may pierce it.
+// Finds the zeniths between the corners of a triangle, and whether the axis may pierce it.
 void find_extremes(const std::array<Vec3, 3>& p, double& least, double& most, bool& up, bool& down) {
   constexpr double pi = std::numbers::pi;
   up = down = true;
@@ -74,7 +74,7 @@ DrawnTriangle::DrawnTriangle(const std::array<Vec3, 3>& corners, bool turned) : 
   for (const Vec3& each : v) radius = std::max(radius, length(each - middle));
   flat = !(volume > 0 && volume >= 8 * most_doubt_ * farthest);
   stretch = flat ? 0 : 4 * most_doubt_ / (volume / farthest - 6 * most_doubt_);
-  // Its relative error is some 2^−22 (longest · slenderness + farthest) / height; RayCaster searches 2^−8 too far.
+  // The relative error is some 2^−22 (longest · slenderness + farthest) / height; RayCaster searches 2^−8 too far.
   certain = !flat && height >= 0x1p-12 * (longest * longest * longest / twice_area + farthest);
 }
 
@@ -133,7 +133,7 @@ RayRanges DrawnTriangle::rays(const RayPattern& pattern, const Turn* turn) const
     low = std::min(low, from_first);
     high = std::max(high, from_first);
   }
-  // A turn is rounded, which moves directions, and azimuths near the axis more.
+  // A turn is rounded, which moves directions; near the axis it moves azimuths more.
   if (turn) least = std::max(least - 0x1p-20, 0.0), most = std::min(most + 0x1p-20, pi);
   const double pad = turn ? 0x1p-19 / std::max(std::min(std::sin(least), std::sin(most)), 1e-9) : 0x1p-20;
   if (up || down || high - low > 3 || pad > 0.1) return rays_between(pattern, least, most, 0, 2 * pi);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle as seen from a head, to be drawn. It tells which rays RayCaster certainly reports it for, and which it
-// cannot.
+// A triangle as seen from a head, to be drawn. It knows which rays RayCaster certainly reports it for, and which it
+// cannot report it for.
 //
 // Embree lets a ray of direction d through where the three Uₖ = edgeₖ·d have one sign, each off by up to doubtₖ. As d =
 // Σ Uₖ cornerₖ / K with K = normal·corner, Σ|Uₖ| >= K / farthest. If that is eight times the doubt, a ray may pass only
@@ -20,7 +20,7 @@
 namespace vantage {
 
 struct DrawnTriangle {
-  // Corners relative to the head. `turned`: the station is, so directions are rounded once more.
+  // `corners`: relative to the head. `turned`: the station is turned, so that directions are rounded once more.
   DrawnTriangle(const std::array<Vec3, 3>& corners, bool turned);
 
   std::array<Vec3, 3> corner;
@@ -30,10 +30,10 @@ struct DrawnTriangle {
   double height;                // of the plane over the head
   double farthest;              // corner
   Vec3 middle;
-  double radius;   // of the corners around it
+  double radius;   // of the ball around the middle that holds the corners
   double stretch;  // of the triangle, so that it contains all points of rays that may pass
   bool flat;
-  bool certain;  // Embree's own distance is good enough to find every hit
+  bool certain;  // Embree's own distance is accurate enough to find every hit
 
   // Flat triangles: |normal·d| <= doubt for all rays that may pass.
   struct Band {
@@ -42,18 +42,18 @@ struct DrawnTriangle {
   };
   Band band() const;
 
-  double distance() const;  // of the head from the triangle
+  double distance() const;  // Returns the distance of the head from the triangle.
   // Bounds on the rays that may pass. REQUIRES: not flat.
   RayRanges rays(const RayPattern& pattern, const Turn* turn) const;
 
  private:
   double most_doubt_;         // of twice areas
-  std::size_t largest_edge_;  // by twice the area between it and the head
+  std::size_t largest_edge_;  // the edge with the largest triangle between it and the head
   double largest_;
 };
 
-// Turns a direction from the local frame to the scanner's. Dot products with the pattern's directions, before these are
-// turned, are exact.
+// Turns a direction from the local frame to the scanner's. Dot products with the pattern's directions, before their
+// turn, are exact.
 Vec3 turned_back(const Turn* turn, const Vec3& v);
 
 }  // namespace vantage

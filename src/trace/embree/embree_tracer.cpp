@@ -92,7 +92,7 @@ bool EmbreeScene::take(const TraceScene& traced, const SceneDifference& differen
   if (!change) return false;
   std::vector<std::uint32_t> neighbours = patches->neighbours_after(*traced.scene, difference);
   BrickPrefixes later_prefixes(*traced.grid);
-  Surface later_surface(traced.scene, planes);  // which asks the planes for hits alone
+  Surface later_surface(traced.scene, planes);  // it asks the planes only for hits
   auto later_triangles =
       traced.sample_triangles ? traced.sample_triangles : std::make_shared<SampleTriangles>(traced.scene, traced.grid);
   std::unique_ptr<const GlassPanes> later_glass =

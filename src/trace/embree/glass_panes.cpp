@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// Where the glass before a hit at this distance ends: a film on the surface is none.
+// Returns the distance up to which glass before a hit counts, so that a film on the surface does not.
 float before_hit(float t) { return t * (1 - face_gap_share) - face_gap_m; }
 
 }  // namespace

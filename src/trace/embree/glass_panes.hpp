@@ -15,15 +15,15 @@
 
 namespace vantage {
 
-// A beam on its way: the share of its strength that passes there and back, or the pane that returns it.
+// A beam on its way: the share of its strength that passes there and back, or the pane that reflects it.
 struct Passed {
   double share;
   std::uint32_t pane;  // RayBundle::no_hit: none
   float t;             // of the pane
 };
 
-// Share of the strength that passes a pane there and back at this cosine of incidence, by Fresnel's formulas for the
-// refractive index 1.5, reflections within the pane included.
+// Returns the share of strength that passes a pane there and back at this cosine of incidence, by Fresnel's formulas
+// for the refractive index 1.5, reflections within the pane included.
 double passed_of_pane(double cosine);
 
 // Glass of a scene. Safe to use from any thread.
@@ -31,27 +31,27 @@ class GlassPanes {
  public:
   GlassPanes(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
-  // Follows each ray from its start to its `end`. Overwrites the ends. Returns false, and fills nothing, if no ray
+  // Follows each ray from its start to its `end`, and overwrites the ends. Returns false, and fills nothing, if no ray
   // meets glass. REQUIRES: as many elements as rays.
   bool follow(RayBundle& rays, std::span<Passed> passed) const;
-  // The same for hits. `view`: from `origin`, or null.
+  // Does the same for hits. `view`: from `origin`, or null.
   bool follow(const Float3& origin, const Hits& hits, const PaneView* view, std::span<Passed> passed) const;
-  // Null: the glass has too many faces.
+  // Returns null if the glass has too many faces.
   std::unique_ptr<const PaneView> view(const Float3& origin) const;
-  // Share of an echo's strength that passes from the distance `end` to `start`; 0 also if a pane returns the beam.
+  // Returns the share of an echo's strength that passes from `end` to `start`; 0 also if a pane reflects the beam.
   double share(const Float3& origin, const Float3& d, float start, float end) const;
 
  private:
-  // Takes a beam, of this direction, through a face. `next`: where its faces count again.
+  // Takes a beam of this direction through a face. `next`: distance from which faces of its pane count again.
   void pass(Passed& passed, float& next, float t, std::uint32_t triangle, const Float3& d) const;
-  // As follow(), from each ray's start to its end. `slot`: of each ray in `passed`.
+  // Works as follow(), from each ray's start to its end. `slot`: of each ray in `passed`.
   void follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays, const std::uint32_t* slot,
                   std::span<Passed> passed) const;
 
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   RayCaster caster_;
-  std::uint32_t first_;         // triangle of glass
+  std::uint32_t first_;         // first triangle of glass
   std::vector<bool> of_solid_;  // of the triangles from there on
 };
 

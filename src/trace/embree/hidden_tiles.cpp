@@ -11,15 +11,15 @@
 namespace vantage {
 namespace {
 
-// Least number of rays in a tile that pays for a probe and for tests of some triangles.
+// Least number of rays in a tile that pays for a probe and for tests of a few triangles.
 constexpr std::uint32_t kTile = 64;
-// Upper bound on what the rounding of directions adds to a cone around them.
+// Upper bound on the widening of a cone of directions by their rounding.
 constexpr double kConeDoubt = 1e-6;
 
 }  // namespace
 
-// Finds tiles of the window of which a triangle hides all rays that come near the voxel, by halves of halves: a probe
-// along a ray in the middle meets a triangle that may hide all around.
+// Finds tiles of the window in which a triangle hides all rays that come near the voxel. Halves tiles recursively; a
+// probe along a ray in the middle meets a triangle that may hide the whole tile.
 SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, const RayRanges& window) {
   Tiles tiles;
   const SpreadUnits units(window, false);
@@ -38,7 +38,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
   const std::span<const Ahead> planes = planes_of(look);
   const double pad = 2 * pad_, nearest = static_cast<double>(look.cube.nearest) * (1 - trust),
                start = static_cast<double>(bundle_.start);
-  // Each plane turned so that it is above the head, and cosines, over slenderness, as fill_nearest() has them.
+  // A plane turned so that it is above the head, with cosines, over slenderness, as in fill_nearest().
   struct Above {
     Vec3 normal;
     double height, graze, sure;
@@ -62,7 +62,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     }
     return true;
   };
-  // True if all rays of the cone pass beside the planes' triangles, or meet them outside the cube.
+  // Returns true if all rays of the cone pass beside the planes' triangles, or meet them outside the cube.
   const auto misses = [&](const SeenCone& cone) {
     if (planes.empty()) return false;
     const Vec3 centre{x_[look.voxel], y_[look.voxel], z_[look.voxel]};
@@ -72,7 +72,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
       const double slope = dot(normal, cone.middle), least = slope - cone.radius;
       if (slope + cone.radius < -graze) continue;  // behind the head
       if (!(least > graze)) return false;
-      // Bound on the distance of a hit from that of the middle ray; computed hits may lie farther away by the second
+      // Bounds the distance of a hit from the middle ray's. Computed hits may lie farther away, by the second
       // term.
       const double spread = height / least * cone.radius * (1 + 1 / slope);
       const Vec3 at = cone.middle * (height / slope) - centre;
@@ -93,7 +93,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
   const auto hides = [&](const SeenTriangle& triangle, const SeenCone& cone) {
     return triangle.must_hit(cone) && triangle.nearest_hit(cone) > start && is_before(triangle, cone);
   };
-  // No hit along a direction that counts is nearer.
+  // Returns a distance before which no hit along this direction counts.
   const auto end_of = [&](const Vec3& d) {
     double end = planes.empty() ? nearest : std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < planes.size(); ++k) {
@@ -125,7 +125,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     Float3 d{pattern.sin_zenith[middle_row] * pattern.cos_azimuth[middle],
              pattern.sin_zenith[middle_row] * pattern.sin_azimuth[middle], pattern.cos_zenith[middle_row]};
     if (station_->turn) d = (*station_->turn)(d);
-    // Along the meridian, and then along a parallel.
+    // Measures along the meridian, and then along a parallel.
     const bool crosses_equator = pattern.cos_zenith[row_begin] > 0 && pattern.cos_zenith[row_end - 1] < 0;
     const double longest =
         crosses_equator ? 1 : std::max(pattern.sin_zenith[row_begin], pattern.sin_zenith[row_end - 1]);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Margins of distances that SampledVoxelCounter works out in float, so that what it leaves out is certain.
+// Margins of distances that SampledVoxelCounter computes in float, so that it leaves out only what is certain.
 #pragma once
 
 #include "trace/embree/seen_triangle.hpp"
 
 namespace vantage {
 
-// Bound on the relative error of any distance computed in float, on any plane tested, however grazing.
+// Bound on the relative error of any distance computed in float, on any tested plane at any slant.
 inline constexpr double trust = 0x1p-7;
 // Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
 inline constexpr float grazing = 0x1p-10f;
-// A head may be higher above a plane than this part of the distance, over slenderness. A more grazing ray then meets
+// A head may be higher above a plane than this share of the distance, over slenderness. A more grazing ray then meets
 // the plane well beyond the voxel, whatever the rounding.
 inline constexpr float sure_height = 1.5f * grazing;
-// Distances to planes are computed in float. Their error is less than this part of the farthest distance, over the
-// cosine. Embree's allowance is at least eight times as large, so the margin is half as much again.
+// Error of distances to planes in float, as a share of the farthest distance, over the cosine; the true error is less.
+// Embree's allowance is at least eight times as large, so its margin is 1.5 times.
 inline constexpr float float_doubt = 0x1p-21f;
 inline constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
 // Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.

@@ -9,9 +9,9 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
-// Fewer hits in a row of one triangle are looked at with others: a bound for them alone costs as much as their noise.
+// Fewer hits in a row of one triangle share a bound with others, as a separate bound costs as much as their noise.
 constexpr std::uint32_t kFew = 4;
-// Largest number of standard deviations by which noise moves a point. It is truncated at five, and rounded.
+// Largest number of standard deviations by which noise moves a point: truncated at five, plus rounding.
 constexpr float kFarthest = 5.01f;
 
 // Shades several hits of one triangle. Each kind of normal has its own loop, since a branch would prevent
@@ -31,15 +31,15 @@ constexpr float kFarthest = 5.01f;
   }
 }
 
-// Which of eight hits may leave their voxels if they are moved within this reach. Along each axis, all sides of a cell
-// must be farther away than that, with all roundings of a coordinate.
+// Marks those of eight hits that may leave their voxels if moved within this reach. Otherwise all sides of a cell along
+// each axis are farther away, with all roundings of a coordinate.
 [[gnu::always_inline]] inline void leave_voxels(const Floats8& reach, const Float3& origin, const VoxelGrid& grid,
                                                 const float* x, const float* y, const float* z, const float* distance,
                                                 Ints8& leaves) {
   Floats8 t;
   load(t, distance);
   const float cells = static_cast<float>(1u << grid.depth()), inverse = grid.inverse_size();
-  // Three roundings of the largest coordinate, and as many of what is moved.
+  // Three roundings of the largest coordinate, and as many of the shifted one.
   const auto doubt_of = [&](float from, float min) {
     return 0x1p-20f * ((std::abs(from) + std::abs(min)) * inverse + cells);
   };
@@ -48,7 +48,7 @@ constexpr float kFarthest = 5.01f;
     Floats8 d;
     load(d, directions);
     const Floats8 at = ((from + t * d) - min) * inverse;
-    const Floats8 inside = (at >= 0.0f) & (at < cells) ? at : Floats8{};  // others are as near to a side as can be
+    const Floats8 inside = (at >= 0.0f) & (at < cells) ? at : Floats8{};  // others count as if on a side
     const Floats8 part = inside - __builtin_convertvector(__builtin_convertvector(inside, Ints8), Floats8),
                   nearest = part < 1.0f - part ? part : 1.0f - part, size = d < 0.0f ? -d : d;
     leaves |= nearest <= reach * inverse * size + doubt_of(from, min);
@@ -58,7 +58,7 @@ constexpr float kFarthest = 5.01f;
   along(z, origin.z, grid.min()[2]);
 }
 
-// Bound on how far noise moves hits of a facet, without their normals.
+// Bounds how far noise moves hits of a facet, without their normals.
 [[gnu::always_inline]] inline float reach_of(const RangeNoise& noise, const Facet& facet, const Hits& hits,
                                              std::uint32_t first, std::uint32_t end) {
   const Float3 n = narrow(facet.plane);
@@ -129,7 +129,7 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
       low[i] = hits.ray_low[k], high[i] = hits.ray_high[k], triangle[i] = hits.primitive[k];
     }
     for (std::uint32_t i = 0; i < here;) {
-      // Runs past the triangle's hits; those values are overwritten by the next triangle's, or never read.
+      // Overwrites values past the triangle's hits, which the next triangle replaces or nobody reads.
       shade(facet_of(triangle[i]), origin, x + i, y + i, z + i, t + i, reflectivity + i);
       for (const std::uint32_t one = triangle[i]; i < here && triangle[i] == one;) ++i;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits whose points are wanted, as arrays, so that algorithm 1 works on many at once.
+// Hits whose points are wanted, in arrays, so that algorithm 1 works on many at once.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ struct Hits {
   Float3 point(const Float3& origin, std::uint32_t k) const { return point_at(origin, {x[k], y[k], z[k]}, range[k]); }
 };
 
-// Fills `range`, the distances of the points with their noise. `place` also keys the noise. With a grid, only the
-// points' voxels are right: a range stays the hit's distance if its noise moves no point out of its voxel.
+// Fills `range`, the distances of the points with noise. `place` also keys the noise. With a grid, only the points'
+// voxels are exact: a range stays the hit's distance if noise moves no point out of its voxel.
 void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                  const VoxelGrid* grid = nullptr);
 

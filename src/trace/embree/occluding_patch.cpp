@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kMost = 16;  // triangles of a patch
-// Largest radius around a corner within which rays may be in doubt; beyond it the triangle is a sliver.
+// Largest radius around a corner within which rays may be in doubt; a larger one means a sliver.
 constexpr double kMostDoubt = 0x1p-6;
 
 struct Member {
@@ -37,7 +37,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
                             const AnyRayNear& any_ray_near) const {
   if (scene_.shares()) return false;
   std::call_once(once_, [&] {
-    // A thread that waits for this must not take up other work, which might wait here, too.
+    // A thread that waits here must not take up other work, which might wait here, too.
     tbb::this_task_arena::isolate([&] {
       if (neighbours_.empty()) neighbours_ = triangle_neighbours(scene_.positions, scene_.opaque_triangles());
     });
@@ -50,7 +50,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
   const SeenBox seen_box(box);
   const double away = std::sqrt(dot(seen_box.middle, seen_box.middle)),
                width = std::sqrt(dot(seen_box.half, seen_box.half)) / away;
-  // True if a ray to the box may pass this near to a corner.
+  // Returns true if a ray to the box may pass this near to a corner.
   const auto is_near = [&](const Vec3& corner, double doubt) {
     const Vec3 across = cross(corner, seen_box.middle);
     return !(std::sqrt(dot(across, across)) > (width + doubt) * away * std::sqrt(dot(corner, corner)));
@@ -67,7 +67,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
       inside[k] = one.seen.inside(k, seen_box);
       outside |= !inside[k] && one.seen.outside(k, seen_box);
     }
-    if (outside) {  // not in the way
+    if (outside) {  // it does not cover the box
       if (m == 0) return false;
       continue;
     }
@@ -88,7 +88,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
       std::size_t back = 0;  // the common edge among those of the other triangle
       while (back < 3 && neighbours_[3 * other + back] != members[m]) ++back;
       if (back == 3 || !one.seen.is_outside(k, next.corner[(back + 2) % 3])) return false;  // folded back
-      // Both ends: with the edges that meet there. The other triangle may have its corners in the same order.
+      // Tests both ends with the edges that meet there. The other triangle may list its corners in the same order.
       for (const std::size_t end : {k, (k + 1) % 3}) {
         const std::size_t own = end == k ? (k + 2) % 3 : (k + 1) % 3;
         const Vec3& corner = one.corner[end];

@@ -47,12 +47,12 @@ PaneView::PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const
     } else {
       for (std::size_t k = 0; k < 3; ++k) put(k, drawn.edge[k], drawn.doubt[k]);
     }
-    // All hits lie in a ball around its middle.
+    // All hits lie in a ball around the triangle's middle.
     const double away = std::sqrt(dot(drawn.middle, drawn.middle));
     const double radius =
         (drawn.flat ? Planes::reach(drawn.radius, drawn.farthest, head_) : drawn.radius * (1 + drawn.stretch)) *
         (1 + 0x1p-10);
-    const bool around = radius >= away;  // the head is in it
+    const bool around = radius >= away;  // the ball holds the head
     const Vec3 to = away > 0 ? drawn.middle * (1 / away) : Vec3{0, 0, 1};
     x_.push_back(static_cast<float>(to.x)), y_.push_back(static_cast<float>(to.y));
     z_.push_back(static_cast<float>(to.z));
@@ -70,10 +70,10 @@ PaneView::PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const
 
 namespace {
 
-// A cone around directions.
+// A cone of directions.
 struct Cone {
   Float3 axis;
-  float cosine, sine;  // of its half angle; 0 and infinite: it has all directions
+  float cosine, sine;  // of its half angle; 0 and infinite: all directions
 };
 Cone cone_of(const float* x, const float* y, const float* z, std::uint32_t n) {
   float sx = 0, sy = 0, sz = 0;
@@ -87,7 +87,7 @@ Cone cone_of(const float* x, const float* y, const float* z, std::uint32_t n) {
   return {axis, cosine, std::sqrt(std::max(0.0f, 1 - cosine * cosine))};
 }
 
-// Whether no direction of the cone lies on the inner side of the plane through head and edge.
+// Returns true if no direction of the cone lies on the inner side of the plane through head and edge.
 bool beside_edge(const Cone& cone, float x, float y, float z, float doubt) {
   return (x * cone.axis.x + y * cone.axis.y + z * cone.axis.z) * cone.cosine + cone.sine + rounding < -doubt;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces of glass as seen from one head. It decides without a tree which rays certainly pass a face, and which certainly
+// Faces of glass as seen from one head. Decides without a tree which rays certainly pass a face, and which certainly
 // pass none.
 #pragma once
 
@@ -15,20 +15,20 @@ namespace vantage {
 
 class PaneView {
  public:
-  // The largest number of faces. A tree finds the faces of a ray faster if there are more.
+  // Most faces of a view; with more, a tree finds the faces of a ray faster.
   static constexpr std::size_t most_faces = 2048;
 
   // Shares ownership of both. REQUIRES: the scene has glass.
   PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, const Float3& head);
 
-  // The crossings of each hit's ray before `end`, by distance and triangle, as RayCaster::crossings() has them.
+  // Crossings of each hit's ray before `end`, sorted by distance and triangle as in RayCaster::crossings().
   struct Crossings {
     static constexpr std::uint32_t most = 8, unsure = most + 1;
-    std::uint32_t count[Hits::capacity];  // or unsure: RayCaster knows
+    std::uint32_t count[Hits::capacity];  // number, or unsure: ask RayCaster
     float t[Hits::capacity][most];
     std::uint32_t triangle[Hits::capacity][most];
   };
-  // Returns false if no ray has any, or may have one. `end` has whole vectors, as hits do.
+  // Returns false if certainly no ray has a crossing. `end` has whole vectors, as hits do.
   bool find(const Hits& hits, const float* end, Crossings& found) const;
 
  private:
@@ -42,7 +42,7 @@ class PaneView {
   std::shared_ptr<const Planes> planes_;
   Float3 head_;
   std::vector<Face> faces_;
-  // Directions to the middles of the faces, and bounds around these, in whole vectors.
+  // Directions to the middles of the faces, with bounds around these, in whole vectors.
   std::vector<float> x_, y_, z_, cosine_, sine_, nearest_;
 };
 

@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::uint32_t in_doubt = 0x80000000u;
 
-// If the ratio of two inverse distances is below this, either may be the larger. In float, C sin θ + D cos θ has an
-// error of 2^-21 of the inverse of the plane's height. That is 2^-17 of the value if the cosine of the incidence is
+// Below this ratio of two inverse distances, either may be the larger one. In float, C sin θ + D cos θ has an error
+// of 2^-21 of the inverse of the plane's height. That is 2^-17 of the value if the cosine of the incidence is
 // `steep`.
 constexpr float apart = 1 + 0x1p-15f;
 constexpr float steep = 0x1p-4f;
@@ -34,7 +34,7 @@ constexpr float angle_doubt = 0x1.8p-20f;  // radians; of rows computed in float
 constexpr float past_all = 8;              // beyond any angle
 
 constexpr std::int32_t lanes = 8;
-constexpr std::int32_t few_rows = 32;  // so many are quicker evaluated than bounded
+constexpr std::int32_t few_rows = 32;  // fewer rows are evaluated faster than bounded
 
 // Coefficients from which a triangle's rows are computed, in the scanner's frame.
 struct Outline {
@@ -43,7 +43,7 @@ struct Outline {
   float least_zenith, most_zenith;                        // of its rays
 };
 
-// Rows of one triangle in each column of a strip: those that may hit it, from `begin` to `end`, and those that must.
+// Rows of one triangle in each column of a strip: those that may hit it, `begin` to `end`, and those that must.
 struct Rows {
   alignas(64) std::int32_t begin[Picture::wide], end[Picture::wide], sure_begin[Picture::wide], sure_end[Picture::wide];
   alignas(64) float c[Picture::wide];
@@ -53,8 +53,8 @@ struct Columns {
   alignas(64) float cosine[Picture::wide], sine[Picture::wide];
 };
 
-// Bounds on the zenith in eight columns, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its
-// doubt moves θ₀ by asin(doubt / R) either way.
+// Bounds the zenith in eight columns by all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
+// moves θ₀ by asin(doubt / R) either way.
 [[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, std::uint32_t column,
                                              float first, float step, std::int32_t row_begin, std::int32_t row_end,
                                              Rows& rows) {
@@ -72,7 +72,7 @@ struct Columns {
       const float r = std::sqrt(a * a + z * z);
       const float zero = fast_atan2(size, toward * a);
       const float moved = r > 2 * doubt ? 1.05f * doubt / r + angle_doubt : past_all / 2;
-      // An edge whose plane holds the axis to within `moved` may also let pass what lies at the other pole.
+      // An edge whose plane holds the axis to within `moved` may also let rays at the other pole pass.
       if (z >= 0) {
         const bool below = zero < moved && most > zero + pi - moved, above = !below || least < zero + moved;
         high[j] = std::min(high[j], below ? past_all : zero + moved);
@@ -91,7 +91,7 @@ struct Columns {
   const float inverse = 1 / step;
   const auto from = static_cast<float>(row_begin), to = static_cast<float>(row_end);
   for (std::uint32_t j = 0; j < n; ++j) {
-    // The least row at or above, and the row past the last at or below.
+    // Rounds up to the least row at or above, and down to the end of rows at or below.
     const auto up = [&](float angle) {
       const float row = std::min(std::max((angle - first) * inverse, from), to);
       const auto whole = static_cast<std::int32_t>(row);
@@ -116,8 +116,8 @@ bool Picture::Item::operator<(const Item& other) const {
   return std::tuple(-nearest, triangle, column_begin) < std::tuple(-other.nearest, other.triangle, other.column_begin);
 }
 
-// Drawing looks at every triangle, tracing only at those near a ray. On a plant of 300 000, with as many rays, both
-// take as long (docs/evidence/benchmarks.md).
+// Drawing visits every triangle, tracing only those near a ray. On a plant of 300 000 triangles with as many rays, both
+// take equally long (docs/evidence/benchmarks.md).
 constexpr std::uint64_t least_rays_a_triangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
   return triangles < none && rays >= least_rays_a_triangle * triangles;
@@ -128,7 +128,7 @@ std::unique_ptr<const Picture> Picture::where_it_pays(const StationRays& rays, c
   const SceneData& scene = rays.scene();
   // Embree tests the edges of a shared mesh in its frame, where a picture does not know the rounding.
   if (rays.whole_scans() == WholeScans::traced || scene.shares()) return nullptr;
-  // A picture is a grid of azimuths and zeniths. Rays that aim anywhere have no steps.
+  // A picture is a grid of azimuths and zeniths, but rays with arbitrary directions have no steps.
   const RayPattern& pattern = rays.pattern();
   if (!(pattern.zenith_step > 0 && pattern.azimuth_step > 0)) return nullptr;
   std::uint64_t within = 0;
@@ -235,7 +235,7 @@ class Picture::StripDrawing {
     for (std::uint32_t a = tiles.first; a < tiles.end; ++a)
       if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(block, pattern.rows() - a * block);
     strip.inverse_.resize(std::size_t{wide} * ends.tall);
-    strip.triangle_.resize(std::size_t{wide} * ends.tall + 1);  // whoever looks for runs reads on
+    strip.triangle_.resize(std::size_t{wide} * ends.tall + 1);  // searches for runs read past the end
     strip.farthest_.assign(ends.tall, 0);
     strip.stale_.assign(ends.tall, 1);
     strip.doubts_.assign(ends.tall, 0);
@@ -266,7 +266,7 @@ class Picture::StripDrawing {
     const SceneData& scene = picture_.rays_.scene();
     const std::size_t end = picture_.begin_[index + 1];
     for (std::size_t k = picture_.begin_[index]; k < end; ++k) {
-      // Triangles in order of distance lie anywhere in memory.
+      // Prefetches, as triangles sorted by distance lie anywhere in memory.
       if (k + 8 < end && in_sight(picture_.items_[k + 8]))
         __builtin_prefetch(&scene.triangles[picture_.items_[k + 8].triangle]);
       if (k + 4 < end && in_sight(picture_.items_[k + 4]))
@@ -277,7 +277,7 @@ class Picture::StripDrawing {
   }
 
  private:
-  // True if the triangle is to be drawn in any of the tiles.
+  // Returns true if the triangle is to be drawn in any of the tiles.
   bool in_sight(const Item& item) const {
     return item.row_begin < tiles_.end * block && item.row_end > tiles_.first * block;
   }
@@ -289,7 +289,7 @@ class Picture::StripDrawing {
   const float* sine() const { return picture_.sines(); }
   const float* cosine() const { return picture_.cosines(); }
 
-  // True if something hides everything in the tile that is no nearer.
+  // Returns true if nearer hits hide everything in the tile from `nearest` on.
   [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
     if (nearest * apart < strip_.farthest_[tile]) return true;
     if (strip_.stale_[tile] == 0) return false;
@@ -306,7 +306,7 @@ class Picture::StripDrawing {
     strip_.stale_[tile] = 0;
     return nearest * apart < least;
   }
-  // Notes that a triangle may be hit in this row, no nearer than this.
+  // Notes that a ray may hit a triangle in this row, no nearer than this.
   void doubt(std::uint32_t column, std::int32_t row, float nearest) {
     float& value = inverse(column)[row];
     if (nearest * apart < value) return;
@@ -320,7 +320,7 @@ class Picture::StripDrawing {
     const Float3 turned = picture_.station_.turn ? (*picture_.station_.turn)(d) : d;
     return {RayCaster::safe(turned.x), RayCaster::safe(turned.y), RayCaster::safe(turned.z)};
   }
-  // Chooses between two triangles that are certainly hit as RayCaster does.
+  // Chooses between two certain hits as RayCaster does.
   void settle(std::uint32_t column, std::int32_t row, float value, std::uint32_t triangle) {
     std::uint32_t& held = triangles(column)[row];
     if (held >= none) return doubt(column, row, value);
@@ -332,8 +332,8 @@ class Picture::StripDrawing {
     if (own < other || (own == other && triangle < held)) held = triangle;
     inverse(column)[row] = std::max(inverse(column)[row], value);
   }
-  // Draws eight rows, of which the `sure` ones hit the triangle and the `possible` others may, at inverse distances
-  // `value`.
+  // Draws eight rows at inverse distances `value`. Those in `possible` may hit the triangle; of these, those in `sure`
+  // do. Each row keeps its nearest hit, or is marked as in doubt.
   [[gnu::always_inline]] void merge(std::uint32_t column, std::int32_t row, std::uint32_t triangle,
                                     const Floats8& value, const Ints8& possible, const Ints8& sure) {
     float* const inverses = inverse(column) + row;
@@ -376,7 +376,7 @@ class Picture::StripDrawing {
             (at >= rows.sure_begin[column]) & (at < rows.sure_end[column]));
     }
   }
-  // Evaluates the edges in place of solving for their rows, which is quicker where these are few.
+  // Evaluates the edges instead of solving for their rows, which is faster for few rows.
   [[gnu::always_inline]] void draw_few(const Outline& outline, std::uint32_t triangle, std::uint32_t column,
                                        std::int32_t begin, std::int32_t end) {
     const float cos_azimuth = columns_.cosine[column], sin_azimuth = columns_.sine[column];
@@ -396,7 +396,7 @@ class Picture::StripDrawing {
       merge(column, row, triangle, c * sines + outline.inverse_z * cosines, possible, sure);
     }
   }
-  // Draws grazing rays and near hits, with all their doubts.
+  // Draws grazing rays and near hits, with all their uncertainties.
   [[gnu::always_inline]] void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column,
                                              const Rows& rows) {
     const std::int32_t begin = rows.begin[column], end = rows.end[column];
@@ -494,14 +494,14 @@ inline void Picture::StripDrawing::draw(const Item& item) {
   outline.inverse_z = static_cast<float>(plane.z);
   outline.inverse_height = static_cast<float>(1 / seen.height);
   if (bottom - top > 4) {
-    // A large triangle counts only by the part in the tile.
+    // Only the part of a large triangle in the tile counts.
     const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
     const double radius = tile_radius_ / seen.height;
     const auto nearest_in = [&](std::uint32_t tile) {
       const double zenith = pattern.first_zenith + (tile * block + 0.5 * (block - 1)) * pattern.zenith_step;
       const double s = std::sin(zenith);
       const double bound = plane.x * s * cosine + plane.y * s * sine + plane.z * std::cos(zenith) + radius;
-      // Distances of grazing rays are not always those of the plane.
+      // Distances of grazing rays may differ from the plane's.
       return bound * seen.height < 2 * least_slope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
     };
     while (top < bottom && hidden(top, nearest_in(top))) ++top;
@@ -511,7 +511,7 @@ inline void Picture::StripDrawing::draw(const Item& item) {
   const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
              row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * block));
   const bool plain = seen.certain && item.nearest * apart < picture_.start_;
-  // Within the triangle, the incidence is least steep in the farthest corner.
+  // The incidence within the triangle is least steep at the farthest corner.
   const bool all_steep = seen.height > 1.01 * static_cast<double>(steep) * seen.farthest * (1 + 4 * seen.stretch);
   std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
   if (plain && all_steep && row_end - row_begin <= few_rows) {
@@ -537,7 +537,7 @@ inline void Picture::StripDrawing::draw(const Item& item) {
 
 namespace {
 
-// Traces rays of a strip whose hit is in doubt, many at once.
+// Traces those rays of a strip whose hit is in doubt, many at once.
 struct DoubtBundle {
   RayBundle rays;
   std::uint32_t* hit[RayBundle::capacity];

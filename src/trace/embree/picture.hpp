@@ -21,16 +21,16 @@ class Picture {
   static constexpr std::uint32_t wide = RayTile::side;   // columns of a strip
   static constexpr std::uint32_t block = RayTile::side;  // rows that are stored together
 
-  // Whether drawing is faster than tracing.
+  // Returns true if drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
-  // Returns a picture of the rays within `ends`; null if they are to be traced. Borrows all.
+  // Returns a picture of the rays within `ends`; null if tracing them is faster. Borrows all.
   static std::unique_ptr<const Picture> where_it_pays(const StationRays& rays, const TraceStation& station,
                                                       const TileEnds& ends);
 
   // Prepares the picture of the rays within `ends`. Borrows all. REQUIRES: the scene shares no meshes.
   Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends);
 
-  // False if the head stands in a surface. Nothing can be drawn then.
+  // Returns false if the head lies in a surface; nothing can be drawn then.
   bool drawable() const { return drawable_; }
   std::uint32_t strips() const { return ends_.wide; }
 
@@ -38,12 +38,12 @@ class Picture {
   struct alignas(64) Block {
     Value of[block];
   };
-  // A column of tiles: `wide` columns of rays, with all rows. Kept to be used again.
+  // A column of tiles: `wide` columns of rays, with all rows. Kept for reuse.
   struct Strip {
     std::uint32_t first = 0, columns = 0;  // of the pattern
     std::uint64_t rays = 0;                // drawn, within the ends
     std::uint64_t traced = 0;              // of these, rays that drawing was not certain of
-    // Values of the rays of a column, by rows.
+    // Returns the triangles hit in a column, by rows.
     const std::uint32_t* triangles(std::uint32_t column) const { return triangle_[column * blocks_].of; }
 
    private:
@@ -56,23 +56,23 @@ class Picture {
     std::vector<std::uint8_t> doubts_;            // [tile] has rays in doubt
   };
 
-  // Sines and cosines of the zeniths, by row. Up to eight elements beyond the last can be read.
+  // Returns sines and cosines of the zeniths, by row. Up to eight elements beyond the last can be read.
   const float* sines() const { return sine_.front().of; }
   const float* cosines() const { return cosine_.front().of; }
 
-  // Rows of tiles from `first` to `end`.
+  // A range of rows of tiles, `first` to `end`.
   struct Tiles {
     std::uint32_t first = 0, end = 0;
   };
-  // Finds the hits of a strip's rays; those outside `ends` have none. Only these rows of tiles are drawn, and can be
-  // read afterwards.
+  // Finds the hits of a strip's rays; those outside `ends` have none. Draws only these rows of tiles, which can be read
+  // afterwards.
   void draw(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
   void draw(std::uint32_t index, Strip& strip) const { draw(index, {0, ends_.tall}, strip); }
-  // Fills t and primitive of a drawn strip's tile, as RayCaster::cast() does. REQUIRES: the tile's rays.
+  // Fills t and primitive of a drawn strip's tile, as RayCaster::cast() would. REQUIRES: the tile's rays.
   void fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const;
 
  private:
-  // Where a triangle is to be drawn.
+  // Strip and rows in which a triangle is to be drawn.
   struct Item {
     float nearest;  // inverse distance that no hit exceeds
     std::uint32_t triangle;
@@ -81,8 +81,8 @@ class Picture {
   };
   class StripDrawing;
 
-  // Appends the places where the triangle is to be drawn. Returns false if the triangle keeps anything from being
-  // drawn.
+  // Appends the items in which the triangle is to be drawn. Returns false if the triangle makes it impossible to draw
+  // anything, as when the head lies in it.
   bool place(std::uint32_t triangle, std::vector<Item>& items) const;
   void draw_triangles(std::uint32_t index, const Tiles& tiles, Strip& strip) const;
   void trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip) const;

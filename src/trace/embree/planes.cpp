@@ -80,7 +80,7 @@ double Planes::within(std::uint32_t triangle, const Float3& o, const Float3& d, 
     across[k] = v - direction * along[k];
     farthest = std::max(farthest, std::sqrt(dot(v, v)));
   }
-  // A needle that points at the head has no edge that Embree could tell a ray from, and rays far beside it come as hits
+  // A needle that points at the head has no edge by which Embree could exclude a ray. Rays far beside it come as hits
   // if they are traced together with others that pass its box.
   double beside = std::numeric_limits<double>::infinity(), longest = 0;
   for (std::size_t k = 0; k < 3; ++k) {

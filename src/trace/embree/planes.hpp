@@ -16,15 +16,15 @@
 
 namespace vantage {
 
-// Planes of a scene's triangles: a table, or made on demand where triangles are shared, since the table of all their
+// Planes of a scene's triangles: a table, or computed on demand if triangles are shared, as a table for all their
 // places may not fit. Safe to use from any thread.
 class Planes {
  public:
   explicit Planes(std::shared_ptr<const SceneData> scene);
-  // Takes a changed scene, alone. An error changes nothing.
+  // Takes a changed scene, which no other thread may use meanwhile. An error changes nothing.
   void take(std::shared_ptr<const SceneData> scene, const SceneDifference& difference);
 
-  // A plane as a head sees it.
+  // A plane relative to a head.
   struct Seen {
     double x, y, z, height;  // unit normal, and the plane's offset from the head along it
   };
@@ -33,10 +33,10 @@ class Planes {
     return {p.x, p.y, p.z, p.offset - (p.x * o.x + p.y * o.y + p.z * o.z)};
   }
 
-  // Distances along n directions, in double and rounded once. Only additions, multiplications and a division are used,
-  // so every processor gets the same bits. The plane says nothing about a ray that nearly lies in it; its distance is
-  // clamped to the triangle's extent along the ray, or infinite if it passes beside. REQUIRES: plane ==
-  // seen(triangle, o). Inlined, to be compiled for the caller's target.
+  // Computes distances along n directions, in double and rounded once. Uses only additions, multiplications and a
+  // division, so that every processor gets the same bits. The plane does not determine the distance of a ray that
+  // nearly lies in it; it is then clamped to the triangle's extent along the ray, or infinite if the ray passes beside.
+  // REQUIRES: plane == seen(triangle, o). Inlined, to be compiled for the caller's target.
   template <unsigned n>
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {
@@ -57,7 +57,7 @@ class Planes {
       t[i] = static_cast<float>(clear ? along : within(triangle, o, {x[i], y[i], z[i]}, along));
     }
   }
-  // The same of eight, unless one nearly lies in the plane: then false.
+  // Computes eight; returns false if one nearly lies in the plane.
   [[gnu::always_inline]] static bool distances(const Seen& plane, const Floats8& x, const Floats8& y, const Floats8& z,
                                                Floats8& t) {
     Doubles4 lx, ly, lz, hx, hy, hz;
@@ -70,9 +70,9 @@ class Planes {
     return (flat[0] | flat[1] | flat[2] | flat[3]) == 0;
   }
 
-  // Whether points at distances t of n directions lie beside the triangle: outside a ball half as large again as the
-  // one around its middle. No hit does; but of a triangle seen edge-on, whatever tests the edges may let pass any ray
-  // in its plane.
+  // Marks points at distances t of n directions that lie beside the triangle: outside a ball 1.5 times as large as the
+  // one around its middle. No true hit does, but for a triangle seen edge-on, a test of edges may let any ray in its
+  // plane pass.
   template <unsigned n>
   [[gnu::always_inline]] void beside(std::uint32_t triangle, const Float3& o, const float* x, const float* y,
                                      const float* z, const float* t, std::int32_t* is_beside) const {
@@ -83,8 +83,8 @@ class Planes {
       is_beside[i] = !(dx * dx + dy * dy + dz * dz <= ball.square + ball_doubt * (t[i] * t[i]));
     }
   }
-  // No hit is further from the middle of a triangle whose corners lie within `radius` of it and `farthest` of a head at
-  // o.
+  // Returns the largest distance of a hit from the middle of a triangle whose corners lie within `radius` of it and
+  // `farthest` of a head at o.
   static double reach(double radius, double farthest, const Float3& o) {
     return 1.5 * radius * (1 + 0x1p-10) + 0x1p-15 * farthest + 0x1p-19 * std::sqrt(dot(widen(o), widen(o)));
   }

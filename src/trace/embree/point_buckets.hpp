@@ -13,9 +13,9 @@
 
 namespace vantage {
 
-// Buffers points for the voxel field. Each thread sorts its own by range of voxel index; then a single thread adds each
-// range, while that part of the field stays in the cache. This is faster than an atomic addition per point, and the
-// gain grows with the field.
+// Buffers points for the voxel field. Each thread sorts its own by range of voxel index; then one thread adds each
+// range, while that part of the field stays in the cache. This is faster than an atomic addition for each point, and
+// the gain grows with the field.
 class PointBuckets {
  public:
   static constexpr std::uint32_t count = 256;
@@ -26,7 +26,7 @@ class PointBuckets {
 
   static constexpr std::uint32_t most_at_once = 256;
 
-  // The calling thread's buckets.
+  // Buckets of the calling thread.
   class Local {
    public:
     // Adds `points` to a voxel. REQUIRES: 1 <= points <= most_at_once.
@@ -37,12 +37,12 @@ class PointBuckets {
 
    private:
     friend class PointBuckets;
-    std::vector<std::uint32_t> buckets_[count];  // the voxel's place in the range, and its points less one
+    std::vector<std::uint32_t> buckets_[count];  // place of the voxel in the range, and its points minus one
   };
   Local& local() { return local_.local(); }
   std::uint32_t shift() const { return shift_; }
 
-  // Adds all points to the field under the bit of their station, and empties the buckets. Counts saturate.
+  // Adds all points to the field under their station's bit, and empties the buckets. Counts saturate.
   void flush(PassField& field, std::uint64_t bit) {
     const bool masks = !field.stations.empty();
     parallel::for_all(std::uint32_t{0}, count, [&](std::uint32_t b) {

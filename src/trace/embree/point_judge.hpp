@@ -23,14 +23,14 @@ class PointJudge {
 
   bool enabled() const { return model_ && model_->enabled(); }
 
-  // Whether echoes alone are limited.
+  // Returns true if only echoes are limited.
   bool judges_echo_alone() const {
     return enabled() && model_->lost_below == 0 &&
            std::ranges::all_of(model_->meshes, [](const LimitModel::Limits& limits) {
              return limits == LimitModel::Limits{.largest_reach_square = limits.largest_reach_square};
            });
   }
-  // Square of the distance at which an echo at normal incidence is just detected; 0: any. REQUIRES: enabled().
+  // Returns the squared distance at which an echo at normal incidence is just detected; 0: any. REQUIRES: enabled().
   double reach_square(std::uint32_t mesh) const {
     return static_cast<double>(model_->meshes[mesh].largest_reach_square);
   }
@@ -39,13 +39,13 @@ class PointJudge {
   }
 
   bool loses_echoes() const { return model_ && model_->lost_below > 0; }
-  // True if the echo of this ray is lost at random.
+  // Returns true if the echo of this ray is lost at random.
   bool lost(std::uint64_t ray, std::uint32_t place) const {
     return loses_echoes() && random_bits(model_->seed, ray, place, dropout_stream) < model_->lost_below;
   }
 
-  // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either
-  // sign; `t` the distance without noise; `passed` the share of the echo that passes glass. REQUIRES: enabled().
+  // Returns the limits of its mesh that a point misses; all 0 if it counts. `cosine`: between ray and normal, of either
+  // sign; `t`: distance without noise; `passed`: share of the echo that passes glass. REQUIRES: enabled().
   DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity, double passed) const {
     const LimitModel::Limits& limits = model_->meshes[mesh];
     const double square = cosine * cosine;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Algorithm 1: how far noise moves a point along its ray.
+// Algorithm 1: moves a point along its ray by noise.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,12 @@ class RangeNoise {
 
   bool enabled() const { return model_ && model_->enabled(); }
   float reach() const { return enabled() ? model_->reach : 0.0f; }
-  // Upper bound on how far noise moves a hit nearer than t, on a surface of at least this reflectivity.
+  // Bounds how far noise moves a hit nearer than t, on a surface of at least this reflectivity.
   float reach_within(float t, float reflectivity = 0) const {
     return enabled() ? vantage::reach_within(*model_, *reaches_, t, reflectivity) : 0.0f;
   }
 
-  // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
+  // Interpolates bilinearly in normalised distance and reflectivity, both clamped to [0, 1].
   float sigma(float t, float reflectivity) const {
     constexpr std::uint32_t cells = NoiseModel::side - 1;
     const auto place = [](float normalised, std::uint32_t& cell) {
@@ -49,19 +49,19 @@ class RangeNoise {
     return upper + (lower - upper) * down;
   }
 
-  // Random bits of n rays, from the halves of their numbers. REQUIRES: enabled().
+  // Draws random bits for n rays, from the halves of their numbers. REQUIRES: enabled().
   template <unsigned n>
   [[gnu::always_inline]] void draw(const std::uint32_t* low, const std::uint32_t* high, std::uint32_t place,
                                    std::uint32_t* __restrict bits) const {
     const std::uint64_t seed = model_->seed;
     for (unsigned k = 0; k < n; ++k) bits[k] = philox4x32(seed, {low[k], high[k], place, noise_stream})[0];
   }
-  // REQUIRES: enabled(). No scanner measures a range below 0. Noise larger than the range leaves the point at the head,
-  // never behind it, where no list of rays would look for it.
+  // Returns the noisy range. It is never below 0: noise larger than the range leaves the point at the head, not behind
+  // it, where no list of rays would look for it. REQUIRES: enabled().
   float displaced(float t, float reflectivity, std::uint32_t bits) const {
     return std::max(0.0f, t + normal_from_bits(bits, rows_) * sigma(t, reflectivity));
   }
-  // sigma() of eight hits, to the bit. Inlined, to be compiled for the caller's target. REQUIRES: enabled().
+  // Computes sigma() of eight hits, to the bit. Inlined, to be compiled for the caller's target. REQUIRES: enabled().
   [[gnu::always_inline]] void find_sigmas(const float* t, const float* reflectivity, Floats8& sigmas) const {
     Floats8 ts, reflectivities, across, down;
     Ints8 column, row;
@@ -80,7 +80,7 @@ class RangeNoise {
     const Floats8 upper = s[0] + (s[1] - s[0]) * across, lower = s[2] + (s[3] - s[2]) * across;
     sigmas = upper + (lower - upper) * down;
   }
-  // displaced() of eight hits with these deviations, to the bit. Inlined likewise. REQUIRES: enabled().
+  // Computes displaced() of eight hits with these deviations, to the bit. Inlined likewise. REQUIRES: enabled().
   [[gnu::always_inline]] void displace_eight(const float* t, const Floats8& sigmas, const std::uint32_t* bits,
                                              float* range) const {
     Floats8 ts, z;
@@ -97,7 +97,7 @@ class RangeNoise {
   }
 
  private:
-  // Of eight, where sigma() finds a value: the cell, and the part of it.
+  // Finds the cell, and the position in it, at which sigma() interpolates, for eight values.
   [[gnu::always_inline]] static void find_place(const Floats8& normalised, Ints8& cell, Floats8& part) {
     constexpr std::int32_t cells = NoiseModel::side - 1;
     const Floats8 below = normalised < 1.0f ? normalised : 1.0f - Floats8{};
@@ -106,7 +106,7 @@ class RangeNoise {
     cell = whole >= cells ? cells - 1 - Ints8{} : whole;
     part = scaled - __builtin_convertvector(cell, Floats8);
   }
-  // normal_from_bits() of eight. As a double, m has its highest bit e in the exponent, and the bits below in order.
+  // Computes normal_from_bits() of eight. As a double, m has its highest bit e in the exponent, the lower bits follow.
   [[gnu::always_inline]] void find_normals(const std::uint32_t* bits, Floats8& z) const {
     static_assert(normal_segments == 16);
     Ints8 u;

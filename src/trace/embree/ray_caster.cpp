@@ -27,14 +27,14 @@ struct Context {
   float* t;  // by the ray's id; initially the ray's end
   std::uint32_t* primitive;
   std::vector<RayCaster::Crossing>* all = nullptr;
-  // Directions by the ray's id, as Embree is given them; null: where nothing is shared.
+  // Directions by the ray's id, as Embree got them; null if nothing is shared.
   const float *x = nullptr, *y = nullptr, *z = nullptr;
   const Float3* origins = nullptr;  // by the ray's id; null: all are `origin`
-  bool changed = false;             // the scene is a later one than the tree's
+  bool changed = false;             // the scene is later than the tree
 };
 
 // Calls take(ray, primitive, distance) for rays `first` to first + n from `origin` to which Embree proposes a triangle.
-// A ray goes on if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of one of these.
+// A ray continues if it returns false. `placed`: nodes share meshes, and Embree's ray is in the frame of such a mesh.
 template <unsigned n, bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
                                          const Context& context, const Float3& origin, const Take& take) {
@@ -55,14 +55,14 @@ template <unsigned n, bool placed, bool changed, class Take>
   std::uint32_t primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
   alignas(32) std::int32_t beside[n]{};
-  if constexpr (changed) std::fill_n(beside, n, 1);  // of kInNone, which is no_hit
+  if constexpr (changed) std::fill_n(beside, n, 1);  // for kInNone, which equals no_hit
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
     const unsigned named = RTCHitN_primID(args->hit, all, i);
     const std::uint32_t proposed = changed ? context.tree->number_by_runs(named)
                                            : context.tree->number(RTCHitN_instID(args->hit, all, i, 0), named);
-    if (proposed != primitive) {  // mostly, all rays of a packet meet the same triangle
+    if (proposed != primitive) {  // mostly, all rays of a packet hit the same triangle
       primitive = proposed;
       if constexpr (changed)
         if (proposed == SceneTree::kInNone) {
@@ -134,7 +134,7 @@ void note(const RTCFilterFunctionNArguments* args) {
   });
 }
 
-// Notes every hit, and lets the rays go on.
+// Notes every hit, and lets rays continue.
 VANTAGE_TARGET_CLONES
 void note_all(const RTCFilterFunctionNArguments* args) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
@@ -157,7 +157,7 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<con
 
 std::optional<RayCaster::Change> RayCaster::prepare(std::shared_ptr<const SceneData> scene,
                                                     const SceneDifference& difference) const {
-  // Share of the tree's triangles that may be gone or new: rays walk over both.
+  // Largest share of the tree's triangles, as 1/kShare, that may be gone or new, since rays visit both.
   constexpr std::uint32_t kShare = 4;
   Change change;
   change.numbers = of_tree_ == scene_ ? difference.kept : joined(numbers_, difference.kept);

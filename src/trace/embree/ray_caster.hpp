@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits of bundles of rays, mostly from one point. Embree proposes hits, and this file chooses.
+// Nearest hits of bundles of rays, mostly from one point. Embree proposes hits; this file chooses.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace vantage {
 
-// Up to `capacity` rays, mostly with a common origin. Neighbours should have similar directions.
+// Up to `capacity` rays, mostly from a common origin. Neighbours should have similar directions.
 struct RayBundle {
   static constexpr std::uint32_t capacity = 256;
   static constexpr std::uint32_t no_hit = 0xFFFFFFFFu;
@@ -32,7 +32,7 @@ struct RayBundle {
   alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or no_hit
 };
 
-// A bundle of one ray.
+// Returns a bundle of one ray.
 inline RayBundle one_ray(const Float3& origin, const Float3& d, float start, float end) {
   RayBundle ray;
   ray.origin = origin;
@@ -45,7 +45,7 @@ inline RayBundle one_ray(const Float3& origin, const Float3& d, float start, flo
   return ray;
 }
 
-// Query whether anything blocks a ray before `end`.
+// Query for any triangle that blocks a ray before `end`.
 struct Probe {
   Float3 d;
   float end = 0;
@@ -60,7 +60,7 @@ class RayCaster {
   RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, Of of = Of::opaque);
 
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
-  // finds the ray to pass through, and that it comes near (Planes::beside), whatever the other rays of the bundle.
+  // finds the ray to pass through and that the ray comes near (Planes::beside), whatever the other rays of the bundle.
   // Embree's own distance depends on the processor's maker, and its choice among coincident triangles on the order of
   // visits; neither is used. Its tree is searched by `doubt` past the nearest hit and past both ends.
   static constexpr float doubt = 0x1p-8f;
@@ -72,41 +72,41 @@ class RayCaster {
     float t;
     std::uint32_t triangle;
   };
-  // All of them, in order of ray, t and triangle; leaves t and primitive of the bundle unspecified. REQUIRES:
-  // Of::glass.
+  // Returns all crossings in order of ray, t and triangle; leaves t and primitive of the bundle unspecified. REQUIRES:
+  // glass (the enumerator of Of).
   std::vector<Crossing> crossings(RayBundle& rays) const;
 
-  // A direction's component as Embree is given it. Embree replaces one below 1e-18 by +1e-18 but keeps its sign; such a
-  // ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by less
-  // than 1e-13 m.
+  // Returns a direction's component as given to Embree. Embree replaces one below 1e-18 by +1e-18 but keeps its sign;
+  // such a ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by
+  // less than 1e-13 m.
   static constexpr float least_component = 1e-16f;
   static float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
   // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;
 
-  // What a changed scene needs: the tree's numbers in it, and a tree of what is new there.
+  // Data for a changed scene: the tree's numbers in it, and a tree of its new triangles.
   struct Change {
     std::shared_ptr<const SceneData> scene;
     std::vector<KeptRun> numbers;
     std::unique_ptr<const SceneTree> added;  // null: nothing is new
   };
-  // Empty if so much differs from the scene of the tree that another tree would be better. REQUIRES: Of::opaque.
+  // Empty if so much differs from the tree's scene that a new tree would be better. REQUIRES: Of::opaque.
   std::optional<Change> prepare(std::shared_ptr<const SceneData> scene, const SceneDifference& difference) const;
-  // Casts in the changed scene from then on. What is gone from the tree stays in it, and stops no ray. Hits are those
-  // of a new tree, since they do not depend on it. REQUIRES: the planes take the scene, too.
+  // Casts in the changed scene from then on. Removed triangles stay in the tree and stop no ray. Hits equal those of a
+  // new tree, as they do not depend on the tree. REQUIRES: the planes take the scene, too.
   void take(Change change) noexcept;
 
  private:
   void cast(RayBundle& rays, std::vector<Crossing>* all) const;
 
   std::shared_ptr<const SceneData> scene_;
-  std::shared_ptr<const SceneData> of_tree_;  // its scene, which may be an earlier one
+  std::shared_ptr<const SceneData> of_tree_;  // scene of the tree, maybe an earlier one
   std::shared_ptr<const Planes> planes_;
   embree::Device device_;
   SceneTree tree_;
   std::vector<KeptRun> numbers_;            // of the tree in scene_, if that is another than of_tree_
-  std::unique_ptr<const SceneTree> added_;  // what of_tree_ lacks; null: nothing
+  std::unique_ptr<const SceneTree> added_;  // triangles that of_tree_ lacks; null: none
   bool changed_ = false;                    // triangles have the numbers of number_by_runs()
 };
 

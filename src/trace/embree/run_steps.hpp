@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts long runs of rays on one triangle by steps. The hits of a column's rays on a plane lie on a line, in the order
-// of the rays. If two of them lie in one voxel, and so far inside it that no noise moves them out, then so do all
-// between: a voxel is convex. Where rays are many times denser than voxels, few hits need to be worked out.
+// of the rays. If two of them lie in one voxel, too deep for noise to move them out, so do all between, as a voxel is
+// convex. If rays are many times denser than voxels, few hits are computed.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class RunSteps {
   // Borrows all.
   RunSteps(const StationRays& rays, const TraceStation& station, const Picture& picture)
       : rays_(rays), station_(station) {
-    // Whether glass lies before a hit is not known between two others.
+    // Two hits without glass before them do not exclude glass between.
     if (rays.glass()) return;
     const std::uint32_t rows = rays.pattern().rows();
     sines_.resize((rows + step - 1) / step + lanes);
@@ -35,18 +35,18 @@ class RunSteps {
     }
   }
 
-  // Whether a run of so many rays may be counted by steps.
+  // Returns true if a run of so many rays may be counted by steps.
   bool pay(std::uint32_t rays) const { return rays >= 3 * step && !sines_.empty(); }
 
   // Goes along rows `row` to `end` of a column, whose rays all hit this facet's triangle. Calls settled(point, rays)
-  // for rays in a row whose points all lie in the voxel of `point`, and rest(from, to) for rows that are to be worked
-  // out one by one. Each row is in one call. Inlined, to be compiled for the caller's target.
+  // for rays in a row whose points all lie in the voxel of `point`, and rest(from, to) for rows to be computed one by
+  // one. Each row is in one call. Inlined, to be compiled for the caller's target.
   template <class Settled, class Rest>
   [[gnu::always_inline]] void along(std::uint32_t row, std::uint32_t end, std::uint32_t column, std::uint32_t triangle,
                                     const Planes::Seen& plane, const Facet& facet, const Settled& settled,
                                     const Rest& rest) const {
     const float cosine = rays_.pattern().cos_azimuth[column], sine = rays_.pattern().sin_azimuth[column];
-    std::uint32_t from = row;  // before it, all rows are done
+    std::uint32_t from = row;  // all rows before it are done
     std::uint32_t first = (row + step - 1) / step;
     const std::uint32_t last = (end - 1) / step;
     for (; first + 2 <= last; first = std::min(last, first + (most - 1))) {
@@ -76,23 +76,23 @@ class RunSteps {
 
  private:
   static constexpr std::uint32_t lanes = 8, most = 32;
-  // How far a hit may lie from a voxel's side and still leave it: along any axis, in voxels.
+  // Largest distance of a hit from a voxel's side at which it may leave the voxel: along any axis, in voxels.
   struct Bounds {
-    float reach;   // by noise along the ray; a share of it along each axis
+    float reach;   // by noise along the ray; its share counts on each axis
     float beside;  // by roundings of directions
   };
-  // Voxels of hits, by axis, and the hits. A hit that may leave its voxel has a voxel that no other has.
+  // Voxels of hits, by axis, and the hits. A hit that may leave its voxel gets a unique voxel.
   struct Samples {
     alignas(32) std::array<std::int32_t, most + lanes> x, y, z;
     alignas(32) std::array<float, most + lanes> px, py, pz;
   };
 
-  // Bounds for the hits from one row to another: on an arc of less than half a turn, the cosine of incidence is least,
-  // and the distance largest, at an end. Returns false if nothing can be said, or steps do not pay.
+  // Bounds the hits from one row to another. On an arc of less than half a turn, the cosine of incidence is least, and
+  // the distance largest, at an end. Returns false if no bound is known or steps do not pay.
   [[gnu::always_inline]] bool find_bounds(std::uint32_t first, std::uint32_t last, float cosine, float sine,
                                           std::uint32_t triangle, const Planes::Seen& plane, const Facet& facet,
                                           Bounds& bounds) const {
-    // A slope below this is near that of rays that nearly lie in the plane (Planes::distances()).
+    // A lower slope is near that of rays that nearly lie in the plane (Planes::distances()).
     constexpr double flat = 0x1p-8;
     double least = 1, farthest = 0, apart[3] = {};
     bool up[2] = {};
@@ -112,7 +112,7 @@ class RunSteps {
     const double inverse = rays_.grid().inverse_size();
     const double voxels = (std::abs(apart[0]) + std::abs(apart[1]) + std::abs(apart[2])) * inverse;
     if (voxels * 2 > last - first) return false;
-    // Directions and distances between are rounded, too.
+    // Directions and distances between are rounded as well.
     least *= 1 - 0x1p-16;
     farthest *= 1 + 0x1p-16;
     if (!rays_.all_count(triangle, least, farthest)) return false;
@@ -165,7 +165,7 @@ class RunSteps {
 
   const StationRays& rays_;
   const TraceStation& station_;
-  std::vector<float> sines_, cosines_;  // of every step-th row; empty: all rows are worked out one by one
+  std::vector<float> sines_, cosines_;  // of every step-th row; empty: all rows one by one
 };
 
 }  // namespace vantage

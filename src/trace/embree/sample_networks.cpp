@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t block = SampledVoxelCounter::block;
 constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
 
-// Upper bound on coordinates in sight, relative or absolute. A power of two, so that most calls keep the last call's
+// Bounds coordinates in sight, relative or absolute. Returns a power of two, so that most calls keep the last call's
 // sample.
 double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation>> networks) {
   const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
@@ -105,7 +105,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
     std::fill(counts.begin(), counts.end(), 0u);
     std::fill(masks.begin(), masks.end(), std::uint64_t{0});
     std::vector<std::uint64_t> traced(here);
-    // Part of the voxels from `start` on, of the network in place k.
+    // Returns the counts of a part of the voxels, from `start` on, of the network in place k.
     const auto counts_of = [&](std::size_t k, std::size_t start, std::size_t many) {
       return std::span(counts).subspan(k * n + start, many);
     };
@@ -122,7 +122,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
                     left_out(start, many));
       std::atomic_ref(traced[k]).fetch_add(counter.traced() - before, std::memory_order_relaxed);
     };
-    // The rays are those of the first network that has the station.
+    // Uses the rays of the first network that has the station.
     const auto count_shared = [&](SampledVoxelCounter& counter, std::size_t start, std::size_t many) {
       std::array<std::uint32_t, block> points{};
       for (const SharedStation& one : shared) {
@@ -139,7 +139,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
             .fetch_add(counter.traced() - before, std::memory_order_relaxed);
       }
     };
-    // Blocks of all networks, or of all shared stations together.
+    // Tasks are blocks of each network, or of all shared stations together.
     const std::size_t tasks = shared.empty() ? here * blocks : blocks;
     const std::size_t together = shared.empty() ? chunk : std::max(chunk / shared.size(), 4 * threads);
     for (std::size_t begin = 0; begin < tasks && !cancelled; begin += together) {

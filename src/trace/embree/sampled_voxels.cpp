@@ -45,7 +45,7 @@ SampledVoxels::Piece piece_of(const Corners& t) {
   return piece;
 }
 
-// Whether the plane passes the cube around the origin.
+// Returns true if the plane passes the cube around the origin.
 bool crosses(const ExactPlane& plane, double half) {
   const double across = std::abs(plane.normal.x) + std::abs(plane.normal.y) + std::abs(plane.normal.z);
   return std::abs(plane.offset) <= half * across;
@@ -69,7 +69,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     cells_[axis].resize(n);
   }
   const double side = grid.voxel_size();
-  // A hit's point lies on its plane except for rounding.
+  // A hit's point lies on its plane, apart from rounding.
   const double half = side / 2 + pad, wide = half + reach + 2 * pad, beside = margin - reach + pad;
 
   parallel::for_all(std::size_t{0}, n, [&](std::size_t i) {
@@ -86,7 +86,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     for (std::uint32_t k = first; k < end && own.size() <= most_planes; ++k) {
       const Corners corners = corners_of(k);
       const ExactPlane plane = plane_of(corners);
-      // Close enough that no hit in the cube moves by a noticeable part of the pad, however grazing.
+      // Merges planes so close that no hit in the cube moves by a noticeable part of the pad, at any slant.
       const auto same = [&](const ExactPlane& other) {
         const double sign = dot(plane.normal, other.normal) < 0 ? -1 : 1;
         return std::abs(plane.offset * sign - other.offset) + 3 * wide * largest(plane.normal * sign - other.normal) <=

@@ -14,8 +14,8 @@ namespace vantage {
 // Voxels of a sample, each with the surveyed triangles that can be hit in it. Immutable.
 class SampledVoxels {
  public:
-  static constexpr std::size_t most_planes = 16;  // most planes of a voxel that are worth testing
-  // A triangle within its plane, relative to the middle of the voxel's cube. Valid for that cube only.
+  static constexpr std::size_t most_planes = 16;  // most planes of a voxel for which tests pay
+  // Part of a plane covered by a triangle, relative to the middle of the voxel's cube. Valid only for that cube.
   struct Piece {
     struct Edge {
       Float3 inwards;  // unit, in the plane; the triangle lies where inwards · p >= offset
@@ -30,26 +30,26 @@ class SampledVoxels {
     Float3 normal;  // unit; 0 if a triangle has no area
     float offset;
     float slenderness;  // largest SeenTriangle::slenderness; infinite if a triangle has no area
-    float diffuse;      // the least of a triangle
-    // No hit has a normal farther from that of the plane, as vectors of unit length; 1 or above: nothing is known.
+    float diffuse;      // least of its triangles
+    // Largest distance of a hit's normal from the plane's, as unit vectors; 1 or above: unknown.
     float tilt;
     std::uint32_t first, end;
   };
   using Cell = std::array<std::vector<std::int32_t>, 3>;  // by axis and voxel
-  // Corners of a box around the triangles of a voxel's planes that pass its cube, and all hits on them, from its
-  // middle.
+  // Box around the triangles of a voxel's planes that pass its cube, and around all hits on them, relative to the
+  // cube's middle.
   struct Around {
     Float3 low, high;
   };
 
-  // Neighbouring voxels, by their number: `size` of them from a multiple of it on lie in these cells.
+  // Cells of a group of `size` voxels with neighbouring numbers, from a multiple of `size` on.
   struct Cells {
     std::array<std::int32_t, 3> low, high;
   };
   static constexpr std::array<std::size_t, 3> group_sizes{512, 64, 8};
 
-  // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: how far outside its
-  // voxel's cube a triangle's hit may lie whose point still counts in it. Metres.
+  // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: largest distance of a
+  // triangle's hit from its voxel's cube if its point still counts there. Metres.
   SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
                 std::span<const std::uint32_t> voxel_indices, double pad, double reach, double margin);
 
@@ -59,7 +59,7 @@ class SampledVoxels {
     return {static_cast<std::uint32_t>(cells_[0][i]), static_cast<std::uint32_t>(cells_[1][i]),
             static_cast<std::uint32_t>(cells_[2][i])};
   }
-  // Planes that pass the cube, followed by the others. Empty: too many to be worth testing.
+  // Returns the planes that pass the cube, followed by the others. Empty if they are too many for tests to pay.
   std::span<const Plane> planes(std::size_t i) const {
     return {planes_.data() + offset_[i], planes_.data() + offset_[i + 1]};
   }
@@ -67,7 +67,7 @@ class SampledVoxels {
   const Piece& piece(std::size_t k) const { return pieces_[k]; }
   const Cell& cells() const { return cells_; }
   const Around& around(std::size_t i) const { return around_[i]; }
-  // Number k of the groups of group_sizes[level] voxels.
+  // Returns group k of group_sizes[level] voxels.
   const Cells& group(std::size_t level, std::size_t k) const { return groups_[level][k]; }
 
  private:

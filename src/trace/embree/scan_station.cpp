@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// The outputs wanted of a chunk's rays, and the arrays for them.
+// The wanted outputs of a chunk's rays, and the arrays for them.
 struct Wanted {
   Tracer::RawChunk& chunk;
   std::uint32_t outputs;
@@ -39,8 +39,8 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
   }
 }
 
-// The tile's points: hits, or panes that return the beam, without those whose echo is too weak or lost. `counts`:
-// whether a point meets all limits. Overwrites the bundle's hits.
+// Finds the tile's points: hits, or panes that reflect the beam, without those whose echo is too weak or lost.
+// `counts`: true if a point meets all limits. Overwrites the bundle's hits.
 void find_points(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
                  Hits& points, bool* counts) {
   std::array<Passed, RayBundle::capacity> passed;
@@ -52,7 +52,7 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
       if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);
   }
-  std::array<bool, RayBundle::capacity> returned{};  // by a pane
+  std::array<bool, RayBundle::capacity> returned{};  // reflected by a pane
   if (behind_glass)
     for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
       const Passed& way = passed[slot];
@@ -187,7 +187,7 @@ void ChunkedScan::scan(const StationRays& rays, const TraceStation& station, std
     }
     fill_tile(rays, station, tile, bundle, voxels, wanted);
   };
-  if (pattern.list) {  // one column of tiles
+  if (pattern.list) {  // a list has one column of tiles
     parallel::for_all(tbb::blocked_range<std::uint32_t>(tiles.first, tiles.end), [&](const auto& range) {
       VoxelLookup voxels = rays.voxels();
       RayBundle bundle;

@@ -9,16 +9,16 @@
 
 namespace vantage {
 
-// Whole scans, chunk by chunk. Not thread-safe.
+// Scans whole stations, chunk by chunk. Not thread-safe.
 class ChunkedScan {
  public:
-  // Tracer::scan on the CPU. What is drawn of a station's last chunk serves its next; the chunk with the last ray ends
-  // that.
+  // Tracer::scan on the CPU. A picture drawn for one chunk of a station serves its next chunks; the chunk with the last
+  // ray frees it.
   void scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
             std::uint32_t outputs, Tracer::RawChunk& chunk);
 
  private:
-  // Where triangles are to be drawn, as seen from a station.
+  // A picture prepared for a station.
   struct View {
     View(const StationRays& own_rays, const TraceStation& from)
         : rays(own_rays),
@@ -32,7 +32,7 @@ class ChunkedScan {
     const StationRays& rays;
     const TraceStation station;
     const TileEnds ends;
-    const std::unique_ptr<const Picture> picture;  // null: rays are to be traced
+    const std::unique_ptr<const Picture> picture;  // null: rays are traced
   };
   std::unique_ptr<const View> view_;
 };

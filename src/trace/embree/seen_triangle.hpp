@@ -21,7 +21,7 @@ struct SeenBox {
     const Vec3 most{std::abs(middle.x) + half.x, std::abs(middle.y) + half.y, std::abs(middle.z) + half.z};
     far = std::sqrt(dot(most, most));
   }
-  // The least product of a vector with a point of the box.
+  // Returns the least product of a vector with a point of the box.
   double least(const Vec3& n) const {
     return dot(n, middle) - (std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z);
   }
@@ -29,9 +29,9 @@ struct SeenBox {
   double far;  // no point is farther
 };
 
-// Directions from the head, at most `radius` from the end of the unit vector `middle`.
+// Directions from the head whose unit vectors lie within `radius` of `middle`.
 struct SeenCone {
-  // Bounds on the product of a vector with such a direction.
+  // Bound the product of a vector with such a direction.
   double least(const Vec3& n) const { return dot(n, middle) - radius * std::sqrt(dot(n, n)); }
   double most(const Vec3& n) const { return dot(n, middle) + radius * std::sqrt(dot(n, n)); }
   Vec3 middle;
@@ -56,11 +56,11 @@ class SeenTriangle {
     least_slope_ = distance_doubt_ < kMostDoubt ? slope_doubt_ / (kMostDoubt - distance_doubt_) : kNever;
   }
 
-  // True if Embree is certain to report a hit whose distance is known.
+  // Returns true if Embree is certain to report a hit whose distance is known.
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_ && dot(edge_[1], d) > tolerance_ && dot(edge_[2], d) > tolerance_;
   }
-  // Bounds on the distance that Embree reports for a hit; 0 and infinity if nothing is known of it.
+  // Bounds the distance that Embree reports for a hit; 0 and infinity if it is unknown.
   double nearest_hit(const Vec3& d) const {
     const double slope = dot(normal_, d);
     return slope > least_slope_ ? height_ / slope * (1 - doubt(slope)) : 0;
@@ -69,7 +69,7 @@ class SeenTriangle {
     const double slope = dot(normal_, d);
     return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
   }
-  // The same for all rays of a cone.
+  // The same functions for all rays of a cone.
   bool must_hit(const SeenCone& cone) const { return inside(0, cone) && inside(1, cone) && inside(2, cone); }
   double nearest_hit(const SeenCone& cone) const {
     const double slope = cone.least(normal_);
@@ -79,8 +79,8 @@ class SeenTriangle {
     const double slope = cone.least(normal_);
     return slope > least_slope_ ? height_ / slope * (1 + doubt(slope)) : kNever;
   }
-  // True if for every ray of a cone that meets a plane, normal · p = height > 0, the hit lies before `part` of the way
-  // there, less `pad`. Exact for parallel planes, however grazing the rays.
+  // Returns true if, for every ray of a cone that meets a plane, normal · p = height > 0, the hit lies before `part` of
+  // the way there, minus `pad`. Exact for parallel planes, at any slant of the rays.
   bool is_before(const SeenCone& cone, const Vec3& normal, double height, double part, double pad) const {
     const double slope = cone.least(normal_), other = cone.most(normal);
     if (other <= 0) return true;
@@ -88,20 +88,20 @@ class SeenTriangle {
     return cone.least(normal_ * (part * height) - normal * (height_ * (1 + doubt(slope)))) >
            pad * cone.most(normal_) * other;
   }
-  // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
-  // such a point.
+  // Returns true if Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that
+  // reaches such a point.
   bool hides(const SeenBox& box, double start) const { return covers(box) && is_before(box, start); }
-  // Whether each hit by such a ray lies beyond `start` and before the box.
+  // Returns true if each hit by such a ray lies beyond `start` and before the box.
   bool is_before(const SeenBox& box, double start) const {
     const double beyond = box.least(normal_), slope = beyond / box.far;
     if (!(slope > least_slope_)) return false;
     const double most = doubt(slope);
     return height_ * (1 - most) > start * std::sqrt(dot(normal_, normal_)) && beyond > height_ * (1 + most);
   }
-  // True if Embree is certain to report a hit for every ray that reaches a point of the box, if its distance is known.
+  // Returns true if Embree certainly reports a hit for each ray to a point of the box, if its distance is known.
   bool covers(const SeenBox& box) const { return inside(0, box) && inside(1, box) && inside(2, box); }
-  // Whether all of the box is on the triangle's side of edge k, or all of it on the other; neither if it may be cut.
-  // The edges are those from corner k to the next.
+  // Returns true if the whole box is on the triangle's side of edge k; outside() if it is all on the other side.
+  // Neither holds if the edge may cut the box. Edge k goes from corner k to the next.
   template <class Region>
   bool inside(std::size_t k, const Region& region) const {
     return region.least(edge_[k]) > tolerance_ * region.far;
@@ -110,7 +110,7 @@ class SeenTriangle {
   bool is_outside(std::size_t k, const Vec3& point) const {
     return dot(edge_[k], point) < -tolerance_ * std::sqrt(dot(point, point));
   }
-  // Bound on the angle to the corner of two edges, as a sine, of a ray whose side of both is in doubt.
+  // Bounds the angle, as a sine, between a ray in doubt of two edges and their common corner.
   double doubt_at(std::size_t k, std::size_t other) const {
     const double a = std::sqrt(dot(edge_[k], edge_[k])), b = std::sqrt(dot(edge_[other], edge_[other]));
     const Vec3 across = cross(edge_[k], edge_[other]);
@@ -118,9 +118,9 @@ class SeenTriangle {
   }
 
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight
-  // roundings of 2^−24 of their product. This is eight times that.
+  // roundings of 2^−24 of their product. The bound is eight times that.
   static constexpr double edge_doubt = 0x1p-18;
-  // Longest edge squared over twice the area; 1.15 for an equilateral triangle.
+  // Returns the longest edge squared over twice the area; 1.15 for an equilateral triangle.
   static double slenderness(const Vec3& a, const Vec3& b, const Vec3& c, double twice_area) {
     return longest_square(a, b, c) / twice_area;
   }
@@ -130,15 +130,15 @@ class SeenTriangle {
     return std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
   }
 
-  // Embree's distance is a quotient of products of a normal in float, with a corner and with the ray. The normal is a
-  // cross product of edges, so an error of up to 2^−22 of the longest edge squared is in it, which may be as long as a
-  // sliver's normal. This is four times that, which allows for the rounding of corners and products, too.
+  // Embree's distance is a quotient of products of a float normal, with a corner and with the ray. The normal is a
+  // cross product of edges, with an error of up to 2^−22 of the longest edge squared, which may be as long as a
+  // sliver's normal. The bound is four times that, to allow for the rounding of corners and products as well.
   static constexpr double kNormalDoubt = 0x1p-20;
   static constexpr double kRounding = 0x1p-22;  // of the quotient
-  static constexpr double kMostDoubt = 0x1p-6;  // beyond it nothing is said
+  static constexpr double kMostDoubt = 0x1p-6;  // beyond it the distance counts as unknown
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  // Bound on the relative error of the distance of rays with this product with the normal, or a larger one.
+  // Bounds the relative error of the distance of rays with at least this product with the normal.
   double doubt(double slope) const { return slope_doubt_ / slope + distance_doubt_; }
 
   // All times twice the area.

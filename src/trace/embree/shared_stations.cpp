@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// Equal if all rays of two stations give the same points. The place keys the noise; all zeros mean no turn.
+// Keys are equal if all rays of two stations give the same points. The place keys the noise; zeros mean no turn.
 using Key = std::array<std::uint32_t, 14>;
 
 Key key_of(const TraceStation& station, bool noisy) {

@@ -12,7 +12,7 @@
 
 namespace vantage {
 
-// Numbers of the stations of each network; stations have one number if all their rays give the same points.
+// Numbers of the stations of each network. Stations have the same number if all their rays give the same points.
 struct StationIds {
   std::vector<std::vector<std::size_t>> of;  // [network][station]
   std::size_t different = 0;
@@ -26,9 +26,9 @@ class SharedStations {
                  std::size_t most_bytes);
 
   std::size_t different() const { return uses_.size(); }
-  // Order in which to process the networks: the next one shares most stations with the last.
+  // Returns an order of the networks in which each shares as many stations as possible with the one before.
   std::span<const std::size_t> order() const { return order_; }
-  // To be called for every station of every network, in that order.
+  // Result for a station; asked for every station of every network, in that order.
   struct Use {
     std::size_t id;
     bool again;                   // a later network has it, too
@@ -43,7 +43,7 @@ class SharedStations {
 
   void put_in_order();
   void drop(std::size_t id);
-  // Position of the next network that has the station, or never.
+  // Returns the position of the next network that has the station, or never.
   std::size_t wanted(std::size_t id) const { return left_[id] < uses_[id].size() ? uses_[id][left_[id]] : never; }
 
   std::vector<std::vector<std::size_t>> ids_;  // stations of each network

@@ -10,9 +10,9 @@
 
 namespace vantage {
 
-// The rays of a window in units of up to `kUnit` neighbours in a row, from its middle on: an occluder of the middle ray
-// may hide all. Spread, any number of units in succession lie all over the window, so that they see what all of its
-// rays see, in proportion; else the units go row by row, and around.
+// The rays of a window in units of up to `kUnit` neighbours in a row. The middle unit comes first, since an occluder of
+// its ray may hide all. Spread units: any number of consecutive ones covers the window evenly, so that they sample all
+// its rays in proportion. Otherwise units go row by row, cyclically.
 class SpreadUnits {
  public:
   static constexpr std::uint32_t kUnit = 8;
@@ -35,7 +35,7 @@ class SpreadUnits {
   }
   std::uint32_t size() const { return size_; }
   std::uint32_t of_row() const { return blocks_[0] + blocks_[1]; }
-  // Index of the unit whose turn is `turn`, for at() and next().
+  // Returns the index of the unit at this turn, for at() and next().
   std::uint32_t index(std::uint32_t turn) const {
     return static_cast<std::uint32_t>((start_ + std::uint64_t{turn} * step_) % size_);
   }

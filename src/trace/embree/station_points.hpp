@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// Points of a single station in every voxel, packed: a bit per voxel, and a byte for each voxel with points.
+// Points of one station in all voxels, packed: a bit for each voxel, and a byte for each voxel with points.
 class StationPoints {
  public:
   // `counts`: of each voxel.

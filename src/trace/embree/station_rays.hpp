@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by all ways of tracing on the CPU: a scanner's rays, and how a hit becomes a point. Each way gives the same
-// bits for a ray's point.
+// Shared by all ways of tracing on the CPU: a scanner's rays, and the conversion of hits to points. Each way gives the
+// same bits for a ray's point.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace vantage {
 
-// Rays that are traced together: at most `side` rows of as many columns, or as many rows of a list.
+// Rays that are traced together: at most `side` rows and columns, or as many rows of a list.
 struct RayTile {
   static constexpr std::uint32_t side = 16;
   static_assert(side * side <= RayBundle::capacity);
@@ -56,7 +56,7 @@ struct EmbreeScene {
   Surface surface;
   BrickPrefixes prefixes;
   std::optional<OccludingPatches> patches;
-  std::unique_ptr<const GlassPanes> glass;  // null: glass weakens no echo
+  std::unique_ptr<const GlassPanes> glass;  // null: no glass weakens echoes
   WholeScans whole_scans;
 };
 
@@ -123,19 +123,19 @@ class StationRays {
     std::fill_n(rays.end, rays.size, end);
   }
 
-  // Fills hits.range, noise included; `for_voxels`: as far as that moves points from voxel to voxel.
+  // Fills hits.range with noise; with `for_voxels` only as far as noise moves points to other voxels.
   void find_ranges(const TraceStation& station, Hits& hits, bool for_voxels) const {
     vantage::find_ranges(surface(), noise_, station.origin, station.place, hits, for_voxels ? &grid() : nullptr);
   }
 
   bool limited() const { return judge_.enabled(); }
-  // True if noise or lost echoes are drawn by the ray's number.
+  // Returns true if noise or lost echoes are drawn by the ray's number.
   bool draws() const { return noise_.enabled() || judge_.loses_echoes(); }
-  // True if the echo of this ray is lost at random.
+  // Returns true if the echo of this ray is lost at random.
   bool lost(std::uint64_t ray, std::uint32_t place) const { return judge_.lost(ray, place); }
-  // Glass that weakens echoes of this scanner; null if there is none.
+  // Returns the glass that weakens echoes of this scanner; null if there is none.
   const GlassPanes* glass() const { return glass_; }
-  // Whether all hits count if no glass is before them. False where it takes dropped() to know.
+  // Returns true if all hits certainly count when no glass is before them; else dropped() decides.
   [[gnu::always_inline]] bool all_count(const Hits& hits) const {
     if (!echo_alone_) return false;
     for (std::uint32_t k = 0; k < hits.size;) {
@@ -153,16 +153,16 @@ class StationRays {
     }
     return true;
   }
-  // Whether all hits on a triangle count, with no glass before them, at cosines of incidence from `cosine` on and
-  // distances up to t. False where it is not known.
+  // Returns true if all hits on a triangle certainly count, with no glass before them, at cosines of incidence from
+  // `cosine` on and distances up to t.
   bool all_count(std::uint32_t triangle, double cosine, double t) const {
     if (!limited()) return true;
     if (!echo_alone_) return false;
     const double reach_square = judge_.reach_square(surface().mesh(triangle));
     return reach_square == 0 || t * t * (1 + 0x1p-20) <= reach_square * cosine;
   }
-  // Limits for which a ray's point is dropped; none if it counts. `passed`: share of its echo that passes glass.
-  // REQUIRES: limited(); rays.primitive[slot] is a hit.
+  // Returns the limits for which a ray's point is dropped; none if it counts. `passed`: share of its echo that passes
+  // glass. REQUIRES: limited(); rays.primitive[slot] is a hit.
   DroppedPoints dropped(const TraceStation& station, std::uint64_t ray, const RayBundle& rays, std::uint32_t slot,
                         double passed) const {
     return dropped(station, ray, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot],
@@ -189,7 +189,7 @@ class StationRays {
   RangeNoise noise_;
   PointJudge judge_;
   const GlassPanes* glass_;
-  bool echo_alone_;  // echoes alone are limited, and the normals of planes decide
+  bool echo_alone_;  // only echoes are limited, and planes' normals decide
 };
 
 }  // namespace vantage

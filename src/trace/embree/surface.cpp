@@ -35,7 +35,7 @@ double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane
     const Vec3 off = normal * (sign / size) - plane;
     most = std::max(most, std::sqrt(dot(off, off)));
   }
-  // Between the corners an angle is no larger than theirs, but a chord may be, by less than a tenth.
+  // Between the corners no angle exceeds theirs, but a chord may exceed it by less than a tenth.
   return most < 0.5 ? 1.1 * most + kRounding : kUnknown;
 }
 

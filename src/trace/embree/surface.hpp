@@ -23,17 +23,17 @@ struct Facet {
   std::array<Vec3, 3> normals;
   Vec3 plane;  // unit normal
   double diffuse = 0;
-  // No hit has a normal farther from the plane's, turned the same way, as vectors of unit length; 1: nothing is known.
+  // Largest distance of a hit's normal from the plane's, turned the same way, as unit vectors; 1: unknown.
   double tilt = 0;
 
-  // Weights of the second and third corner at distance t.
+  // Returns the weights of the second and third corner at distance t.
   [[gnu::always_inline]] std::array<double, 2> weights(const Float3& o, const Float3& d, float t) const {
     const Vec3 p = widen(o) + widen(d) * t - corner;
     const double u = std::min(std::max(dot(cross(p, second), across) / area, 0.0), 1.0);
     const double v = std::min(std::max(dot(cross(first, p), across) / area, 0.0), 1.0 - u);
     return {area > 0 ? u : 0.0, area > 0 ? v : 0.0};
   }
-  // Unit normal turned against d. Interpolated from the corners, or that of the plane if they have none or cancel out.
+  // Returns the unit normal turned against d: interpolated, or the plane's if corners have none or cancel out.
   Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
     return smooth ? smooth_normal(d, weights) : flat_normal(d);
   }
@@ -45,7 +45,7 @@ struct Facet {
     const bool some = length > 0;
     return against(d, {some ? n.x * scale : plane.x, some ? n.y * scale : plane.y, some ? n.z * scale : plane.z});
   }
-  // R·(I·(−N)), never below 0.
+  // Returns R·(I·(−N)), never below 0.
   [[gnu::always_inline]] float reflectivity(const Float3& d, const Vec3& normal) const {
     const double value = diffuse * -dot(normal, widen(d));
     return static_cast<float>(std::min(std::max(value, 0.0), 1.0));
@@ -57,7 +57,7 @@ struct Facet {
   }
 };
 
-// Facet::tilt of a triangle with this unit normal.
+// Returns Facet::tilt of a triangle with this unit normal.
 double tilt_of(const SceneData& scene, std::uint32_t triangle, const Vec3& plane);
 
 // Tables over the triangles of a scene. Immutable; safe to use from any thread.
@@ -76,7 +76,7 @@ class Surface {
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   std::vector<std::uint64_t> surveyed_;  // a bit per triangle
-  std::vector<std::uint32_t> mesh_;      // per triangle; empty if the scene shares meshes, and has many
+  std::vector<std::uint32_t> mesh_;      // per triangle; empty if many triangles are in shared meshes
   std::vector<double> diffuse_;          // per mesh
 };
 

@@ -40,8 +40,8 @@ TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station)
   const RayPattern& pattern = rays.pattern();
   const VoxelGrid& grid = rays.grid();
   const double reach = static_cast<double>(rays.noise().reach());
-  if (pattern.list) return all_tiles(pattern);  // neighbours in a list may look anywhere
-  // If noise may carry a point through the head to its other side, the rays of that side are needed.
+  if (pattern.list) return all_tiles(pattern);  // neighbours in a list may point anywhere
+  // If noise may carry a point through the head to the other side, the rays of that side are needed.
   if (reach > 0 && reach >= static_cast<double>(pattern.min_range)) return all_tiles(pattern);
 
   TileEnds tiles{tiles_down(pattern), tiles_across(pattern.columns()), {}};
@@ -51,10 +51,10 @@ TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station)
   const Vec3 head{station.origin.x, station.origin.y, station.origin.z};
   const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
   const double side = grid.voxel_size() * (1 << brick_bits), cube = grid.voxel_size() * (1 << grid.depth());
-  // Upper bound on all values rounded on the way to a voxel.
+  // Bounds all values that are rounded on the way to a voxel.
   const double magnitude = std::sqrt(dot(head, head)) + std::sqrt(dot(min, min)) + 2 * cube;
   const double pad = rounding_pad(magnitude);
-  const double stretch = 1 + 0x1p-20;  // far more than the rounding of a distance
+  const double stretch = 1 + 0x1p-20;  // far above the rounding of a distance
 
   parallel::for_all(tbb::blocked_range<std::size_t>(0, grid.bricks().size(), 1024), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {

@@ -9,21 +9,21 @@
 
 namespace vantage {
 
-// The distance to which the rays of each tile must be traced; 0: not at all.
+// Distances to which the rays of each tile must be traced; 0: not at all.
 struct TileEnds {
   std::uint32_t tall = 0, wide = 0;  // tiles
   std::vector<float> end;            // [row of tiles][column of tiles]
   float of(std::uint32_t a, std::uint32_t b) const { return end[std::size_t{a} * wide + b]; }
 };
 
-// All tiles of the pattern, to its full range.
+// Returns all tiles of the pattern, to its full range.
 TileEnds all_tiles(const RayPattern& pattern);
 
-// Tiles in which a surveyed brick lies as seen from `station`. Rays left out, and parts of rays beyond their end, hold
-// no point that counts and no hit that hides one.
+// Returns the tiles in which a surveyed brick lies as seen from `station`. Rays left out, and parts of rays beyond
+// their end, have no point that counts and no hit that hides one.
 TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station);
 
-// The rays of tile (a, b).
+// Returns the rays of tile (a, b).
 RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b);
 
 struct SelectedTile {
@@ -31,7 +31,7 @@ struct SelectedTile {
   float end = 0;  // rays need not be traced further
 };
 
-// Tiles that must be traced.
+// Returns the tiles that must be traced.
 std::vector<SelectedTile> selected(const TileEnds& ends, const RayPattern& pattern);
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GCC's and Clang's, for loops that no compiler vectorises by itself. Without such registers they become
+// Vector types of GCC and Clang, for loops that no compiler vectorises by itself. Without such registers they become
 // several narrower ones.
 #pragma once
 
@@ -14,7 +14,7 @@ using Floats4 = float __attribute__((vector_size(16)));
 using Longs4 = std::int64_t __attribute__((vector_size(32)));
 using Doubles4 = double __attribute__((vector_size(32)));
 
-// Unaligned.
+// Loads from unaligned memory.
 template <class Vector>
 [[gnu::always_inline]] inline void load(Vector& vector, const void* from) {
   std::memcpy(&vector, from, sizeof(vector));
@@ -23,7 +23,7 @@ template <class Vector>
 [[gnu::always_inline]] inline void store(void* to, const Vector& vector) {
   std::memcpy(to, &vector, sizeof(vector));
 }
-// Lower and upper half, in double precision.
+// Converts the lower and upper half to double.
 [[gnu::always_inline]] inline void widen(const Floats8& v, Doubles4& low, Doubles4& high) {
   low = __builtin_convertvector(__builtin_shufflevector(v, v, 0, 1, 2, 3), Doubles4);
   high = __builtin_convertvector(__builtin_shufflevector(v, v, 4, 5, 6, 7), Doubles4);
@@ -32,14 +32,14 @@ template <class Vector>
   v = __builtin_shufflevector(__builtin_convertvector(low, Floats4), __builtin_convertvector(high, Floats4), 0, 1, 2, 3,
                               4, 5, 6, 7);
 }
-// Lower halves of all elements.
+// Takes the lower halves of all elements.
 [[gnu::always_inline]] inline void narrow(const Longs4& low, const Longs4& high, Ints8& v) {
   Ints8 a, b;
   load(a, &low);
   load(b, &high);
   v = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
 }
-// Eight rows of four elements each, as columns.
+// Transposes eight rows of four elements to columns.
 [[gnu::always_inline]] inline void transpose(const Floats4 (&row)[8], Floats8 (&column)[4]) {
   Floats8 pair[4];  // rows k and k + 4
   for (int k = 0; k < 4; ++k) pair[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
@@ -52,7 +52,7 @@ template <class Vector>
   column[2] = __builtin_shufflevector(c, d, 0, 1, 8, 9, 4, 5, 12, 13);
   column[3] = __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
-// Whether any element of a comparison is true.
+// Returns true if any element of a comparison is true.
 [[gnu::always_inline]] inline bool any(const Ints8& mask) {
   std::uint64_t words[4];
   store(words, mask);

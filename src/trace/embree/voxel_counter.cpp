@@ -31,17 +31,17 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t rays_at_once = 2048;
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-// Rays of a voxel are probed one by one for an occluder as long as at least this many are left, and each probe hides at
-// least this many. Fewer rays are traced as fast as one is probed.
+// Rays of a voxel are probed one by one for an occluder while at least this many are left and each probe hides at least
+// this many. Fewer rays are traced as fast as one is probed.
 constexpr std::uint32_t kWorthProbe = 8;
-// Each further step of a count with a limit `stop_at` lists and traces this many times the rays of the step before.
+// Each further step of a count with a limit `stop_at` lists and traces this many times the previous step's rays.
 constexpr std::uint32_t kMore = 4;
-// Triangles that are remembered.
+// Number of triangles that are remembered.
 constexpr std::size_t kMet = 4;
-// Units of a window that are traced before its tiles are tested.
+// Number of a window's units that are traced before its tiles are tested.
 constexpr std::uint32_t kFirstUnits = 64;
 
-// Whether VoxelGrid::cell_of(p) is `cell`.
+// Returns true if VoxelGrid::cell_of(p) is `cell`.
 bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint32_t, 3>& cell) {
   const std::array<float, 3>& min = grid.min();
   const auto in = [&](float scaled, std::uint32_t k) {
@@ -96,7 +96,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       }
       const RayRanges window = window_of(k);
       if (window.empty()) continue;
-      // What stands before the middle mostly hides more than that.
+      // An occluder of the middle mostly hides more than the middle.
       const Tiles tiles = each.occluder != RayBundle::no_hit ? find_hidden(each, window) : Tiles();
       list_rays({each, window, 0, counts_[each.voxel], tiles}, wanted(each.voxel));
     }
@@ -154,7 +154,7 @@ void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
   }
 }
 
-// Holds every point that counts in one of the cells, before the noise moves it, relative to the head.
+// Returns a box of every point that counts in one of the cells, before noise moves it, relative to the head.
 Box SampledVoxelCounter::box_of(const SampledVoxels::Cells& cells) const {
   const VoxelGrid& grid = rays_->grid();
   const double side = grid.voxel_size();
@@ -208,7 +208,7 @@ bool SampledVoxelCounter::is_hidden(const SeenBox& box) {
   return false;
 }
 
-// Finds the middles of the block's cubes from the current head.
+// Computes the middles of the block's cubes, relative to the current head.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
   const double side = rays_->grid().voxel_size();
@@ -223,7 +223,7 @@ void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
 }
 
-// Bounds the rays that can leave a point in each voxel of looks_.
+// Bounds the rays that can leave a point in each of looks_.
 void SampledVoxelCounter::find_windows() {
   const double half = rays_->grid().voxel_size() / 2 + pad_;
   boxes_.size = static_cast<std::uint32_t>(looks_.size());
@@ -301,7 +301,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube
   }
 }
 
-// Looks at voxel number i of the block. Returns false if no ray leaves a point there.
+// Examines voxel number i of the block. Returns false if no ray leaves a point there.
 bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   const RayPattern& pattern = rays_->pattern();
   const double half = rays_->grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
@@ -323,8 +323,8 @@ bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   return !look.hits.empty();
 }
 
-// Bound on how far noise moves a hit on the planes of voxel number i, nearer than `far`. It is smaller for bright
-// planes, and for planes that are met steeply.
+// Bounds how far noise moves a hit on the planes of voxel number i, nearer than `far`. The bound is smaller for bright
+// planes, and for steep incidence.
 double SampledVoxelCounter::reach_of(std::uint32_t i, double far) const {
   const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
   double least = planes.empty() ? 0 : 1;
@@ -336,20 +336,20 @@ double SampledVoxelCounter::reach_of(std::uint32_t i, double far) const {
       rays_->noise().reach_within(static_cast<float>(far), static_cast<float>(std::max(least, 0.0))));
 }
 
-// True if hits on the plane may count.
+// Returns true if hits on the plane may count.
 bool SampledVoxelCounter::crosses(const SampledVoxels::Plane& plane, const Cube& cube) const {
   const float across = std::abs(plane.normal.x) + std::abs(plane.normal.y) + std::abs(plane.normal.z);
   return !(std::abs(plane.offset) > (cube.half + static_cast<float>(4 * pad_)) * across);
 }
 
-// Height of the head over a plane of voxel number i. It is computed in double, so that the rounding that turned the
-// plane turned it around the voxel.
+// Returns the height of the head over a plane of voxel number i. Computed in double, since rounding turned the plane
+// around the voxel.
 float SampledVoxelCounter::height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const {
   return static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
                             static_cast<double>(plane.offset));
 }
 
-// Around all parts of the voxel's triangles that the cube holds, if no others can be hit.
+// Returns a box around the parts of the voxel's triangles in the cube, if no others can be hit.
 Box SampledVoxelCounter::hits_of(const Look& look) const {
   const std::uint32_t i = look.voxel;
   const Vec3 centre{x_[i], y_[i], z_[i]};
@@ -366,8 +366,8 @@ Box SampledVoxelCounter::hits_of(const Look& look) const {
     if (!crosses(plane, look.cube)) continue;
     const Vec3 n = widen(plane.normal), all{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const double offset = static_cast<double>(plane.offset), across = all.x + all.y + all.z;
-    // Where the plane lies in the cube, along an axis: its other coordinates are at most `half`. Planes along the axis
-    // lie everywhere, and those nearly along it too, for roundings of the normal.
+    // Range of the plane within the cube along an axis, with other coordinates of at most `half`. Planes along the axis
+    // have no bound, nor do those nearly along it, for roundings of the normal.
     const auto along = [&](double part, double size, float low, float high) {
       double from = std::max(static_cast<double>(low), -half), to = std::min(static_cast<double>(high), half);
       if (size >= 0x1p-6) {
@@ -391,7 +391,7 @@ SeenTriangle SampledVoxelCounter::seen(std::uint32_t triangle) const {
   return {relative(p[0], head_), relative(p[1], head_), relative(p[2], head_)};
 }
 
-// Drops voxels that a single triangle hides completely.
+// Drops voxels that one triangle hides completely.
 void SampledVoxelCounter::drop_hidden_boxes() {
   probes_.clear();
   std::size_t kept = 0;
@@ -429,7 +429,7 @@ std::span<const SampledVoxelCounter::Ahead> SampledVoxelCounter::planes_of(const
   return std::span(planes_).first(n);
 }
 
-// Lists the rays of the window from number `units` of its units on, at least `enough` if there are as many.
+// Lists the rays of the window from unit number `units` on: at least `enough` if there are as many.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   const RayPattern& pattern = rays_->pattern();
@@ -437,7 +437,7 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   const std::uint32_t i = look.voxel;
   const Cube& cube = look.cube;
   const std::span<const Ahead> planes = planes_of(look);
-  // The batch is emptied in whole vectors, since a test of fewer rays does not pay.
+  // The batch is processed in whole vectors, since testing fewer rays does not pay.
   std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
 
@@ -490,7 +490,7 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   end_rays(rays);
 }
 
-// Lists the rays of a list of directions that may leave a point in the voxel of looks_[k].
+// Lists those rays of a list of directions that may leave a point in the voxel of looks_[k].
 void SampledVoxelCounter::list_directions(std::size_t k) {
   const RayPattern& pattern = rays_->pattern();
   const Look& look = looks_[k];
@@ -517,7 +517,7 @@ void SampledVoxelCounter::list_directions(std::size_t k) {
   end_rays(rays);
 }
 
-// Empties the batch: lists those of its rays that may hit. Returns their number.
+// Empties the batch, and lists those of its rays that may hit. Returns their number.
 std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   Ray* next = listed_.data() + listed_size_;
   for (std::uint32_t k = 0; k < batch_.size; ++k) {
@@ -534,7 +534,7 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   return added;
 }
 
-// The rays that were listed last are all rays of a voxel, or as many as are traced at once.
+// Ends a list: all rays of a voxel, or as many as are traced at once.
 void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   rays.end = listed_size_;
   if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
@@ -543,7 +543,7 @@ void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   voxel_rays_.push_back(rays);
 }
 
-// Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.
+// Drops rays from `rays` that a triangle certainly stops before they come near the voxel.
 void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
   if (rays.begin == rays.end) return;
   const SeenTriangle triangle = seen(by);
@@ -561,7 +561,7 @@ void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
 }
 
 // Traces the listed rays. Most are stopped before they come near the voxel, and Embree finds any hit faster than the
-// nearest. Occluders are therefore sought first, and nearest hits for the other rays alone. An occluder lies before all
+// nearest. Occluders are therefore sought first, and nearest hits only for the other rays. An occluder lies before all
 // hits that count, so it changes no count.
 void SampledVoxelCounter::settle() {
   visible_.clear();
@@ -571,7 +571,7 @@ void SampledVoxelCounter::settle() {
       probes_.push_back({listed_[rays.begin].d, std::min(listed_[rays.begin].nearest, rays.farthest)});
     rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
     traced_ += probes_.size();
-    // In separate passes, so that many loads are in flight at once.
+    // Separate passes keep many loads in flight at once.
     const SceneData& scene = rays_->scene();
     const bool stored = !scene.shares();
     for (const Probe& probe : probes_) {
@@ -626,7 +626,7 @@ void SampledVoxelCounter::cast() {
   }
 }
 
-// Takes the first `many` rays.
+// Casts the first `many` rays.
 void SampledVoxelCounter::cast(VoxelRays& rays, std::uint32_t many) {
   traced_ += many - (rays.probed && many > 0 ? 1 : 0);
   rays.probed = false;

@@ -16,12 +16,12 @@
 
 namespace vantage {
 
-// Largest distance of a triangle from the noise's reach of a cube, if a hit on it counts there. It allows for Embree's
-// error at edges, stretched by a slant.
+// Largest distance of a triangle from the noise's reach of a cube if a hit on it counts there. Allows for Embree's
+// error at edges, stretched by slant.
 inline double triangle_margin(double pad) { return 64 * pad; }
 
-// Works on blocks of voxels, one station after the other: bounds are computed side by side, and many rays are traced at
-// once. Not thread-safe.
+// Processes blocks of voxels, one station after the other: bounds are computed side by side, and many rays are traced
+// at once. Not thread-safe.
 class SampledVoxelCounter {
  public:
   static constexpr std::uint32_t block = BoxBatch::capacity;
@@ -31,15 +31,15 @@ class SampledVoxelCounter {
 
   // Counts voxels first, first + 1, …: points of all stations (saturating), and a bit for each station with a point
   // there. Unless `stop_at` is 0, counting stops once a voxel has that many points and its stations are known. `masks`
-  // and `leave_out`, whose voxels with a byte other than 0 are not counted, are empty or as long as `counts`. REQUIRES:
-  // at most `block` voxels; counts and masks are 0.
+  // and `leave_out` are empty or as long as `counts`; voxels with a byte other than 0 in `leave_out` are not counted.
+  // REQUIRES: at most `block` voxels; counts and masks are 0.
   void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
              std::span<std::uint32_t> counts, std::span<std::uint64_t> masks,
              std::span<const std::uint8_t> leave_out = {});
   std::uint64_t traced() const { return traced_; }
 
  private:
-  // Region of the hits whose points count in the voxel. It ends at the noise's reach from the cube. Relative to the
+  // Region of the hits whose points count in the voxel, up to the noise's reach from the cube. Relative to the
   // head.
   struct Cube {
     Float3 centre;
@@ -53,13 +53,13 @@ class SampledVoxelCounter {
     alignas(64) std::array<float, capacity + step> x, y, z;
     alignas(64) std::array<std::uint32_t, capacity + step> row, column;
     alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
-    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the plane in work
+    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the current plane
   };
-  // Facts about one voxel of the block that are known before its rays are listed.
+  // Facts about one voxel of the block, known before its rays are listed.
   struct Look {
     std::uint32_t voxel = 0;  // index in the block
     Cube cube;
-    double reach = 0;                            // by which noise moves its hits at most
+    double reach = 0;                            // largest movement of its hits by noise
     Box hits;                                    // holds every hit that counts, relative to the head
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
     std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
@@ -70,12 +70,12 @@ class SampledVoxelCounter {
     float height;
   };
   // Tiles of a window, up to 8 × 8, each of 2^row_shift rows and 2^unit_shift units of SpreadUnits. A bit is set for
-  // each tile from which no ray leaves a point in the voxel.
+  // each tile whose rays leave no point in the voxel.
   struct Tiles {
     std::uint32_t row_shift = 31, unit_shift = 31;
     std::uint64_t hidden = 0;
   };
-  // A voxel whose first `units` of SpreadUnits were listed: as many rays as usually suffice.
+  // A voxel of which the first `units` of SpreadUnits were listed: usually enough rays.
   struct Rest {
     Look look;
     RayRanges window;
@@ -98,7 +98,7 @@ class SampledVoxelCounter {
   };
 
   void look_from(std::size_t first, std::size_t n);
-  // True if the current station can skip voxel number i of the block.
+  // Returns true if the current station can skip voxel number i of the block.
   bool full(std::uint32_t i) const {
     if (!leave_out_.empty() && leave_out_[i] != 0) return true;
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
@@ -114,13 +114,13 @@ class SampledVoxelCounter {
   void drop_hidden_groups(std::size_t level, std::size_t n);
   Box box_of(const SampledVoxels::Cells& cells) const;
   void drop_hidden_boxes();
-  // Remembers a triangle that a ray met. One that hides a group of voxels is likely to hide its neighbours, too.
+  // Remembers a triangle that a ray met. If it hides a group of voxels, it likely hides neighbours, too.
   void meet(std::uint32_t triangle);
   bool is_hidden(const SeenBox& box);
-  // True if the triangle, alone or with others, hides all of the box.
+  // Returns true if the triangle, alone or with others, hides the whole box.
   bool hides(std::uint32_t triangle, const Box& box);
   bool any_ray_near(const Vec3& point, double radius) const;
-  // Upper bound on the points that are still to be counted in voxel number i of the block.
+  // Returns an upper bound on the points still to be counted in voxel number i of the block.
   std::uint32_t wanted(std::uint32_t i) const;
   RayRanges window_of(std::size_t k) const;
   void list_rays(Rest rest, std::uint32_t enough);
@@ -152,11 +152,11 @@ class SampledVoxelCounter {
 
   BoxBatch boxes_;                                              // around the points that count, of looks_
   alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
-  std::array<bool, block> open_;  // by voxel of the block: whether the current station may need to look at it
+  std::array<bool, block> open_;  // by voxel of the block: true if the current station must check it
   std::vector<std::pair<std::uint32_t, SeenTriangle>> met_;
   RayBatch batch_;
-  std::vector<SeenTriangle> hiders_;                      // of tiles of the window in work
-  std::array<Ahead, SampledVoxels::most_planes> planes_;  // of the voxel in work
+  std::vector<SeenTriangle> hiders_;                      // of tiles of the current window
+  std::array<Ahead, SampledVoxels::most_planes> planes_;  // of the current voxel
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
   std::vector<Look> looks_;

@@ -11,8 +11,8 @@
 
 namespace vantage {
 
-// Set voxels of each brick before each 64 bits of its mask, so that a voxel index takes one population count. 16 bytes
-// a brick. Immutable.
+// Number of set voxels in each brick before each 64 bits of its mask, so that a voxel index takes one population count.
+// 16 bytes a brick. Immutable.
 class BrickPrefixes {
  public:
   static constexpr std::uint32_t words = 8;
@@ -36,8 +36,8 @@ class BrickPrefixes {
   std::vector<std::array<std::uint16_t, words>> before_;
 };
 
-// VoxelGrid::index_of for the points of a bundle, in steps over all of them. Arithmetic uses vector registers, and many
-// loads are in flight at once: at practical resolutions neither hash table nor bricks fit into a cache.
+// VoxelGrid::index_of for the points of a bundle, step by step over all of them. Arithmetic uses vector registers, and
+// many loads are in flight at once: at practical resolutions neither hash table nor bricks fit into a cache.
 class VoxelLookup {
  public:
   static constexpr std::uint32_t capacity = 256;
@@ -60,7 +60,7 @@ class VoxelLookup {
     ++size_;
   }
 
-  // As n calls of add() after clear(), with point(0), point(1), …, in a loop of vectors.
+  // Works as n calls of add() after clear(), with point(0), point(1), …, in a vectorised loop.
   template <class Point>
   [[gnu::always_inline]] void set(std::uint32_t n, const Point& point) {
     size_ = n;
@@ -72,8 +72,8 @@ class VoxelLookup {
     }
   }
 
-  // Calls f(index, begin, end) with the surveyed voxel of each run of points that lie in one, in order: points are
-  // numbered as they were added. Inlined, to be compiled for the caller's target.
+  // Calls f(index, begin, end) with the surveyed voxel of each run of points that lie in one. Points are numbered in
+  // order of their addition. Inlined, to be compiled for the caller's target.
   template <class F>
   [[gnu::always_inline]] void each_run(const F& f) {
     if (size_ == 0) return;
@@ -106,14 +106,14 @@ class VoxelLookup {
     std::uint32_t end;
   };
 
-  // As VoxelGrid::cell_of.
+  // Computes cells as VoxelGrid::cell_of.
   [[gnu::always_inline]] void find_cells() {
     const float min_x = min_[0], min_y = min_[1], min_z = min_[2], inverse = inverse_size_, cells = cells_;
     const std::uint32_t mask = slot_mask_;
     for (std::uint32_t p = 0; p < size_; ++p) {
       const float x = (x_[p] - min_x) * inverse, y = (y_[p] - min_y) * inverse, z = (z_[p] - min_z) * inverse;
       const bool inside = (x >= 0) & (x < cells) & (y >= 0) & (y < cells) & (z >= 0) & (z < cells);
-      // Via int: every processor has that conversion.
+      // Converts via int, which every processor supports.
       const std::uint32_t i = static_cast<std::uint32_t>(static_cast<int>(inside ? x : 0.0f));
       const std::uint32_t j = static_cast<std::uint32_t>(static_cast<int>(inside ? y : 0.0f));
       const std::uint32_t k = static_cast<std::uint32_t>(static_cast<int>(inside ? z : 0.0f));
@@ -126,7 +126,7 @@ class VoxelLookup {
   }
   static std::uint32_t spread(std::uint32_t i) { return (i & 1) | (i & 2) << 2 | (i & 4) << 4; }
 
-  // Finds where the cell changes from one point to the next. Without a branch: nothing could foresee it.
+  // Finds where the cell changes from one point to the next. Avoids a branch, which would be unpredictable.
   [[gnu::always_inline]] std::uint32_t find_changes() {
     for (std::uint32_t p = 1; p < size_; ++p) {
       brick_changes_[p] = (a_[p] ^ a_[p - 1]) | (b_[p] ^ b_[p - 1]) | (c_[p] ^ c_[p - 1]);

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// A device without memory for so few rays is no use.
+// A device without memory for this few rays is useless.
 constexpr std::size_t kFewest = 1024;
 
 struct Batch {
@@ -42,7 +42,7 @@ bool RayBatches::run(std::size_t rays, const Job& job, const Progress& progress)
     std::atomic<std::thread::id>& caller;
     ~Leave() { caller = std::thread::id(); }
   } leave{caller_};
-  // A thread that waits here must not take up work of a caller's that waits for this lock.
+  // A thread that waits here must not take up other work of a caller that waits for this lock.
   return tbb::this_task_arena::isolate([&] { return run_alone(rays, job, progress); });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes many rays through a finder, batch by batch: while the device has one, the processor reads the one before and
-// fills the next. A device that fails is set up anew, once for each batch, and a batch that its memory is too small for
-// is halved.
+// Processes many rays with a finder, batch by batch: while the device has one batch, the processor reads the previous
+// and fills the next. A device that fails is set up anew, once for each batch. A batch that does not fit into its
+// memory is halved.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ namespace vantage {
 class RayBatches {
  public:
   using Make = std::function<std::unique_ptr<RayFinder>()>;
-  // Calls `make` at once, and again after a DeviceFault, which it throws the second time.
+  // Calls `make` at once, and again after a DeviceFault; a second fault is thrown.
   explicit RayBatches(Make make);
 
   bool on_device() const { return on_device_; }  // false: `make` gave none

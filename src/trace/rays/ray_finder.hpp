@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a caller's own on a device. It answers where float arithmetic is sure of the answer in double precision, and
-// leaves the other rays open.
+// A caller's own rays on a device. It answers a ray if float arithmetic certainly agrees with double precision, and
+// leaves other rays open.
 #pragma once
 
 #include <cstddef>
@@ -28,18 +28,18 @@ class RayFinder {
   virtual ~RayFinder() = default;
   virtual const EngineInfo& info() const = 0;
   virtual std::size_t most_rays() const = 0;  // of a slot
-  // Makes room in all slots. What they held is lost. REQUIRES: at most most_rays().
+  // Makes room in all slots, whose content is lost. REQUIRES: at most most_rays().
   virtual void reserve(std::size_t rays) = 0;
   virtual std::span<OwnRay> rays(std::size_t slot) = 0;
-  // Answers to the first `count` rays of a slot; triangles from `end` on are passed. Only one call at a time.
+  // Finds answers to the first `count` rays of a slot; rays pass triangles from `end` on. One call at a time.
   virtual void find(std::size_t slot, std::size_t count, RayQuestion question, std::uint32_t end) = 0;
-  // As shared/own_ray_types.h has them.
+  // Returns answers as described in shared/own_ray_types.h.
   virtual std::span<const std::uint32_t> answers(std::size_t slot) const = 0;
-  // Seconds of the device for all calls of find() so far, without transfers.
+  // Returns the device's seconds for all calls of find() so far, without transfers.
   virtual double device_seconds() const = 0;
 };
 
-// Null: the processor is to trace. Throws Error: no_suitable_device with every refusal, out_of_memory, device_failure.
+// Returns null for the processor. Throws Error: no_suitable_device with every refusal, out_of_memory, device_failure.
 std::unique_ptr<RayFinder> make_ray_finder(const DeviceChoice& device, const std::shared_ptr<const SceneData>& scene);
 
 }  // namespace vantage

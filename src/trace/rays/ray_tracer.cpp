@@ -24,13 +24,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNoTriangle = no_primitive;
-// A ray that enters the scene further away than so many of its sizes is the processor's: roundings of the way there, in
-// double precision, are less than a device allows for up to here.
+// The processor traces rays that enter the scene farther away than this many scene sizes. Up to here, double precision
+// rounds the way to the scene by less than a device allows for.
 constexpr double kFarthestEntry = 0x1p18;
 // Rays between two reports of progress, and of one task.
 constexpr std::size_t kAtOnce = std::size_t{1} << 18, kGrain = 256;
 
-// Element k of an array that has one for all rays, or one each.
+// Returns element k of an array with one element for all rays, or one for each.
 template <class T>
 const T& one_of(std::span<const T> values, std::size_t k) {
   return values[values.size() == 1 ? 0 : k];
@@ -40,7 +40,7 @@ const T& one_of(std::span<const T> values, std::size_t k) {
 
 std::string row(std::size_t k) { return "row " + std::to_string(k) + ", counted from 0, "; }
 
-// The number of rays.
+// Returns the number of rays.
 std::size_t number_of(const Rays& rays) {
   const std::size_t sizes[] = {rays.origins.size(), rays.directions.size(),
                                rays.ranges_m.empty() ? 1 : rays.ranges_m.size()};
@@ -55,7 +55,7 @@ std::size_t number_of(const Rays& rays) {
   return n;
 }
 
-// The first of the values that is not good, or their number.
+// Returns the index of the first bad value, or the number of values.
 template <class T, class Good>
 std::size_t first_bad(std::span<const T> values, const Good& good) {
   return parallel::reduce(
@@ -103,13 +103,13 @@ Vec3 unit_of(const Vec3& direction) {
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
-// A ray with what it may meet.
+// A ray and the limits of its hits.
 struct LocalRay {
   Vec3 origin, unit;  // local frame
   double from, range;
 };
 
-// Triangles that count for a ray.
+// Tests which triangles count for a ray.
 class Meeting : public WidenedTree::Query {
  public:
   Meeting(const SceneData& scene, const LocalRay& ray, std::uint32_t end)
@@ -157,7 +157,7 @@ struct CountQuery final : Meeting {
   std::uint32_t count = 0;
 };
 
-// Unit normal at a hit, turned against the ray: interpolated from the corners, or that of the plane.
+// Returns the unit normal at a hit, turned against the ray: interpolated from the corners, or the plane's.
 Vec3 normal_of(const SceneData& scene, const NearestQuery& found, const Vec3& unit) {
   const auto corners = scene.corners(found.triangle);
   const Vec3 a = widen(corners[0]);
@@ -186,8 +186,8 @@ struct RayTracer::Impl {
     return {kept, &kept->data()};
   }
 
-  // Calls trace(k, ray, end, answer) for each ray in parallel; `end`: of the triangles that count; `answer`: the
-  // device's, or open_answer. False if stopped.
+  // Calls trace(k, ray, end, answer) for each ray in parallel. `end`: of the triangles that count; `answer`: the
+  // device's, or open_answer. Returns false if stopped.
   template <class Trace>
   bool for_each(const Rays& rays, std::size_t n, const RayOptions& options, const Progress& progress,
                 RayQuestion question, const Trace& trace) const {
@@ -221,8 +221,8 @@ struct RayTracer::Impl {
     return !progress.stopped();
   }
 
-  // As a device takes it: from where it enters the scene. Limits that lie outside the scene are none, so that no
-  // rounding makes hits at its ends doubtful.
+  // Returns the ray for a device, from its entry into the scene. Limits outside the scene are dropped, so that rounding
+  // makes no hits at its ends doubtful.
   OwnRay own_ray(const LocalRay& ray) const {
     OwnRay own{.origin = {}, .from = 0, .direction = {}, .range = own_ray_misses};
     const auto way = ray.from < ray.range ? tree.way_of(ray.origin, ray.unit, ray.from, ray.range) : std::nullopt;
@@ -247,13 +247,13 @@ struct RayTracer::Impl {
     return query;
   }
 
-  // The nearest hit, which a device may have found already.
+  // Returns the nearest hit, which a device may have found already.
   NearestQuery nearest(const LocalRay& ray, std::uint32_t end, std::uint32_t answer) const {
     if (answer != open_answer) {
       NearestQuery known(*data, ray, end);
       if (answer != kNoTriangle) known.take(answer);
       if (known.triangle == answer) return known;
-      assert(false);  // a device is sure of what it answers
+      assert(false);  // a device's answers are certain
     }
     return run<NearestQuery>(ray, end);
   }
@@ -282,7 +282,7 @@ RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Pr
   const SceneData& data = *impl_->data;
   const std::size_t n = impl_->checked(rays, options);
   RayHits hits;
-  // Side by side, since what takes time is memory that nobody has touched before.
+  // In parallel, since first writes to fresh memory take most of the time.
   tbb::task_group arrays;
   arrays.run([&] { hits.position.assign(n, {nan, nan, nan}); });
   arrays.run([&] { hits.normal.resize(n); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray in double precision. Corners are sheared so that it becomes the z axis (Woop, Benthin, Wald: Watertight
-// Ray/Triangle Intersection, 2013), each by itself, so neighbours agree about the edge that they share. Only additions,
-// multiplications and divisions are used, so every processor gets the same bits.
+// A ray in double precision. Corners are sheared so that the ray becomes the z axis (Woop, Benthin, Wald: Watertight
+// Ray/Triangle Intersection, 2013), each on its own, so that neighbours agree about a shared edge. Uses only additions,
+// multiplications and divisions, so that every processor gets the same bits.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ class ShearedRay {
     double t;
     std::array<double, 2> weights;  // of the second and third corner
   };
-  // The point of a triangle, its edges included, on the line of the ray; none of a triangle that is seen edge-on.
+  // Returns the point of a triangle or its edges on the line of the ray; nothing if it is seen edge-on.
   std::optional<Hit> meet(const std::array<Float3, 3>& corners) const {
     const Vec3 a = sheared(corners[0]), b = sheared(corners[1]), c = sheared(corners[2]);
     const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;

@@ -15,9 +15,9 @@
 namespace vantage {
 namespace {
 
-// Roundings of a ray to float, as shares of the scene's size: of the origin, of the direction over the way through the
-// scene, and of Embree's own boxes and distances; some 2^-22 in all. A ray that is moved into the frame of a shared
-// mesh has more, by the condition of the mesh's place.
+// Bounds roundings of a ray to float, as shares of the scene's size: of the origin, of the direction over the way
+// through the scene, and of Embree's own boxes and distances; some 2^-22 in all. A ray that is moved into a shared
+// mesh's frame has more, by the condition of the mesh's place.
 constexpr double kRounding = 0x1p-20;
 
 // Largest coordinate of the scene plus the way through it, metres.
@@ -29,7 +29,7 @@ double extent_of(const Box& box) {
          std::sqrt(dot(way, way));
 }
 
-// The part of a ray within the box widened by `margin`: from first to second; none if first is larger.
+// Returns the part of a ray in the box widened by `margin`: from first to second; none if first is larger.
 std::pair<double, double> passage(const Box& box, double margin, const Vec3& origin, const Vec3& unit) {
   double in = -std::numeric_limits<double>::infinity(), out = -in;
   const auto clip = [&](double low, double high, double at, double way) {
@@ -51,14 +51,14 @@ struct Walk {
   embree::Context rtc;  // first member: Embree passes its address to the callback
   const std::vector<MeshInstance>& runs;
   WidenedTree::Query& query;
-  double moved, slack;  // Embree's ray begins at this distance; its end is this much behind what still matters
+  double moved, slack;  // begin of Embree's ray; its end exceeds the reach by `slack`
 };
 
 float end_of(const Walk& walk, double reach) {
   return static_cast<float>((reach - walk.moved) * (1 + 0x1p-20) + walk.slack);
 }
 
-// For single rays.
+// Handles single rays.
 void meet(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
   const Walk& walk = *reinterpret_cast<const Walk*>(arguments->context);
@@ -98,7 +98,7 @@ void WidenedTree::add_boxes(RTCScene to, const MeshInstance& run, double widenin
         Box box;
         for (const std::uint32_t corner : own.scene->triangles[own.first_stored + arguments->primID])
           box.extend(widen(own.scene->positions[corner]));
-        // Rounded to float, which the widening covers.
+        // Rounds to float, which the widening covers.
         RTCBounds& out = *arguments->bounds_o;
         const double by = own.widening;
         out.lower_x = static_cast<float>(box.min.x - by), out.upper_x = static_cast<float>(box.max.x + by);
@@ -121,8 +121,8 @@ void WidenedTree::add_shared_meshes() {
   for (const MeshInstance& run : runs_) {
     if (run.place == MeshInstance::kNoPlace) continue;
     const MeshPlace& place = scene_->places[run.place];
-    // The shortest column is at least the norm over the condition, and the inverse's norm at most the condition over
-    // the norm.
+    // The shortest column is at least the norm divided by the condition; the inverse's norm is at most the condition
+    // divided by the norm.
     const double norm = std::sqrt(dot(place.x, place.x) + dot(place.y, place.y) + dot(place.z, place.z));
     const double conditioned = condition(place.x, place.y, place.z);
     Mesh& mesh = meshes[run.first_stored];
@@ -157,7 +157,7 @@ void WidenedTree::run(const Vec3& origin, const Vec3& unit, double from, double 
   const auto way = way_of(origin, unit, from, reach);
   if (!way) return;
   const auto [begin, end] = *way;
-  // Embree's ray begins where the scene does: a direction that is rounded far away would pass beside it.
+  // Starts Embree's ray at the scene: a direction rounded far away would pass beside it.
   const Vec3 at = origin + unit * begin;
   Walk walk{{}, runs_, query, begin, widening_};
   RTCRayHit hit{};

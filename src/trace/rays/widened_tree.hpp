@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes around a scene's triangles in Embree, for queries that decide in double precision what a ray meets. Embree's
-// own rays are rounded to float, so boxes are wider than all roundings of a ray together.
+// Boxes around a scene's triangles in Embree, for queries that decide hits in double precision. Embree's rays are
+// rounded to float, so the boxes are widened by more than all roundings of a ray together.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class WidenedTree {
     // Returns the distance, in metres from the ray's origin, beyond which nothing matters any more.
     virtual double take(std::uint32_t triangle) = 0;
   };
-  // The part of a ray that matters: where it is in the scene's box, between its own ends. None if that is empty.
+  // The relevant part of a ray: within the scene's box and between the ray's own ends. Nothing if it is empty.
   struct Way {
     double begin, end;  // metres from the origin
   };
@@ -37,7 +37,7 @@ class WidenedTree {
   void run(const Vec3& origin, const Vec3& unit, double from, double reach, Query& query) const;
 
  private:
-  // Triangles with boxes of one widening: a run as it is stored.
+  // Triangles with boxes of one widening: a run as stored.
   struct Boxes {
     const SceneData* scene;
     std::uint32_t first_stored;

@@ -10,8 +10,8 @@ class Rate {
  public:
   double items_a_second() const { return rate_; }  // 0: not measured yet
 
-  // Weighs large chunks more, since a fixed cost may dominate small ones. A chunk of twice the size learned from
-  // replaces the rate; one of the same size counts half.
+  // Updates the rate. Large chunks weigh more, since a fixed cost may dominate small ones: a chunk of twice the size
+  // learned from replaces the rate; one of the same size counts half.
   void learn(std::size_t items, double seconds) {
     if (!(seconds > 0)) return;
     const auto size = static_cast<double>(items);

@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// Cost of copying a field of counts and masks from a device and merging it, until one was measured.
+// Estimated cost of copying a field of counts and masks from a device and merging it, until measured.
 constexpr double first_merge_seconds_a_voxel = 1e-8;
 
 // "2 x NVIDIA H200", "NVIDIA H200, Intel Xeon (16 threads)".
@@ -49,7 +49,7 @@ bool came_to_end(const std::vector<NetworkCounts>& counts) {
   return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
 }
 
-// Sets the summed counts of the workers to what one tracer would return.
+// Sets the workers' summed counts to what one tracer would return.
 void settle(std::vector<NetworkCounts>& all, bool finished, std::size_t workers) {
   for (NetworkCounts& counts : all) {
     counts.cancelled = !finished;
@@ -198,7 +198,7 @@ std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<
 std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                        std::span<const std::uint32_t> station_counts,
                                                        const SampleJob& job, const Progress& progress) {
-  // The case of a search. Other outputs need a network's voxels together.
+  // The case of a search; other outputs need all voxels of a network together.
   const bool sums_alone = job.groups == 0 && !job.points && !job.station_masks && !job.registration;
   return population_ == Population::by_voxels && sums_alone && !job.sample.empty() && pool_.left() > 1
              ? count_by_voxels(networks, station_counts, job, progress)
@@ -231,7 +231,7 @@ std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::
                                                            std::span<const std::uint32_t> station_counts,
                                                            const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
-  // A worker that is dropped may have delivered networks that another then counts again.
+  // A dropped worker may have delivered networks that another worker counts again.
   DeliverOnce deliver(job, networks.size());
   const std::size_t workers = pool_.left();
   const bool finished =

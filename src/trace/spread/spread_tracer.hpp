@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracer over several, each on its own device. Workers pull chunks of sampled populations, networks of every ray,
-// and rows of a scan. A single network of every ray is split by stations if that gains more than merging costs. A chunk
+// One tracer over several, each on its own device. Workers take chunks of sampled populations, networks of every ray,
+// and rows of a scan. One network of every ray is split by stations if that saves more time than merging takes. A chunk
 // of a population is some of its networks, or some of the sample's voxels. All counts are integers, so the result does
-// not show who counted what.
+// not depend on who counted what.
 #pragma once
 
 #include <functional>

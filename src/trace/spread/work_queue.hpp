@@ -13,8 +13,8 @@ struct Chunk {
   std::size_t size() const { return end - first; }
 };
 
-// Sets `shares` of the work in proportion to `rates`; a worker that takes no part has rate 0. Shares that are nearly
-// right stay, so that the next work of this kind is cut into the same chunks although rates vary slightly.
+// Sets `shares` of the work in proportion to `rates`; a worker that does not take part has rate 0. Nearly right shares
+// stay, so that later work of this kind is cut into the same chunks although rates vary slightly.
 void follow_rates(std::vector<double>& shares, std::span<const double> rates);
 
 // Hands out all items in chunks, large ones first, so that all workers finish together, however fast each is. Not
@@ -28,10 +28,10 @@ class WorkQueue {
   explicit WorkQueue(std::size_t items, double of_rest = factored) : items_(items), of_rest_(of_rest) {}
 
   bool empty() const { return next_ == items_ && returned_.empty(); }
-  // Returns a chunk for a worker that does the part `share` of all work. `known`: whether its rate was measured;
+  // Returns a chunk for a worker that does the part `share` of all work. `known`: true if its rate was measured;
   // otherwise it gets a small chunk to measure it. REQUIRES: not empty.
   Chunk take(double share, bool known);
-  // Returns a chunk that was taken but not done.
+  // Takes back a chunk that was taken but not done.
   void give_back(const Chunk& chunk) { returned_.push_back(chunk); }
 
  private:

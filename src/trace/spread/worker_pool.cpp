@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Failures that another device may not share.
+// Returns true for failures that another device may not share.
 bool of_the_device(const Error& error) {
   return error.code() == Errc::device_failure || error.code() == Errc::out_of_memory;
 }
@@ -70,7 +70,7 @@ class WorkerPool::Run {
         failures_(pool.size()),
         outside_(progress.stop, [this] { stop_.request_stop(); }) {}
 
-  // Runs until nothing is left to take, or nobody to take it. Returns whether anything may be left.
+  // Runs until nothing is left to take, or no worker is left. Returns true if work may be left.
   bool run_workers() {
     std::vector<std::jthread> threads;
     threads.reserve(pool_.size());
@@ -263,7 +263,7 @@ bool WorkerPool::work(std::size_t items, WorkerRates& rates, const Progress& pro
   return run.finished();
 }
 
-// Without threads, since one worker does everything.
+// Works without threads, as one worker does everything.
 bool WorkerPool::work_alone(std::size_t items, WorkerRates& rates, const Progress& progress, const Do& job) {
   for (;;) {
     const std::size_t k = fastest(rates);

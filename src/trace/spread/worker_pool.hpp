@@ -33,14 +33,14 @@ class WorkerPool {
   // Does items [first, end) of the work. Returns false if it was stopped before the end.
   using Do = std::function<bool(Tracer& tracer, const Chunk& chunk, const Progress& progress, const OnCaller& ask)>;
 
-  // Does each of `items` items once; a failed worker's chunk is repeated by another. Returns whether all are done;
+  // Does each of `items` items once; another worker repeats a failed worker's chunk. Returns true if all are done,
   // false if the caller stopped it. Throws exceptions of a worker that are no failure of its device, and the failure of
   // the last worker.
   bool work(std::size_t items, WorkerRates& rates, const Progress& progress, const Do& job);
 
   std::size_t size() const { return tracers_.size(); }  // including dropped workers
   std::size_t left() const;
-  // Null: dropped.
+  // Returns null if the worker was dropped.
   Tracer* worker(std::size_t k) const { return tracers_[k].get(); }
 
  private:

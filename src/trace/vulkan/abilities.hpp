@@ -15,7 +15,7 @@ enum class DeviceNeeds {
   compute,    // Vulkan 1.2 with addresses, 64-bit integers and subgroups
   ray_query,  // VK_KHR_ray_query as well
 };
-// Devices that meet them, for messages.
+// Returns a description of devices that meet them, for messages.
 const char* who_has(DeviceNeeds needs);
 
 struct DeviceAbilities {
@@ -24,15 +24,15 @@ struct DeviceAbilities {
   std::uint32_t queue_family = 0;
   std::uint32_t subgroup_size = 1;
   std::uint64_t memory_bytes = 0;            // largest device-local heap
-  std::vector<std::string> compute_lacks;    // why no engine runs on it
-  std::vector<std::string> ray_query_lacks;  // why no engine with ray queries runs on it, beyond compute_lacks
+  std::vector<std::string> compute_lacks;    // reasons why no engine runs on it
+  std::vector<std::string> ray_query_lacks;  // further reasons why no engine with ray queries runs on it
   bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-  // Why an engine with these needs does not run on it, and what helps; empty if it runs.
+  // Returns why an engine with these needs does not run on it, and what helps; empty if it runs.
   std::string refusal(DeviceNeeds needs) const;
-  // Hardware before software, discrete before integrated, then the most memory.
+  // Prefers hardware to software, discrete to integrated devices, then the most memory.
   bool better_than(const DeviceAbilities& other) const;
 };
-// Memory of this process in bytes. If the driver keeps no account (VK_EXT_memory_budget), nothing is used and all is
+// Memory of this process in bytes. If the driver keeps no account (VK_EXT_memory_budget), all memory counts as
 // free.
 struct DeviceMemory {
   std::uint64_t used = 0;  // in all device-local heaps

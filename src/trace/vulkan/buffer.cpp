@@ -24,7 +24,7 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, Where where, const char*
   constexpr VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   VkMemoryPropertyFlags wanted = visible;
   if (where == Where::device) wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-  // Reading uncached memory back is slow; most devices offer a cached kind.
+  // Reading from uncached memory is slow; most devices offer a cached kind.
   if (where == Where::download && device.has_memory_type(visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT))
     wanted |= VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   VkMemoryAllocateFlagsInfo flags{};

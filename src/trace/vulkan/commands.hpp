@@ -24,7 +24,7 @@ class Commands {
   using Record = std::function<void(const Recorder&)>;
   double run(const Record& record);
 
-  // The same, and reads buffers back in the same submission, as `record` left them.
+  // Does the same, and reads buffers back in the same submission, after `record`'s work.
   struct Download {
     const Buffer& from;
     void* to;
@@ -34,7 +34,7 @@ class Commands {
 
   // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
   void upload(const Buffer& to, const void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
-  // Copies `values` to the elements `at` of a buffer, ascending; in few submissions, however many they are.
+  // Copies `values` to the ascending elements `at` of a buffer, in few submissions whatever their number.
   template <class T>
   void scatter(const Buffer& to, std::span<const T> values, std::span<const std::uint32_t> at) {
     static_assert(std::is_trivially_copyable_v<T>);

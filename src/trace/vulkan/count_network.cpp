@@ -33,7 +33,7 @@ std::vector<KernelVariant> VulkanTracer::count_kernels(const DeviceScanner& scan
 
 // Processes scanners one by one, each with all of its stations. With skipping, each submission first finds the tiles of
 // directions that see a surveyed brick (tiles), lists them for each part (tile_list), runs the engine's tile pass, and
-// counts over the lists alone.
+// counts only over the lists.
 class VulkanTracer::ExactCount {
  public:
   ExactCount(VulkanTracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
@@ -81,7 +81,7 @@ class VulkanTracer::ExactCount {
   }
 
  private:
-  // The first scanner from there on that has stations.
+  // Returns the first scanner from there on that has stations.
   std::size_t next_scanner(std::size_t scanner) const {
     while (scanner < stations_by_scanner_.size() && stations_by_scanner_[scanner].empty()) ++scanner;
     return scanner;
@@ -164,7 +164,7 @@ class VulkanTracer::ExactCount {
     if (tile_pass_) for_each_list(Kernel::tile_pass);
   }
 
-  // Counts are sums, so the parts of a submission need no barriers between them.
+  // Counts are sums, so parts of a submission need no barriers between them.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
     if (headroom_.clamp_before(schedule_->rays_of({&part, 1}))) record_clamp(r);
     const BoundPipeline pipeline = pipeline_of(Kernel::count, part);
@@ -257,7 +257,7 @@ class VulkanTracer::ExactCount {
     field.count.resize(voxels_);
     t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * word);
     field.stations.resize(options_.masks ? voxels_ : 0);
-    constexpr std::uint32_t kTogether = 1 << 22;  // voxels whose masks are on their way at once
+    constexpr std::uint32_t kTogether = 1 << 22;  // voxels whose masks are in transfer at once
     std::array<std::vector<std::uint32_t>, 2> bits;
     for (std::uint32_t first = 0; mask_words_ > 0 && first < voxels_; first += std::min(kTogether, voxels_ - first)) {
       const std::uint32_t count = std::min(kTogether, voxels_ - first);

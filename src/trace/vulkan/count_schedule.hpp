@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Schedules an exact evaluation: the rows of stations traced together, and when counts must be clamped.
+// Schedules an exact evaluation: rows of stations that are traced together, and clamping of counts.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ class CountSchedule {
 // Tracks how much dispatches may have added to a 32-bit count since all counts were clamped to count_limit.
 class CountHeadroom {
  public:
-  // Whether to clamp counts before a dispatch of `rays` rays, which then is the first after it. REQUIRES: rays <
-  // count_limit.
+  // Returns true if counts must be clamped before a dispatch of `rays` rays, which is then the first one after it.
+  // REQUIRES: rays < count_limit.
   bool clamp_before(std::uint64_t rays);
 
  private:

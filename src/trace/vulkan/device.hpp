@@ -28,7 +28,7 @@ class Device {
   bool has_memory_type(VkMemoryPropertyFlags wanted) const;
   VkDeviceSize scratch_alignment() const { return scratch_alignment_; }
   double timestamp_period_ns() const { return timestamp_period_ns_; }
-  // For a hanging device: from then on nothing of it is destroyed, since nothing can be.
+  // Marks a hanging device: from then on none of its objects is destroyed, since none can be.
   void give_up() { given_up_ = true; }
   bool given_up() const { return given_up_; }
   void name(VkObjectType type, std::uint64_t handle, const char* name) const;  // for debuggers and validation messages

@@ -11,7 +11,7 @@
 
 namespace vantage::vulkan {
 
-// Null where all voxels are alike.
+// Addresses; null if all voxels are alike.
 struct DemandAddresses {
   std::uint64_t weights = 0, point_weights = 0;
 };

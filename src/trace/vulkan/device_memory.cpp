@@ -20,7 +20,7 @@ constexpr double most_staging = 1 << 25;  // commands.cpp
 // bytes of a driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
 constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
-// Glass has a tree of our own on every engine.
+// Returns the bytes of a tree of our own, which glass has on every engine.
 double tree(const DeviceLoad& load) {
   constexpr double own = tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle);
   if (load.engine == Engine::compute_bvh)
@@ -40,7 +40,7 @@ double grid(const DeviceLoad& load) {
   return load.bricks * sizeof(VoxelBrick) + static_cast<double>(slots) * sizeof(BrickSlot);
 }
 
-// Corners, for a sample; with shading, also normals and per-triangle data.
+// Returns the bytes of corners, for a sample; with shading, also of normals and per-triangle data.
 double surfaces(const DeviceLoad& load) {
   const double neighbours = load.engine == Engine::compute_bvh ? 3 * word_bytes : 0;
   const double corners = load.vertices * vertex + load.triangles * (triangle + neighbours);

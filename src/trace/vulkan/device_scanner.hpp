@@ -13,8 +13,8 @@ namespace vantage::vulkan {
 
 class DeviceScanner {
  public:
-  // Throws Error invalid_argument if the pattern has 2^31 rays or more, or so many places of a walk. `structure`:
-  // acceleration structure for ray queries, or null; it must outlive this.
+  // Throws Error invalid_argument if the pattern has 2^31 rays or more, or a walk as many places. `structure`:
+  // acceleration structure for ray queries, or null; it must outlive this object.
   DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
                 const TraceScanner& scanner);
 
@@ -22,9 +22,9 @@ class DeviceScanner {
   bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
   bool listed() const { return pattern().list != nullptr; }
-  // Most places of a walk through the rays near a voxel: a list's bands count as if each were as long as the longest.
+  // Returns most places of a walk through rays near a voxel; each band of a list counts as long as the longest.
   std::uint64_t longest_walk() const;
-  // Rows of a workgroup that scans or counts without tiles.
+  // Returns the rows of a workgroup that scans or counts without tiles.
   std::uint32_t rows_of_group() const { return listed() ? group_size : block_rows; }
   bool glass() const { return limits() && scanner_.limits->glass; }
   const TraceSet& set() const { return set_; }
@@ -33,7 +33,7 @@ class DeviceScanner {
   void write(Commands& commands, const TraceParameters& shared) const;
 
  private:
-  // Noise model that displaces ranges, or, if ranges are exact, limits them; null without both.
+  // Returns the noise model that displaces ranges, or, if ranges are exact, limits them; null without both.
   const NoiseModel* sigma_model() const {
     return noise() ? scanner_.noise.get() : limits() ? scanner_.limits->noise.get() : nullptr;
   }

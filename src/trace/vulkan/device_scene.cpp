@@ -21,8 +21,8 @@ static_assert(std::is_trivially_copyable_v<TraceParameters> && sizeof(Float3) ==
 
 namespace {
 
-// A share of the distances involved: a ray that is moved into the mesh's frame is rounded by some 2^-22 of them, times
-// the condition of the place, and so are corners that are placed, and the way to them.
+// Share of the distances involved. A ray that is moved into the mesh's frame is rounded by some 2^-22 of them, times
+// the condition of the place; so are placed corners, and the way to them.
 constexpr double doubt_of_place = 0x1p-20;
 
 MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
@@ -51,7 +51,7 @@ MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
           .mirrored = place.mirrored ? 1u : 0u};
 }
 
-// triangle_neighbours() of those stored from `first` on, by the numbers that they are stored by.
+// Fills triangle_neighbours() of those stored from `first` on, by their stored numbers.
 void fill_neighbours(const SceneData& scene, std::uint32_t first, std::uint32_t count,
                      std::vector<std::uint32_t>& neighbours) {
   std::vector<Triangle> own(scene.triangles.begin() + first, scene.triangles.begin() + first + count);
@@ -63,8 +63,8 @@ void fill_neighbours(const SceneData& scene, std::uint32_t first, std::uint32_t 
     neighbours[3 * std::size_t{first} + k] = found[k] == no_primitive ? no_primitive : found[k] + first;
 }
 
-// Three per stored triangle: for those that are stored where they stand, the neighbours' numbers in the scene, for
-// those of shared meshes the numbers that they are stored by (lib/scene_triangle.glsl).
+// Returns three neighbours for each stored triangle: numbers in the scene for triangles stored in place, stored numbers
+// for those of shared meshes (lib/scene_triangle.glsl).
 std::vector<std::uint32_t> stored_neighbours(const SceneData& scene) {
   if (!scene.shares()) return triangle_neighbours(scene.positions, scene.opaque_triangles());
   std::vector<std::uint32_t> neighbours(3 * scene.triangles.size(), no_primitive);
@@ -155,7 +155,7 @@ void DeviceScene::write_parameters() {
   for (const DeviceScanner& scanner : scanners_) scanner.write(commands_, parameters_);
 }
 
-// Runs of the scene's triangles, and places of meshes that nodes share.
+// Uploads runs of the scene's triangles, and places of meshes that nodes share.
 void DeviceScene::upload_places() {
   static_assert(run_block_bits == SceneData::kBlockBits && no_place == MeshInstance::kNoPlace);
   const SceneData& scene = *scene_.scene;
@@ -173,7 +173,7 @@ void DeviceScene::upload_places() {
   parameters_.places = places_.address();
 }
 
-// For all engines alike, since it is small.
+// Uploads glass for all engines, since it is small.
 void DeviceScene::upload_glass() {
   const SceneData& scene = *scene_.scene;
   const std::uint32_t first = scene.opaque_count();

@@ -21,12 +21,12 @@ class DeviceScene {
               std::span<const DeviceScanner> scanners);
 
   const DeviceDemands& demands() const { return demands_; }  // of all voxels
-  // Each does nothing the second time.
+  // Each of these does nothing the second time.
   void upload_triangles();
   void upload_neighbours();  // only if the structure is watertight
   void upload_shading();     // normals and diffuse coefficients, with the triangles
 
-  // Follows its scene, in which the triangles of some runs have moved and the grid may be another one.
+  // Follows its scene after the triangles of some runs have moved and the grid may have changed.
   void take(const SceneDifference& difference, std::span<const KeptRun> moved);
 
  private:

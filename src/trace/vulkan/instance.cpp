@@ -30,8 +30,8 @@ InstanceFunctions load_functions(VkInstance instance) {
 std::shared_ptr<Instance> Instance::get(bool validation) {
   static std::mutex mutex;
   static std::weak_ptr<Instance> watched;
-  // Kept for good, since some drivers cannot be loaded and unloaded repeatedly. Never destroyed, since drivers may be
-  // gone first at exit.
+  // Kept for the whole process, since some drivers cannot be loaded and unloaded repeatedly. Never destroyed, since
+  // drivers may be gone first at exit.
   static auto& kept = *new std::shared_ptr<Instance>;
   const std::lock_guard lock(mutex);
   if (validation) {

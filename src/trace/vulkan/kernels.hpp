@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compute pipelines of one engine on one device. Each is compiled before its first use, so a run pays only for what it
-// uses. The driver of a graphics card takes some tenths of a second for each that it has not seen before, so a job
-// names all of its kernels first, and these are compiled side by side. A software device compiles one after the other,
-// each when it is wanted: its compiler takes tens of megabytes a thread.
+// Compute pipelines of one engine on one device. Each is compiled before its first use, so that a run pays only for
+// what it uses. A graphics card's driver takes some tenths of a second for each pipeline that it has not seen before. A
+// job therefore names all of its kernels first, and these are compiled in parallel. A software device compiles them one
+// by one, on first use: its compiler takes tens of megabytes for each thread.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct KernelVariant {
 
 class Kernels {
  public:
-  // `set`: for kernels that work with any scanner's set. `glass`: whether glass weakens echoes. `shared`: whether
+  // `set`: for kernels that work with any scanner's set. `glass`: true if glass weakens echoes. `shared`: true if
   // meshes are shared. All other arguments must outlive it.
   Kernels(const Device& device, bool software, const Traversal& traversal, const TraceSet& set, bool glass, bool shared)
       : device_(device),
@@ -55,11 +55,11 @@ class Kernels {
         glass_(glass),
         shared_(shared) {}
 
-  // Begins to compile those of `wanted` that are not known yet, and does not wait for them. REQUIRES, as get() does:
-  // for tile_pass, an engine that has one.
+  // Starts to compile those of `wanted` that are not known yet, without waiting. REQUIRES, as get() does: an engine
+  // with a tile pass for tile_pass.
   void compile(std::span<const KernelVariant> wanted);
   BoundPipeline get(Kernel kernel) { return get(set_, {kernel}); }
-  // For the scanner that owns the set. Waits until it is compiled. Throws what compiling it threw.
+  // Returns a kernel for the scanner that owns the set. Waits for its compilation, and throws its errors.
   BoundPipeline get(const TraceSet& set, const KernelVariant& variant);
 
  private:

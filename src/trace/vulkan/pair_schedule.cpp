@@ -40,7 +40,7 @@ SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch) {
   // large.
   std::uint64_t rays = software ? 1u << 20 : 1u << 25;
   if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
-  // Most parts have few rays that are not known to be stopped, or none.
+  // Most parts have no ray, or few rays, that are not known to be stopped.
   const auto room = static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, sample_part));
   constexpr std::uint32_t rays_of_pair = 8, rays_of_part = 8;
   return {room / rays_of_pair, room, room / rays_of_part};

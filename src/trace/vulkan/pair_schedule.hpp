@@ -2,9 +2,9 @@
 // Schedules sampled evaluation: the pairs of station and sampled voxel for one set of lists, and how overflow is
 // handled.
 //
-// Lists have limited room for open pairs, rays and parts of walks. The numbers needed are known only after listing. So
-// a chunk of pairs is as large as the lists will probably hold; if it overflows, it is repeated in halves, without what
-// was already traced.
+// Lists have limited room for open pairs, rays and parts of walks, and the numbers needed are known only after listing.
+// A chunk of pairs is therefore as large as the lists probably hold. If it overflows, it is repeated in halves, without
+// work that was already traced.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace vantage::vulkan {
 // Slots (stations of the batch) × sampled voxels, and a range of parts of their walks.
 struct SampleChunk {
   std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_part, end_part;
-  // Work already done, as part of a chunk whose other work did not fit.
+  // Work already done, by a chunk whose other work did not fit.
   bool probed = false, first_traced = false;
 
   std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
@@ -58,14 +58,14 @@ class PairSchedule {
   // `parts`: most parts of a pair's walk.
   PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
 
-  // Returns the chunks of the next submission, in order, at least one unless nothing is left. According to the figures
-  // so far, each probably fits and has at most `at_once` rays, and all together have `rays`.
+  // Returns the chunks of the next submission, in order, at least one unless nothing is left. Each chunk probably fits
+  // and has at most `at_once` rays, and all together have `rays`, judged by `seen`.
   std::vector<SampleChunk> next(double rays, const PairsSeen& seen, double at_once);
   bool finished() const { return todo_.empty(); }
 
   // Records the outcome of a submission's chunks. Returns the number of rays traced.
   double settle(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies);
-  double done() const;  // share of all pairs, in [0, 1]
+  double done() const;  // share of all pairs that are done, in [0, 1]
 
  private:
   SampleRoom room_;

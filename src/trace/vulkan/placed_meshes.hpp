@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that nodes share, for structures of two levels: one for each mesh, in its own frame, and one of places.
+// Meshes that nodes share, for two-level structures: one structure for each mesh, in its own frame, and one of places.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct PlacedMeshes {
   std::vector<MeshPlacement> placements;
 };
 
-// A value of each mesh of the scene, for all that kernels look up by StoredTriangle::surface: triangles, or runs of
-// them if the scene shares meshes.
+// Returns a mesh's value for each entry that kernels look up by StoredTriangle::surface: triangles, or runs of them if
+// the scene shares meshes.
 template <class T, class OfMesh>
 std::vector<T> per_surface(const SceneData& scene, const OfMesh& of_mesh) {
   std::vector<T> values;
@@ -40,8 +40,8 @@ std::vector<T> per_surface(const SceneData& scene, const OfMesh& of_mesh) {
   return values;
 }
 
-// Of meshes that stop rays, or of those of glass too. Both are empty if the scene shares none. The result borrows the
-// scene's triangles.
+// Returns the shared meshes that stop rays, or also those of glass. Both are empty if the scene shares none. The result
+// borrows the scene's triangles.
 PlacedMeshes placed_meshes(const SceneData& scene, bool with_glass = false);
 
 }  // namespace vantage::vulkan

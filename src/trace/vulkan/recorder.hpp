@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that a command buffer is recorded from.
+// Records commands into a command buffer.
 #pragma once
 
 #include <type_traits>
@@ -14,13 +14,13 @@ class Recorder {
   Recorder(const VolkDeviceTable& vk, VkCommandBuffer commands) : vk_(vk), commands_(commands) {}
 
   void zero(const Buffer& buffer, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE) const;
-  // Writes `data` to the front of the buffer. For small arrays, whose bytes are part of the command.
+  // Writes `data` to the front of a buffer. Meant for small arrays, as their bytes are part of the command.
   void update(const Buffer& buffer, const void* data, VkDeviceSize bytes) const;
   void copy(const Buffer& from, const Buffer& to, const VkBufferCopy& region) const;
   void build(const VkAccelerationStructureBuildGeometryInfoKHR& info,
              const VkAccelerationStructureBuildRangeInfoKHR& range) const;
 
-  // Dispatches a kernel: with the given number of workgroups, or with the three words at `offset` of `groups` at
+  // Dispatches a kernel with the given number of workgroups, or with the three words that `groups` holds at `offset` at
   // execution.
   template <class Push>
   void dispatch(const BoundPipeline& pipeline, const Push& push, std::uint32_t x, std::uint32_t y = 1,

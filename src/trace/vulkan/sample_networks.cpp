@@ -43,9 +43,9 @@ DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) 
 }
 
 // Networks go in batches that share counts and masks. Within a batch, stations go scanner by scanner, upright and
-// turned ones apart, so that a dispatch has one kind. They go in chunks whose rays fit one list, as many per submission
-// as are quick enough together (pair_schedule.hpp). The last chunk of a batch brings its reduction; if some of it must
-// be repeated, so is the reduction.
+// turned ones apart, so that a dispatch has one kind. They go in chunks whose rays fit one list, as many in a
+// submission as are quick enough together (pair_schedule.hpp). The last chunk of a batch brings its reduction, which is
+// repeated if some of the chunk must be.
 class VulkanTracer::SampledCount {
  public:
   SampledCount(VulkanTracer& tracer, std::span<const std::vector<TraceStation>> networks,
@@ -103,7 +103,7 @@ class VulkanTracer::SampledCount {
     std::size_t size() const { return end - first; }
   };
 
-  // Part of a batch done by one submission.
+  // Part of a batch that one submission does.
   struct Submission {
     const Run* run;
     std::vector<SampleChunk> chunks;  // of the run
@@ -157,7 +157,7 @@ class VulkanTracer::SampledCount {
     return true;
   }
 
-  // Makes at least one run, even without slots: the batch must be cleared and reduced all the same.
+  // Makes at least one run, even without slots, since the batch must still be cleared and reduced.
   void fill_slots(Batch& batch) const {
     struct Placed {
       std::uint64_t place;
@@ -197,7 +197,7 @@ class VulkanTracer::SampledCount {
                          cell(head.z, bounds.min.z, bounds.max.z));
   }
 
-  // Parts of the longest walk, that of a cube around the station.
+  // Returns the parts of the longest walk, that of a cube around the station.
   static std::uint32_t most_parts(const DeviceScanner& scanner) {
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(std::bit_ceil(scanner.longest_walk()) / sample_part, 1));
   }
@@ -299,7 +299,7 @@ class VulkanTracer::SampledCount {
             scanner.listed()};
   }
 
-  // Kernels of exact counts follow on a graphics card: whoever counts samples counts the answer by every ray later.
+  // Compiles kernels of exact counts, too, on a graphics card: exact counts of the answer follow sampled ones.
   void compile_kernels(const Batch& batch) const {
     std::vector<KernelVariant> wanted{{Kernel::reduce}};
     for (const Run& run : batch.runs)
@@ -317,7 +317,7 @@ class VulkanTracer::SampledCount {
     const auto pipeline = [&](Kernel kernel) { return t_.kernels_.get(run.scanner->set(), variant(run, kernel)); };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
     SamplePush push = push_of(chunk, k);
-    // Dispatches a thread for each item that the control word counts by then.
+    // Dispatches one thread for each item that the control word counts at that time.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
       const SampleArgumentsPush arguments{push.control, control, room_.pairs, push.ray_capacity, push.item_capacity};
       r.shader_after_shader();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Interface of a Vulkan engine: builds, binds and walks a structure over a scene's triangles. VulkanTracer does
-// everything else alike for all engines. docs/contributing.md says how to add one.
+// everything else, in the same way for all engines. docs/contributing.md says how to add one.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ namespace vantage::vulkan {
 // Input of a structure. Borrowed for the call.
 struct TraversalScene {
   std::span<const Float3> positions;
-  std::span<const Triangle> triangles;  // those that are stored where they stand
+  std::span<const Triangle> triangles;  // those that are stored in place
   std::span<const std::uint32_t> ids;   // per triangle, for Hit::id: its number, with surveyed_bit if its points count
   bool sort = true;                     // as TraceScene::sort_triangles
   const PlacedMeshes& placed;           // empty unless the engine has VulkanEngine::places_meshes
-  Box bounds = {};                      // of all triangles where they stand, for a RayWalk
+  Box bounds = {};                      // of all placed triangles, for a RayWalk
 };
 
 // Inputs of shaders that walk a structure.
@@ -33,7 +33,7 @@ struct TraversalBinding {
   VkAccelerationStructureKHR structure = VK_NULL_HANDLE;   // at binding 1, if any
 };
 
-// A structure for rays of a caller's own. Ids have no surveyed_bit, and all meshes are placed that nodes share.
+// A structure for a caller's own rays. Ids have no surveyed_bit, and all meshes that nodes share are placed.
 class RayWalk {
  public:
   RayWalk() = default;
@@ -62,7 +62,7 @@ class Traversal {
   using Binding = TraversalBinding;  // of its trace()
   virtual Binding binding() const = 0;
 
-  // Whether, on every device, no ray passes between two triangles that share an edge.
+  // Returns true if, on every device, no ray passes between two triangles that share an edge.
   virtual bool is_watertight() const { return false; }
 
   // A kernel that runs before an exact count with skipping: one thread per listed tile, with a TilePush. It leaves
@@ -73,8 +73,8 @@ class Traversal {
   };
   virtual std::optional<TilePass> tile_pass() const { return std::nullopt; }
 
-  // Takes new positions of the triangles of some runs, in a scene that is otherwise the one that it was built for and
-  // shares no meshes. Returns false, and changes nothing, if a new structure is better.
+  // Takes new positions of the triangles of some runs; the scene is otherwise the one that it was built for, and shares
+  // no meshes. Returns false, and changes nothing, if a new structure is better.
   virtual bool move(Commands&, const SceneData& /*scene*/, std::span<const KeptRun> /*moved*/) { return false; }
 };
 
@@ -83,9 +83,9 @@ struct VulkanEngine {
   Engine engine;
   DeviceNeeds needs;
   std::unique_ptr<Traversal> (*build)(Device& device, Commands& commands, const TraversalScene& scene);
-  // Whether it keeps meshes that nodes share once. Other engines are given every mesh where it stands.
+  // True if it stores meshes that nodes share once; other engines get every mesh in place.
   bool places_meshes = false;
-  // Null: the engine has no rays of a caller's own.
+  // Null: the engine traces no rays of a caller.
   std::unique_ptr<RayWalk> (*build_walk)(Device& device, Commands& commands, const TraversalScene& scene) = nullptr;
 };
 

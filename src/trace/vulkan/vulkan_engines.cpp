@@ -96,7 +96,7 @@ std::optional<std::uint64_t> free_device_memory(std::uint32_t device) {
   try {
     const auto instance = Instance::get(false);
     return memory_of(*instance, instance->physical_devices().at(device)).free;
-  } catch (const std::exception&) {  // whoever uses the device gets the error
+  } catch (const std::exception&) {  // the next user of the device gets the error
     return std::nullopt;
   }
 }

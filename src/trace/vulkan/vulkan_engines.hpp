@@ -16,19 +16,19 @@ namespace vantage {
 
 using VulkanEngines = std::span<const vulkan::VulkanEngine* const>;
 
-// Lists each engine on every device of this machine, usable or not, with the reason. Without Vulkan, one entry per
-// engine, without a device, says why. Having no device is no error.
+// Lists each engine on every device of this machine, usable or not, with the reason. Without Vulkan, one entry for each
+// engine, without a device, says why. A missing device is no error.
 std::vector<EngineInfo> list_vulkan_engines(VulkanEngines engines);
 
-// Memory of a device that this process may still allocate, by VK_EXT_memory_budget; without that extension, all of it;
-// empty if unknown.
+// Returns the memory of a device that this process may still allocate, by VK_EXT_memory_budget; without that extension,
+// all of it. Empty if unknown.
 std::optional<std::uint64_t> free_device_memory(std::uint32_t device);
 
 // Without `device`, takes the best one that has what the engine needs, hardware before software. Throws Error
 // no_suitable_device with the reason for each refusal.
 std::unique_ptr<Tracer> make_vulkan_tracer(const vulkan::VulkanEngine& engine, std::optional<std::uint32_t> device,
                                            const TraceScene& scene);
-// The same for rays of a caller's own. REQUIRES: a scene with triangles.
+// Makes a finder for a caller's own rays in the same way. REQUIRES: a scene with triangles.
 std::unique_ptr<RayFinder> make_vulkan_ray_finder(const vulkan::VulkanEngine& engine,
                                                   std::optional<std::uint32_t> device, const SceneData& scene);
 

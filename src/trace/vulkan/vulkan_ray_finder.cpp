@@ -10,13 +10,13 @@
 namespace vantage::vulkan {
 namespace {
 
-// Rays of a batch: enough to fill the device, and so few that the slowest device has them within a fraction of a second
-// (and, with the memory of a slot, 36 bytes each, that every device has room).
+// Rays of a batch: enough to fill the device, and few enough for the slowest device to trace them within a fraction of
+// a second. With the memory of a slot, 36 bytes each, every device has room for them.
 constexpr std::size_t kHardwareBatch = std::size_t{1} << 22, kSoftwareBatch = std::size_t{1} << 17;
 
 std::unique_ptr<RayWalk> walk_over(const VulkanEngine& engine, Device& device, Commands& commands,
                                    const SceneData& scene) {
-  std::vector<std::uint32_t> ids;  // of triangles that are stored where they stand, as they are stored
+  std::vector<std::uint32_t> ids;  // of triangles stored in place, in stored order
   const auto add = [&](std::uint32_t first, std::uint32_t stored, std::uint32_t count) {
     ids.resize(std::max<std::size_t>(ids.size(), stored + std::size_t{count}));
     for (std::uint32_t k = 0; k < count; ++k) ids[stored + k] = first + k;

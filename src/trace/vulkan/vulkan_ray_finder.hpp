@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a caller's own on a Vulkan device. Engines differ only in their RayWalk.
+// A caller's own rays on a Vulkan device. Engines differ only in their RayWalk.
 #pragma once
 
 #include <array>

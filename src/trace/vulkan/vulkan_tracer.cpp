@@ -14,7 +14,7 @@ constexpr double seconds_per_sampled_submission = 1;
 // The first dispatch of an exact submission has this share of the limit, to measure the device's speed.
 constexpr double first_share = 1.0 / 16;
 
-// Returns true if two scenes have the same triangles with the same attributes, but for the places of their corners.
+// Returns true if two scenes have the same triangles with the same attributes, except for their corners' places.
 bool differ_by_places_alone(const SceneData& one, const SceneData& other) {
   const auto alike = [&](std::size_t m) {
     return one.ranges[m].first_triangle == other.ranges[m].first_triangle &&
@@ -58,7 +58,7 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
 
 std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& engine) {
   const SceneData& scene = *scene_.scene;
-  std::vector<std::uint32_t> ids;  // of triangles that are stored where they stand, as they are stored
+  std::vector<std::uint32_t> ids;  // of triangles stored in place, in stored order
   const auto add = [&](std::uint32_t first, std::uint32_t count) {
     if (first >= scene.opaque_count()) return;
     const std::uint32_t bit = scene.meshes[scene.mesh_of(first)].role == Role::surveyed ? surveyed_bit : 0;

@@ -44,7 +44,7 @@ struct DeviceSample {
   DeviceDemands demands;
 };
 
-// Counts and masks of voxels, and what they are reduced to.
+// Counts and masks of voxels, and the sums that they are reduced to.
 struct SumBuffers {
   Buffer counts, masks, station_counters, totals, station_counts;
 };
@@ -86,11 +86,11 @@ class VulkanTracer final : public Tracer {
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override;
-  // Takes a scene in which meshes have moved in place. After an error it must not be used.
+  // Takes a scene in which meshes have moved. After an error the tracer must not be used.
   bool take(const TraceScene& later, const SceneDifference& difference) override;
 
  private:
-  // One call of count() and of count_sampled().
+  // State of one call of count() or of count_sampled().
   class ExactCount;
   class SampledCount;
 
@@ -98,7 +98,7 @@ class VulkanTracer final : public Tracer {
   std::vector<DeviceScanner> make_scanners();
   const DeviceSample& upload_sample(std::span<const std::uint32_t> sample);
   DeviceSample device_sample(std::span<const std::uint32_t> sample);
-  // Those that an exact count of stations of one scanner takes.
+  // Returns the kernels for an exact count of stations of one scanner.
   std::vector<KernelVariant> count_kernels(const DeviceScanner& scanner, bool turned,
                                            const CountOptions& options) const;
   SampleRoom room_for_sample() const { return sample_room(info_.software, scene_.max_rays_per_dispatch); }
@@ -107,12 +107,12 @@ class VulkanTracer final : public Tracer {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
   }
-  // Sum of point weights that fills a voxel.
+  // Returns the sum of point weights that fills a voxel.
   std::uint64_t goal_point_weight() const {
     const double least = scene_.grid->demands().least_point_weight();
     return static_cast<std::uint64_t>(std::min(std::ceil(goal_density_ * least), count_limit * least));
   }
-  // Shift that lets `voxels` squares of nearly the goal fit in 64 bits; 0 for every goal that scanners reach.
+  // Returns a shift that lets `voxels` squares of nearly the goal fit in 64 bits; 0 for goals in scanners' reach.
   std::uint32_t difference_shift(std::uint32_t voxels) const {
     const int bits =
         2 * static_cast<int>(std::bit_width(goal_point_weight())) + static_cast<int>(std::bit_width(voxels));
@@ -129,7 +129,7 @@ class VulkanTracer final : public Tracer {
         std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{most_groups} * block_rows));
   }
 
-  // Rows in the kernels' format; upright stations need none.
+  // Sets rows in the kernels' format; upright stations need none.
   static void set_turn(vec3 (&rows)[3], const TraceStation& station) {
     if (!station.turn) return;
     const Float3* const own[3] = {&station.turn->x, &station.turn->y, &station.turn->z};

@@ -31,7 +31,7 @@ constexpr std::size_t parallel_grain = 8192;
 
 struct Item {
   Bounds3 box;
-  std::uint32_t triangle;  // or a placement, counted on from the triangles
+  std::uint32_t triangle;  // or a placement, numbered after the triangles
   float centre(std::size_t axis) const { return 0.5f * (box.min[axis] + box.max[axis]); }
 };
 
@@ -42,7 +42,7 @@ class Builder {
   Builder(std::vector<Item>& items, std::size_t triangles, float widening)
       : items_(items), triangles_(triangles), widening_(widening), nodes_(items.size()) {}
 
-  // Builds the subtree and returns its child word.
+  // Builds a subtree and returns its child word.
   std::uint32_t build(std::size_t begin, std::size_t end, std::uint32_t slot, std::uint32_t depth) {
     const std::size_t count = end - begin;
     const auto places = [&](const Item& item) { return item.triangle >= triangles_; };
@@ -109,7 +109,7 @@ class Builder {
     return best ? partition(begin, end, *best) : halve(begin, end, centres);
   }
 
-  // Empty if all centres fall into one bin.
+  // Returns the cheapest cut; empty if all centres fall into one bin.
   std::optional<Cut> cheapest_cut(std::size_t begin, std::size_t end, std::size_t axis, const Bounds3& centres) const {
     const float extent = centres.max[axis] - centres.min[axis];
     if (!(extent > 0)) return std::nullopt;
@@ -145,7 +145,7 @@ class Builder {
     return static_cast<std::size_t>(middle - items_.begin());
   }
 
-  // Splits by count along the longest axis, if all centres coincide or the tree is deep already.
+  // Splits by count along the longest axis; used if all centres coincide or the tree is deep.
   std::size_t halve(std::size_t begin, std::size_t end, const Bounds3& centres) {
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
@@ -186,7 +186,7 @@ std::vector<BvhNode> compact(const std::vector<BvhNode>& sparse, std::uint32_t r
   return dense;
 }
 
-// The tree over boxes of triangles, and of placements behind them.
+// Builds the tree over boxes of triangles, followed by placements.
 Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::span<const Triangle> triangles,
               std::span<const std::uint32_t> ids) {
   assert(triangles.size() == ids.size() && items.size() < bvh_leaf_first_mask);
@@ -203,7 +203,7 @@ Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::
   Builder builder(items, triangles.size(), widening_of(all));
   const std::uint32_t root = builder.build(0, items.size(), 0, 0);
   if (root & bvh_leaf_bit) {
-    // The root must be a node: one child holds everything; no ray enters the other's empty box.
+    // The root must be a node: one child holds everything, and no ray enters the other's empty box.
     bvh.nodes = {node_of({all, Bounds3(), root, root}, widening_of(all))};
   } else {
     bvh.nodes = compact(builder.nodes(), root);
@@ -211,7 +211,7 @@ Bvh tree_over(std::vector<Item>& items, std::span<const Float3> positions, std::
   bvh.triangles.resize(items.size());
   parallel::for_all(std::size_t{0}, items.size(), [&](std::size_t k) {
     const std::uint32_t t = items[k].triangle;
-    if (t >= triangles.size()) return;  // no leaf refers to it
+    if (t >= triangles.size()) return;  // a placement, which is no triangle of a leaf
     bvh.triangles[k] = bvh_triangle(positions, triangles[t], ids[t]);
   });
   return bvh;
@@ -221,7 +221,7 @@ struct WideBox {
   glm::dvec3 centre, half;
 };
 
-// Some hundred boxes of a tree, or fewer, that together hold all of it. They fit a turned mesh better than one.
+// Returns about a hundred boxes, or fewer, that together hold the tree. They fit a turned mesh better than one box.
 std::vector<WideBox> boxes_within(const Bvh& bvh) {
   constexpr std::size_t enough = 128;
   std::vector<std::uint32_t> open{0};
@@ -241,7 +241,7 @@ std::vector<WideBox> boxes_within(const Bvh& bvh) {
   return closed;
 }
 
-// The box around a placed mesh, in the local frame, as far as any of its triangles' own boxes reach.
+// Returns the box around a placed mesh, in the local frame, including the boxes of all its triangles.
 WideBox box_of(const vulkan::MeshPlacement& place, std::span<const WideBox> boxes) {
   const glm::dmat3 local_from_mesh = place.linear();
   glm::dmat3 sizes;
@@ -265,10 +265,10 @@ Bounds3 bounds_of(const WideBox& box, double doubt) {
   return bounds;
 }
 
-// Boxes of placements hold what rays find there. In the mesh's frame, a triangle's own box is widened by 2^-19 of the
-// largest coordinate of the mesh or of the ray's origin, of all axes alike (lib/triangle_hit.glsl). Rays from as far as
-// twice the scene's size are allowed for; those from further away use larger boxes. The factor of 4 that is left is
-// for lengths instead of coordinates, and for the roundings that move the ray, 2^-22 of the same lengths.
+// Widens boxes of placements to hold all hits in them. In the mesh's frame, a triangle's own box is widened by 2^-19 of
+// the largest coordinate of the mesh or of the ray's origin, alike on all axes (lib/triangle_hit.glsl). This allows for
+// rays from up to twice the scene's size; rays from further away use larger boxes. The remaining factor of 4 covers
+// lengths instead of coordinates, and the roundings that move the ray, 2^-22 of the same lengths.
 void bound_placements(std::span<Item> items, std::span<const Float3> positions, std::span<const Triangle> triangles,
                       const vulkan::PlacedMeshes& placed, std::span<const std::vector<WideBox>> boxes) {
   if (items.empty()) return;
@@ -314,8 +314,8 @@ BvhTriangle bvh_triangle(std::span<const Float3> positions, const Triangle& tria
   return {{a.x, a.y, a.z}, id, {b.x, b.y, b.z}, 0, {c.x, c.y, c.z}, 0};
 }
 
-// Roundings of a ray that is moved into the mesh's frame, and of corners where the mesh stands, are some 22 times the
-// place's condition in units of 2^-24 of the distances involved; they grow as the inverse does.
+// Roundings of a ray moved into the mesh's frame, and of corners in place, are some 22 times the place's condition in
+// units of 2^-24 of the distances involved; they grow as the inverse does.
 BvhPlacement bvh_placement(const vulkan::MeshPlacement& place, float widening) {
   const glm::dmat3 inverse = glm::inverse(place.linear());
   const glm::dvec3 origin = place.origin();

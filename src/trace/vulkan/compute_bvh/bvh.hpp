@@ -25,13 +25,13 @@ struct Bvh {
 Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
               std::span<const std::uint32_t> ids);
 
-// A triangle for shaders.
+// Returns a triangle for shaders.
 BvhTriangle bvh_triangle(std::span<const Float3> positions, const Triangle& triangle, std::uint32_t id);
 
-// A placement for shaders, of a mesh whose tree has boxes of this widening. The root is left to fill in.
+// Returns a placement for shaders, of a mesh whose tree has boxes of this widening. The caller fills in the root.
 BvhPlacement bvh_placement(const vulkan::MeshPlacement& place, float widening);
 
-// The same with meshes that nodes share: each has a tree of its own behind the others, and the tree at node 0 holds
+// Builds the same with meshes that nodes share: each has its own tree behind the others, and the tree at node 0 holds
 // their placements among the triangles.
 Bvh build_placed_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
                      std::span<const std::uint32_t> ids, const vulkan::PlacedMeshes& placed);

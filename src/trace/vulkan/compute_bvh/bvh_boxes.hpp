@@ -51,7 +51,7 @@ struct Bounds3 {
   bool empty() const { return min[0] > max[0]; }
 };
 
-// Twice the widening of shaders/lib/widening.glsl for rays from as far as twice the largest coordinate. Rays from
+// Returns twice the widening of shaders/lib/widening.glsl for rays from up to twice the largest coordinate. Rays from
 // further away use larger boxes.
 inline float widening_of(const Bounds3& all) {
   float largest = 1e-3f;

@@ -35,12 +35,12 @@ class ComputeBvh final : public Traversal, public RayWalk {
   }
   Shader own_rays() const override { return shaders::own_rays_compute_bvh; }
   bool is_watertight() const override { return true; }  // lib/triangle_hit.glsl
-  // Decides common steps down the tree once for all rays of a tile.
+  // Decides the first steps down the tree, common to all rays of a tile, only once.
   std::optional<TilePass> tile_pass() const override {
     return TilePass{shaders::tile_starts, tile_starts * sizeof(TileStart)};
   }
 
-  // The first move reads the tree back, for which others need no memory on the host.
+  // The first move reads the tree back; scenes that do not move need no memory on the host.
   bool move(Commands& commands, const SceneData& scene, std::span<const KeptRun> moved) override {
     if (moved.empty()) return true;
     if (!moving_) {

@@ -12,8 +12,8 @@
 namespace vantage {
 namespace {
 
-// A ray enters as many boxes as their areas tell. Where these grow by more than this factor, a new tree is worth its
-// time.
+// The number of boxes that a ray enters grows with their areas. A growth by more than this factor makes a new tree
+// worthwhile.
 constexpr double kMostCost = 1.2;
 constexpr std::uint32_t kNowhere = 0xFFFFFFFFu;
 
@@ -28,7 +28,7 @@ double half_area(const vec3& half) {
 }
 double cost_of(const BvhNode& node) { return half_area(node.half0) + half_area(node.half1); }
 
-// Returns a box that holds what the child's was made around, and no more but for roundings.
+// Returns a box that holds the child's original box, and exceeds it only by roundings.
 Bounds3 without_widening(const vec3& centre, const vec3& half, float widening) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Bounds3 box;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree whose triangles move: boxes above them are fitted anew, and the tree stays as it was built.
+// A tree whose triangles move: boxes above them are refitted, and the tree's shape stays.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class MovingBvh {
     double cost = 0;
   };
   // Moves the triangles of some runs, by their numbers, to new positions. Empty if a new tree would be faster to walk,
-  // or has to have larger boxes.
+  // or needs larger boxes.
   std::optional<Change> move(std::span<const Float3> positions, std::span<const Triangle> triangles,
                              std::span<const KeptRun> moved) const;
   void take(const Change& change);

@@ -27,14 +27,14 @@ VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR stru
   return device.vk().vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
 }
 
-// A ray of a caller's own in this frame is off by less than a thirtieth of this share of the largest coordinate, and so
-// is what a driver makes of it. Twice `doubt` covers the way into a shared mesh's frame.
+// A caller's own ray in this frame is off by less than a thirtieth of this share of the largest coordinate; so is a
+// driver's version of it. Twice `doubt` covers the way into a shared mesh's frame.
 constexpr double kWidening = 0x1p-17;
 
 double largest_of(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 double largest_of(const Box& box) { return box.empty() ? 0 : std::max(largest_of(box.min), largest_of(box.max)); }
 
-// Of the boxes of each shared mesh, for all of its places.
+// Returns the widening of the boxes of each shared mesh, for all of its places.
 std::vector<double> widenings_of(const TraversalScene& scene) {
   std::vector<double> widenings;
   for (const auto& mesh : scene.placed.meshes) {
@@ -57,7 +57,7 @@ std::vector<double> widenings_of(const TraversalScene& scene) {
 VkAabbPositionsKHR box_around(const TraversalScene& scene, const Triangle& triangle, double widening) {
   Box box;
   for (const std::uint32_t v : triangle) box.extend(widen(scene.positions[v]));
-  // Rounded to float, which the widening covers.
+  // Rounds to float, which the widening covers.
   const Vec3 by{widening, widening, widening};
   const Float3 low = narrow(box.min - by), high = narrow(box.max + by);
   return {low.x, low.y, low.z, high.x, high.y, high.z};
@@ -168,8 +168,8 @@ void AccelerationStructure::build_parts(const TraversalScene& scene, std::span<c
 
 AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene, Over over)
     : device_(device), commands_(commands) {
-  // Triangles in the structure's order: those that are stored where they stand, then mesh after mesh, whose ids count
-  // from 0.
+  // Triangles in the structure's order: those stored in place, then those of each mesh, with ids counted from
+  // 0.
   std::vector<Triangle> sorted;
   std::vector<std::uint32_t> ids;
   std::vector<Part> parts;

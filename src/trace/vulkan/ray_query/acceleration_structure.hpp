@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver's acceleration structure over a scene's triangles, or over boxes around them: bottom levels of those that
-// are stored where they stand and of meshes that nodes share, and a top level that places them.
+// The driver's acceleration structure over a scene's triangles, or over boxes around them. Bottom levels hold triangles
+// stored in place and meshes that nodes share; a top level places them.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ class AccelerationStructure {
  public:
   enum class Over {
     triangles,
-    boxes,  // of triangles, as wide as rays of a caller's own are off (trace/ray_query/find.glsl)
+    boxes,  // of triangles, widened by the error of a caller's own rays (trace/ray_query/find.glsl)
   };
   // On software devices, `scene.sort` sorts triangles so that such drivers build good trees.
   AccelerationStructure(Device& device, Commands& commands, const TraversalScene& scene, Over over = Over::triangles);
 
   VkAccelerationStructureKHR handle() const { return top_.get(); }
-  // In the structure's order: ids of triangles, or, over boxes, BvhTriangle.
+  // Returns, in the structure's order, ids of triangles, or, over boxes, BvhTriangle.
   VkDeviceAddress primitives() const { return primitives_.address(); }
-  // QueryInstance, or, over boxes, BvhPlacement, whose root is the first triangle, and whose doubt is 0 for triangles
-  // that are stored where they stand. 0 if no meshes are shared.
+  // Returns QueryInstance, or, over boxes, BvhPlacement, whose root is the first triangle, and whose doubt is 0 for
+  // triangles stored in place. 0 if no meshes are shared.
   VkDeviceAddress instances() const { return instances_.address(); }
 
  private:
-  // Triangles of the build that have a structure of their own.
+  // Triangles of the build with their own structure.
   struct Part {
     std::uint32_t first, count;
     double widening;  // of boxes, in their own frame
@@ -45,13 +45,13 @@ class AccelerationStructure {
   };
   Build build_of(VkAccelerationStructureTypeKHR type, const VkAccelerationStructureGeometryKHR& geometry,
                  std::uint32_t count) const;
-  // `still`: bytes of this structure and of those that will be built behind it.
+  // `still`: bytes of this structure and of those built after it.
   UniqueAccelerationStructure run(Build build, VkDeviceSize still, Buffer& scratch, const char* name);
 
   Device& device_;
   Commands& commands_;
   std::vector<Buffer> storage_;  // of structures, which are small if meshes are
-  VkDeviceSize used_ = 0;        // of the last one
+  VkDeviceSize used_ = 0;        // end of the last one
   std::vector<UniqueAccelerationStructure> bottom_;
   UniqueAccelerationStructure top_;
   Buffer primitives_, instances_;

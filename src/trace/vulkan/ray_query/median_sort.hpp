@@ -10,9 +10,9 @@
 
 namespace vantage {
 
-// lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so the order determines the tree. Returns a
-// permutation: recursive median splits by centroid, left child the first ⌈n/2⌉, along the axis of least surface area
-// cost. Parallel and deterministic.
+// Returns a permutation of triangles. lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so that
+// the order determines the tree. The order comes from recursive median splits by centroid, left child the first ⌈n/2⌉,
+// along the axis of least surface area cost. Parallel and deterministic.
 std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::span<const Triangle> triangles);
 
 }  // namespace vantage
