@@ -95,9 +95,9 @@ std::map<std::string, std::vector<std::string>> all_options() {
   return all;
 }
 
-// The message where it is refused as it is read.
-std::optional<std::string> refused(const std::string& command, const std::string& option, const std::string& value) {
-  Commands commands;
+// The message where it is refused as it is read. Commands forget what they read before.
+std::optional<std::string> refused(Commands& commands, const std::string& command, const std::string& option,
+                                   const std::string& value) {
   std::vector<std::string> words{"--" + option + "=" + value, command};  // last first, for CLI11
   try {
     commands.app.parse(words);
@@ -114,8 +114,8 @@ std::optional<std::string> refused(const std::string& command, const std::string
 bool names_something(const std::string& option) { return option == "panorama" || option == "views"; }
 
 // Values that every numeric option refuses.
-bool wants_numbers(const std::string& command, const std::string& option) {
-  return refused(command, option, "frobnicate").has_value();
+bool wants_numbers(Commands& commands, const std::string& command, const std::string& option) {
+  return refused(commands, command, option, "frobnicate").has_value();
 }
 
 TEST(Numbers, EveryOptionReadsOrRefusesThemAsTheyAre) {
@@ -125,11 +125,12 @@ TEST(Numbers, EveryOptionReadsOrRefusesThemAsTheyAre) {
   std::size_t tried = 0, numeric = 0;
   for (const auto& [command, options] : all_options())
     for (const std::string& option : options) {
-      const bool number = wants_numbers(command, option);
+      Commands commands;
+      const bool number = wants_numbers(commands, command, option);
       numeric += number;
       for (const std::string& value : kNumbers) {
         SCOPED_TRACE(command + " --" + option + "='" + value + "'");
-        const auto message = refused(command, option, value);
+        const auto message = refused(commands, command, option, value);
         ++tried;
         EXPECT_TRUE(!message || names_something(option) || message->find(option) != std::string::npos) << *message;
         EXPECT_TRUE(message || !number || !never.contains(value)) << "was taken";
@@ -160,10 +161,11 @@ TEST(Numbers, EveryOptionOfAConfigurationReadsOrRefusesThem) {
   for (const auto& [command, options] : all_options())
     for (const std::string& option : options) {
       if (option == "config") continue;
-      const bool number = wants_numbers(command, option);
+      Commands commands;
+      const bool number = wants_numbers(commands, command, option);
       for (const auto& value : values) {
         SCOPED_TRACE(command + " " + option + ": " + value.dump());
-        Commands commands;
+        commands.app.clear();
         try {
           cli::apply_layer(*commands.app.get_subcommand(command), {{option, value}}, "config.json");
           EXPECT_TRUE(!number || !value.is_number_float() || std::isfinite(value.get<double>())) << "was taken";
@@ -343,8 +345,9 @@ TEST_F(NumbersThatAreTaken, EndInFiniteResultsOrOneError) {
     for (const std::string& option : options) {
       if (option == "output" || (!seen.insert(option).second && !all)) continue;
       std::vector<std::string> taken;
+      Commands commands;
       for (const std::string& value : kNumbers)
-        if (!refused(command, option, value)) taken.push_back(value);
+        if (!refused(commands, command, option, value)) taken.push_back(value);
       if (!all && taken.size() > 1) taken = {taken[std::hash<std::string>()(command + option) % taken.size()]};
       for (const std::string& value : taken) {
         auto words = quick(command);

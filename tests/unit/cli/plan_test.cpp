@@ -364,14 +364,14 @@ TEST_F(Plan, AsksForTheStationsThatPayByDefault) {
 TEST_F(Plan, IsDoneWithinTheTimeGiven) {
   const auto begun = std::chrono::steady_clock::now();
   const Outcome outcome =
-      run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--capture", "0.9", "--link", "0",
-                   "--iterations", "10000000", "--max-time", "8", "-o", path("plan")});
+      run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--spacing", "0.05", "--capture", "0.9",
+                   "--link", "0", "--iterations", "10000000", "--max-time", "8", "-o", path("plan")});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
   EXPECT_LT(seconds, 60) << "ten million iterations take hours";
   EXPECT_EQ(nlohmann::json::parse(read("plan/front.json"))["stop_reason"], "max_time") << outcome.err;
-  const Outcome whole = run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--capture", "0.9",
-                                     "--link", "0", "--iterations", "2", "-o", path("whole")});
+  const Outcome whole = run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--spacing", "0.05",
+                                     "--capture", "0.9", "--link", "0", "--iterations", "2", "-o", path("whole")});
   EXPECT_TRUE(whole.exit_code == 0 || whole.exit_code == 3) << whole.err;
   const auto names = [&](const char* folder) {
     std::set<std::string> all;
