@@ -916,9 +916,7 @@ TEST(InstrumentErrors, MoveScansAsAnAdjustmentOfMeasurementsThatHaveThem) {
       r << turn.x, turn.y, turn.z, n.x, n.y, n.z;
       return r;
     };
-    using Matrix12 = Eigen::Matrix<double, 12, 12>;
-    Matrix12 normal = Matrix12::Zero();
-    Eigen::Matrix<double, 12, 20> right = Eigen::Matrix<double, 12, 20>::Zero();
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(12, 12), right = Eigen::MatrixXd::Zero(12, 20);
     const auto weight = [](double sigma) { return 1 / (sigma * sigma); };
     for (int k = 0; k < 2; ++k)
       for (int a = 0; a < 6; ++a)
@@ -926,10 +924,10 @@ TEST(InstrumentErrors, MoveScansAsAnAdjustmentOfMeasurementsThatHaveThem) {
                                        : a < 3 ? weight(options.heading.in_radians())
                                                : weight(options.position_m);
     double area = 0;
-    Eigen::Matrix<double, 12, 12> moments = Matrix12::Zero();  // Σ area · (displacement of the surface)²
+    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(12, 12);  // Σ area · (displacement of the surface)²
     for (const VoxelSurface& s : m.surfaces) {
       const Vec3 p{s.point.x, s.point.y, s.point.z}, n{s.normal.x, s.normal.y, s.normal.z};
-      Eigen::Matrix<double, 1, 12> j;
+      Eigen::RowVectorXd j(12);
       j << row(p, m.heads[0], n), -row(p, m.heads[1], n);
       const double w = s.area / (2 * model.rho_m * model.rho_m * model.patch_m * model.patch_m);
       normal += w * j.transpose() * j;
@@ -941,32 +939,31 @@ TEST(InstrumentErrors, MoveScansAsAnAdjustmentOfMeasurementsThatHaveThem) {
       }
       area += s.area;
       for (std::size_t k = 0; k < 2; ++k) {
-        Eigen::Matrix<double, 3, 12> at = Eigen::Matrix<double, 3, 12>::Zero();
+        Eigen::MatrixXd at = Eigen::MatrixXd::Zero(3, 12);
         const Vec3 q = p - m.heads[k];
         Eigen::Matrix3d cross;
         cross << 0, -q.z, q.y, q.z, 0, -q.x, -q.y, q.x, 0;
-        at.block<3, 3>(0, 6 * static_cast<Eigen::Index>(k)) = -cross;
-        at.block<3, 3>(0, 6 * static_cast<Eigen::Index>(k) + 3) = Eigen::Matrix3d::Identity();
+        at.block(0, 6 * static_cast<Eigen::Index>(k), 3, 3) = -cross;
+        at.block(0, 6 * static_cast<Eigen::Index>(k) + 3, 3, 3) = Eigen::Matrix3d::Identity();
         moments += s.area / 2 * at.transpose() * at;
       }
     }
     // Motions of the whole are no error: the same small motion of both heads, whatever it is.
-    Eigen::Matrix<double, 12, 6> whole = Eigen::Matrix<double, 12, 6>::Zero();
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(12, 6);
     for (std::size_t k = 0; k < 2; ++k) {
       const auto at = 6 * static_cast<Eigen::Index>(k);
       const Vec3& h = m.heads[k];
       Eigen::Matrix3d cross;
       cross << 0, -h.z, h.y, h.z, 0, -h.x, -h.y, h.x, 0;
-      whole.block<3, 3>(at, 0) = whole.block<3, 3>(at + 3, 3) = Eigen::Matrix3d::Identity();
-      whole.block<3, 3>(at + 3, 0) = -cross;
+      whole.block(at, 0, 3, 3) = whole.block(at + 3, 3, 3, 3) = Eigen::Matrix3d::Identity();
+      whole.block(at + 3, 0, 3, 3) = -cross;
     }
-    const Eigen::Matrix<double, 12, 20> motions = normal.ldlt().solve(right);
+    const Eigen::MatrixXd motions = normal.ldlt().solve(right);
     double square = 0;
     for (int column = 0; column < 20; ++column) {
-      const Eigen::Matrix<double, 12, 1> x = motions.col(column);
-      const Eigen::Matrix<double, 6, 1> fit =
-          (whole.transpose() * moments * whole).ldlt().solve(whole.transpose() * moments * x);
-      const Eigen::Matrix<double, 12, 1> rest = x - whole * fit;
+      const Eigen::VectorXd x = motions.col(column);
+      const Eigen::VectorXd fit = (whole.transpose() * moments * whole).ldlt().solve(whole.transpose() * moments * x);
+      const Eigen::VectorXd rest = x - whole * fit;
       square += rest.dot(moments * rest) / area / 4;  // the mean of the draws
     }
     const double instrument = std::sqrt(found.rms_m * found.rms_m - found.random_m * found.random_m);
