@@ -40,8 +40,8 @@ void check(const CandidateConfig& config, std::size_t scanners) {
   if (config.first < 1 || config.most < config.first)
     throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
                                             std::to_string(config.most) + " are asked for; at least 1 is needed");
-  check_number(config.change, "candidates: the change", not_negative);
-  check_number(config.max_seconds, "candidates: the time limit", any_seconds);
+  check_number(config.change, "candidates: the change", kNotNegative);
+  check_number(config.max_seconds, "candidates: the time limit", kAnySeconds);
   if (config.sample_voxels == 0) throw Error(Errc::invalid_argument, "candidates: a sample has at least one voxel");
 }
 

@@ -30,8 +30,8 @@ SampledCoverage::SampledCoverage(const Simulator& simulator, std::uint64_t sampl
   }
   // All are 1, or none is.
   if (!point_weights_.empty() && point_weights_.front() == 1) point_weights_.clear();
-  matrix_ = CoverageMatrix(std::move(weights),
-                           simulator.goal_density() * (point_weights_.empty() ? 1 : densest_point_weight));
+  matrix_ =
+      CoverageMatrix(std::move(weights), simulator.goal_density() * (point_weights_.empty() ? 1 : kDensestPointWeight));
 }
 
 std::uint32_t SampledCoverage::amount(std::uint32_t element, std::uint32_t points) const {

@@ -179,7 +179,7 @@ double parse_duration(std::string_view text, const std::string& what) {
   if (digits.empty() || std::from_chars(digits.begin(), digits.end(), parsed).ptr != digits.end())
     refuse(what, text, "is no time; write a number and s, min or h: 90s, 15min or 2h");
   const double seconds = unit * parse_number(number, what, {.low = 1e-6});
-  if (seconds > any_seconds.high) refuse(what, text, "must be at most " + number_text(any_seconds.high) + " seconds");
+  if (seconds > kAnySeconds.high) refuse(what, text, "must be at most " + number_text(kAnySeconds.high) + " seconds");
   return seconds;
 }
 
@@ -217,7 +217,7 @@ std::uint64_t parse_bytes(std::string_view text, const std::string& what) {
     number.remove_suffix(1);
   }
   while (number.ends_with(' ')) number.remove_suffix(1);
-  const double bytes = unit * parse_number(number, what, positive);
+  const double bytes = unit * parse_number(number, what, kPositive);
   if (!(bytes >= 1 && bytes < 0x1p63)) refuse(what, text, "is no number of bytes");
   return static_cast<std::uint64_t>(bytes);
 }

@@ -62,15 +62,15 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
           .number("set-up", "MIN", "Minutes at each station besides the scan itself", &OnSiteOptions::set_up_min,
                   minutes)
           .number("photos", "MIN", "Minutes at each station for pictures, where the scanner takes some",
-                  &OnSiteOptions::photos_min, not_negative)
+                  &OnSiteOptions::photos_min, kNotNegative)
           .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
-                  &OnSiteOptions::walking_m_per_s, measurable)
+                  &OnSiteOptions::walking_m_per_s, kMeasurable)
           .optional("day", "T",
                     "Longest session, from the entrance and back: 8h or 450min. A longer round is split into sessions",
                     &OnSiteOptions::day_min,
                     [](const std::string& text, const std::string& what) { return parse_duration(text, what) / 60; })
           .checked([](const OnSiteOptions& options, const std::string& what) {
-            if (options.day_min) check_number(*options.day_min, what, positive);
+            if (options.day_min) check_number(*options.day_min, what, kPositive);
           })
           .count("crews", "N", "Crews that work side by side, a session each, every day; 1 otherwise. Takes a day",
                  &OnSiteOptions::crews, 1, 1000)

@@ -143,7 +143,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   }
   if (content.moved) {
     canvas.line({at.x + 3, at.y}, {at.x + 22, at.y}, {.width = 1.5});
-    canvas.disc({at.x + 3, at.y}, 3.4, style::ink);
+    canvas.disc({at.x + 3, at.y}, 3.4, style::kInk);
     words("true spot of a disc beside it");
     at.y += 28;
   }

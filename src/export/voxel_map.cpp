@@ -99,7 +99,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
     canvas.clip(map);
     if (level.cut)
       for (const auto& [a, b] : section_lines(simulator.scene().data(), *level.cut))
-        canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = style::ink, .width = 0.8});
+        canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = style::kInk, .width = 0.8});
     for (const PlacedStation& station : stations) {
       if (station.status != StationStatus::ok || !level.holds(station.ground.z)) continue;
       const Point at = chart.at(station.position.x, station.position.y);

@@ -487,7 +487,7 @@ void check(const WalkableOptions& options) {
   check_number(whole_degrees(options.max_slope), "the largest slope of a walkable surface",
                {.low = 0, .high = 90, .high_included = false});
   check_number(options.headroom_m, "the headroom above a walkable surface, in metres,", length);
-  check_number(options.min_area_m2, "the smallest area of a walkable part, in m²,", not_negative);
+  check_number(options.min_area_m2, "the smallest area of a walkable part, in m²,", kNotNegative);
   check_number(options.passage_width_m, "the width of the narrowest passage, in metres,",
                {.low = 0, .high = kSiteReach_m, .low_included = false});
   check_number(options.climb_m, "the highest step, in metres,", length);

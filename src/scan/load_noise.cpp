@@ -72,9 +72,9 @@ NoiseTable load_noise(const std::string& name) {
       throw Error(Errc::malformed_file, what + ": '" + line + "' must have " +
                                             (header ? std::string("`reflectivity` and the distances in metres")
                                                     : std::to_string(table.distances_m.size() + 1) + " cells"));
-    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, of_angles ? incidences : any_share));
+    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, of_angles ? incidences : kAnyShare));
     for (std::size_t k = 1; k < cells.size(); ++k)
-      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, not_negative));
+      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, kNotNegative));
   }
   if (table.reflectivities.empty()) throw Error(Errc::malformed_file, name + ": holds no line of standard deviations");
   const auto ascending = [](const std::vector<double>& values) {

@@ -49,7 +49,7 @@ Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghos
             ++sums.ghosts;
             continue;
           }
-          sums.counted += raw.voxel[k] != no_voxel;
+          sums.counted += raw.voxel[k] != kNoVoxel;
           sums.surveyed += scene.meshes[mesh_of(raw.primitive[k])].role == Role::surveyed;
         }
         return sums;

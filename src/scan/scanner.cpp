@@ -261,7 +261,7 @@ void Scanner::check() const {
   const double tilt_arcsec = tilt_accuracy.in_degrees() * 3600;
   if (!(tilt_arcsec >= 0 && tilt_arcsec <= 18'000))
     refuse("tilt_accuracy in arc seconds", tilt_arcsec, "from 0 to 18000");
-  check_number(points_per_second, "scanner: points_per_second", measurable);
+  check_number(points_per_second, "scanner: points_per_second", kMeasurable);
   const auto check_battery = [](double lasts, const char* what) {
     if (lasts != 0 && !(lasts >= 1 && lasts <= 1e6)) refuse(what, lasts, "0, or from 1 to 1e6");
   };

@@ -95,7 +95,7 @@ using MakeGrid = std::function<std::optional<VoxelGrid>(double user_size_m)>;
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
                                             std::span<const double> spacings_m, const MakeGrid& make,
                                             const Progress& progress) {
-  check_number(config.point_spacing_m, "the point spacing in metres", measurable);
+  check_number(config.point_spacing_m, "the point spacing in metres", kMeasurable);
   // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a size that works.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
@@ -144,7 +144,7 @@ class AsCaller {
 void check_beam(const BeamOptions& beam, const Scanner& scanner) {
   if (beam.sub_rays != 7 && beam.sub_rays != 19)
     throw Error(Errc::invalid_argument, "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
-  check_number(beam.pulse_m, "the length of a pulse in metres", measurable);
+  check_number(beam.pulse_m, "the length of a pulse in metres", kMeasurable);
   if (scanner.beam_divergence.in_radians() == 0 && scanner.exit_diameter_m == 0)
     throw Error(Errc::invalid_argument, "the beam of the scanner \"" + scanner.name +
                                             "\" is not known: choose a scanner that states it, or give its divergence "
@@ -771,7 +771,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
       returns.resize(chunk.ray_count);
       if (options.outputs & scan_returns)
         std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
-          return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
+          return static_cast<std::uint8_t>(triangle == RayBundle::kNoHit ? 0 : 1);
         });
       if (options.instrument) apply(*options.instrument, scanner, from, first, raw);
       fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);

@@ -75,7 +75,7 @@ void number_bricks(VoxelBricks& marked) {
   for (VoxelBrick& brick : marked.bricks) {
     brick.first = static_cast<std::uint32_t>(marked.voxels);
     for (const std::uint32_t word : brick.mask) marked.voxels += static_cast<std::uint64_t>(std::popcount(word));
-    if (marked.voxels >= no_voxel)
+    if (marked.voxels >= kNoVoxel)
       throw Error(
           Errc::invalid_argument,
           "the surveyed meshes fill more than the 4294967294 voxels that can be numbered; use a larger user size");

@@ -22,7 +22,7 @@ struct FitBasis;         // voxel/grid_fit.hpp
 struct VoxelBricks;      // voxel/voxel_bricks.hpp
 struct SceneDifference;  // scene/scene_difference.hpp
 
-inline constexpr std::uint32_t no_voxel = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoVoxel = 0xFFFFFFFFu;
 inline constexpr int max_voxel_depth = 18;  // 2^18 cells per side; 54-bit Morton keys
 
 // Voxel coordinates interleaved, x lowest: bit 3k of the key is bit k of x.
@@ -50,11 +50,11 @@ class VoxelGrid {
   std::uint64_t size() const { return size_; }              // N_v
   // Sorted Morton key of the voxel with this index, and back.
   std::uint64_t key(std::uint64_t voxel_index) const;
-  std::uint32_t find(std::uint64_t key) const;  // index, or no_voxel
+  std::uint32_t find(std::uint64_t key) const;  // index, or kNoVoxel
   // Voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size)); empty outside
   // the cube.
   std::optional<std::array<std::uint32_t, 3>> cell_of(const Float3& p) const;
-  std::uint32_t index_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
+  std::uint32_t index_of(const Float3& p) const;  // find(morton(cell_of(p))), kNoVoxel outside
 
   // Data for upload: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
   std::span<const VoxelBrick> bricks() const { return bricks_; }

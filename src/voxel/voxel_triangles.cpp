@@ -114,7 +114,7 @@ class Finder {
     if (voxel_indices.empty()) return;
     if (dense_) {
       first_index_ = voxel_indices.front();
-      number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, no_voxel);
+      number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, kNoVoxel);
       for (std::size_t i = 0; i < voxel_indices.size(); ++i)
         number_[voxel_indices[i] - first_index_] = static_cast<std::uint32_t>(i);
       within_ = parallel::reduce(
@@ -163,7 +163,7 @@ class Finder {
       const std::uint32_t voxel_index = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
       const std::uint32_t place = voxel_index - first_index_;  // voxels before the first one wrap around
-      if (voxel_index != no_voxel && place < number_.size() && number_[place] != no_voxel) found(number_[place], t);
+      if (voxel_index != kNoVoxel && place < number_.size() && number_[place] != kNoVoxel) found(number_[place], t);
     });
   }
 
@@ -185,7 +185,7 @@ class Finder {
   bool dense_;
   CellBox within_;                                   // dense: around the wanted voxels
   std::uint32_t first_index_ = 0;                    // dense: index of the first of them
-  std::vector<std::uint32_t> number_;                // dense: for each voxel index from there, its number or no_voxel
+  std::vector<std::uint32_t> number_;                // dense: for each voxel index from there, its number or kNoVoxel
   std::vector<std::array<std::uint32_t, 3>> cells_;  // sparse: cell of each wanted voxel
   std::vector<std::uint32_t> first_;                 // sparse: brick b has first_[b] … first_[b + 1] − 1
 };

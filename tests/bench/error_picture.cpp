@@ -31,7 +31,7 @@ Look look_of(Way way) {
     case Way::every_ray:
     case Way::exact: break;
   }
-  return {style::ink, "exact"};
+  return {style::kInk, "exact"};
 }
 
 struct Quantity {
@@ -87,7 +87,7 @@ void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>&
     taken.push_back(best);
     std::vector<double> dashes;
     if (way == Way::every_ray) dashes = {5, 4};
-    canvas.line({at, area.y}, {at, area.bottom()}, {.colour = style::ink, .width = 1.4, .dashes = dashes});
+    canvas.line({at, area.y}, {at, area.bottom()}, {.colour = style::kInk, .width = 1.4, .dashes = dashes});
     for (double top = area.y; top < area.bottom(); top += 8) taken.push_back({at - 1, top, 2, 8});
   }
 }

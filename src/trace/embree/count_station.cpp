@@ -41,7 +41,7 @@ namespace {
                                behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
         voxels.add(point);
-      } else if (station_rays.grid().index_of(point) != no_voxel) {
+      } else if (station_rays.grid().index_of(point) != kNoVoxel) {
         totals.dropped = totals.dropped + dropped;
       }
     }
@@ -72,7 +72,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     const std::uint64_t first = station_rays.ray(row, tile.column);
     for (std::uint32_t column = 0; column < tile.columns; ++column, ++slot) {
       const std::uint32_t triangle = rays.primitive[slot];
-      if (triangle == RayBundle::no_hit) continue;
+      if (triangle == RayBundle::kNoHit) continue;
       ++totals.points;
       if (surface.surveyed(triangle)) hits.add(rays, slot, first + column);
     }

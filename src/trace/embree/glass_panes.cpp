@@ -45,7 +45,7 @@ void GlassPanes::pass(Passed& passed, float& next, float t, std::uint32_t triang
 
 void GlassPanes::follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays,
                             const std::uint32_t* slot, std::span<Passed> passed) const {
-  std::uint32_t ray = RayBundle::no_hit;
+  std::uint32_t ray = RayBundle::kNoHit;
   float next = 0;
   for (const RayCaster::Crossing& face : faces) {
     if (face.ray != ray) next = 0;
@@ -58,7 +58,7 @@ bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {
   for (std::uint32_t k = 0; k < rays.size; ++k) rays.end[k] = before_hit(rays.end[k]);
   const std::vector<RayCaster::Crossing> faces = caster_.crossings(rays);
   if (faces.empty()) return false;
-  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::no_hit, 0});
+  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::kNoHit, 0});
   follow_all(faces, rays, nullptr, passed);
   return true;
 }
@@ -78,7 +78,7 @@ bool GlassPanes::follow(const Float3& origin, const Hits& hits, const PaneView* 
   for (std::uint32_t k = 0; k < hits.size; ++k) end[k] = before_hit(hits.t[k]);
   PaneView::Crossings found;
   if (!view->find(hits, end, found)) return false;
-  std::fill_n(passed.begin(), hits.size, Passed{1, RayBundle::no_hit, 0});
+  std::fill_n(passed.begin(), hits.size, Passed{1, RayBundle::kNoHit, 0});
   std::uint32_t slot[RayBundle::capacity];
   for (std::uint32_t k = 0; k < hits.size; ++k) {
     const Float3 d{hits.x[k], hits.y[k], hits.z[k]};

@@ -105,7 +105,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
   };
 
   hiders_.clear();
-  if (look.occluder != RayBundle::no_hit) hiders_.push_back(seen(look.occluder));
+  if (look.occluder != RayBundle::kNoHit) hiders_.push_back(seen(look.occluder));
   const auto visit = [&](std::uint32_t row, std::uint32_t unit, std::uint32_t size, const auto& again) -> void {
     const std::uint32_t row_begin = window.rows.begin + (row << tiles.row_shift),
                         row_end = std::min(window.rows.begin + ((row + size) << tiles.row_shift), window.rows.end),
@@ -143,7 +143,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     Probe probe{d, static_cast<float>(end_of(cone.middle))};
     rays_->caster().any_hits(bundle_.origin, bundle_.start, {&probe, 1});
     ++traced_;
-    if (probe.hit != RayBundle::no_hit) {
+    if (probe.hit != RayBundle::kNoHit) {
       hiders_.push_back(seen(probe.hit));
       if (hides(hiders_.back(), cone)) return hide();
     }

@@ -110,7 +110,7 @@ VANTAGE_TARGET_CLONES
 void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                const VoxelGrid* grid) {
   Facet facet;
-  std::uint32_t known = RayBundle::no_hit;  // the facet's triangle
+  std::uint32_t known = RayBundle::kNoHit;  // the facet's triangle
   const auto facet_of = [&](std::uint32_t triangle) -> const Facet& {
     if (triangle != known) facet = surface.facet(triangle), known = triangle;
     return facet;

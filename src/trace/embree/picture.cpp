@@ -545,7 +545,7 @@ struct DoubtBundle {
   void trace(const RayCaster& caster) {
     caster.cast(rays);
     for (std::uint32_t k = 0; k < rays.size; ++k)
-      *hit[k] = rays.primitive[k] == RayBundle::no_hit ? Picture::none : rays.primitive[k];
+      *hit[k] = rays.primitive[k] == RayBundle::kNoHit ? Picture::none : rays.primitive[k];
     rays.size = 0;
   }
 };
@@ -611,7 +611,7 @@ void Picture::fill(const Strip& strip, const RayTile& tile, RayBundle& rays) con
     std::uint32_t end = k + 1;
     while (end < rays.size && rays.primitive[end] == triangle) ++end;
     if (triangle == none) {
-      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::no_hit);
+      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::kNoHit);
       std::fill(rays.t + k, rays.t + end, std::numeric_limits<float>::infinity());
       k = end;
       continue;

@@ -52,10 +52,10 @@ template <unsigned n, bool placed, bool changed, class Take>
     y = &RTCRayN_dir_y(args->ray, all, first);
     z = &RTCRayN_dir_z(args->ray, all, first);
   }
-  std::uint32_t primitive = RayBundle::no_hit;
+  std::uint32_t primitive = RayBundle::kNoHit;
   alignas(32) float t[n]{};
   alignas(32) std::int32_t beside[n]{};
-  if constexpr (changed) std::fill_n(beside, n, 1);  // of kInNone, which is no_hit
+  if constexpr (changed) std::fill_n(beside, n, 1);  // of kInNone, which is kNoHit
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
@@ -208,7 +208,7 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
                  0};
       if (shared) x[i] = rays[i].dir_x, y[i] = rays[i].dir_y, z[i] = rays[i].dir_z;
     }
-    hit.fill(RayBundle::no_hit);
+    hit.fill(RayBundle::kNoHit);
     Context context{{}, *planes_, &tree_, origin, start, end.data(), hit.data()};
     if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
     context.changed = changed_;
@@ -228,7 +228,7 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
     if (added_) {
       std::size_t open = 0;
       for (std::size_t i = 0; i < n; ++i)
-        if (hit[i] == RayBundle::no_hit) rays[open++] = rays[i];
+        if (hit[i] == RayBundle::kNoHit) rays[open++] = rays[i];
       context.tree = added_.get();
       if (open > 0) trace(open);
     }
@@ -275,7 +275,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
     }
   }
   std::copy_n(rays.end, used * packet, rays.t);
-  std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
+  std::fill_n(rays.primitive, used * packet, RayBundle::kNoHit);
 
   Context context{{}, *planes_, &tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
   alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
@@ -307,7 +307,7 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
 #endif
   }
   for (std::uint32_t i = 0; i < rays.size; ++i) {
-    if (rays.primitive[i] == RayBundle::no_hit) rays.t[i] = std::numeric_limits<float>::infinity();
+    if (rays.primitive[i] == RayBundle::kNoHit) rays.t[i] = std::numeric_limits<float>::infinity();
   }
 }
 

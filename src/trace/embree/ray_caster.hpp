@@ -19,7 +19,7 @@ namespace vantage {
 // Up to `capacity` rays, mostly with a common origin. Neighbours should have similar directions.
 struct RayBundle {
   static constexpr std::uint32_t capacity = 256;
-  static constexpr std::uint32_t no_hit = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
   Float3 origin;
   const Float3* origins = nullptr;  // one for each ray, in place of `origin`; slower
@@ -29,7 +29,7 @@ struct RayBundle {
   alignas(64) float end[capacity];
 
   alignas(64) float t[capacity];                  // output: distance of the hit, by Planes
-  alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or no_hit
+  alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or kNoHit
 };
 
 // A bundle of one ray.
@@ -49,7 +49,7 @@ inline RayBundle one_ray(const Float3& origin, const Float3& d, float start, flo
 struct Probe {
   Float3 d;
   float end = 0;
-  std::uint32_t hit = RayBundle::no_hit;  // output: any triangle that the ray hits before its end
+  std::uint32_t hit = RayBundle::kNoHit;  // output: any triangle that the ray hits before its end
 };
 
 // Triangles of a scene in Embree's tree. Safe to use from any thread.

@@ -33,9 +33,9 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
     fill(Tracer::position, chunk.position, Float3{});
     fill(Tracer::normal, chunk.normal, Float3{});
     fill(Tracer::reflectivity, chunk.reflectivity, 0.0f);
-    fill(Tracer::primitive, chunk.primitive, RayBundle::no_hit);
+    fill(Tracer::primitive, chunk.primitive, RayBundle::kNoHit);
     fill(Tracer::barycentric, chunk.barycentric, Float2{});
-    fill(Tracer::voxel, chunk.voxel, no_voxel);
+    fill(Tracer::voxel, chunk.voxel, kNoVoxel);
   }
 }
 
@@ -49,14 +49,14 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
     RayBundle beams = rays;
     beams.start = 0;
     for (std::uint32_t slot = 0; slot < rays.size; ++slot)
-      if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
+      if (rays.primitive[slot] != RayBundle::kNoHit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);
   }
   std::array<bool, RayBundle::capacity> returned{};  // by a pane
   if (behind_glass)
     for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
       const Passed& way = passed[slot];
-      if (way.pane == RayBundle::no_hit || way.t < station_rays.pattern().min_range) continue;
+      if (way.pane == RayBundle::kNoHit || way.t < station_rays.pattern().min_range) continue;
       rays.primitive[slot] = way.pane;
       rays.t[slot] = way.t;
       returned[slot] = true;
@@ -65,7 +65,7 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
   std::uint32_t slot = 0;
   for (std::uint32_t row = tile.row; row < tile.row + tile.rows; ++row)
     for (std::uint32_t column = tile.column; column < tile.column + tile.columns; ++column, ++slot)
-      if (rays.primitive[slot] != RayBundle::no_hit) points.add(rays, slot, station_rays.ray(row, column));
+      if (rays.primitive[slot] != RayBundle::kNoHit) points.add(rays, slot, station_rays.ray(row, column));
   std::fill_n(counts, points.size, true);
   if (!station_rays.limited() || (!behind_glass && station_rays.all_count(points))) return;
 

@@ -97,7 +97,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       const RayRanges window = window_of(k);
       if (window.empty()) continue;
       // What stands before the middle mostly hides more than that.
-      const Tiles tiles = each.occluder != RayBundle::no_hit ? find_hidden(each, window) : Tiles();
+      const Tiles tiles = each.occluder != RayBundle::kNoHit ? find_hidden(each, window) : Tiles();
       list_rays({each, window, 0, counts_[each.voxel], tiles}, wanted(each.voxel));
     }
     settle();
@@ -107,7 +107,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       for (Rest& rest : again_) {
         const std::uint32_t i = rest.look.voxel;
         if (full(i)) continue;
-        if (times == kMore && counts_[i] == rest.count && rest.look.occluder == RayBundle::no_hit)
+        if (times == kMore && counts_[i] == rest.count && rest.look.occluder == RayBundle::kNoHit)
           rest.tiles = find_hidden(rest.look, rest.window);
         list_rays(rest, static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(i), kAll)));
       }
@@ -145,7 +145,7 @@ void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
       Probe probe{narrow(d), static_cast<float>(nearest * (1 - trust))};
       rays_->caster().any_hits(bundle_.origin, bundle_.start, {&probe, 1});
       ++traced_;
-      if (probe.hit != RayBundle::no_hit) {
+      if (probe.hit != RayBundle::kNoHit) {
         meet(probe.hit);
         hidden = hides(probe.hit, box);
       }
@@ -408,7 +408,7 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   kept = 0;
   for (std::size_t k = 0; k < looks_.size(); ++k) {
     const std::uint32_t by = probes_[k].hit;
-    if (by != RayBundle::no_hit && hides(by, looks_[k].hits)) continue;
+    if (by != RayBundle::kNoHit && hides(by, looks_[k].hits)) continue;
     looks_[kept] = looks_[k];
     looks_[kept++].occluder = by;
   }
@@ -537,7 +537,7 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
 // The rays that were listed last are all rays of a voxel, or as many as are traced at once.
 void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   rays.end = listed_size_;
-  if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
+  if (rays.occluder != RayBundle::kNoHit) drop_hidden(rays, rays.occluder);
   listed_size_ = rays.end;
   if (rays.end == rays.begin) return;
   voxel_rays_.push_back(rays);
@@ -575,16 +575,16 @@ void SampledVoxelCounter::settle() {
     const SceneData& scene = rays_->scene();
     const bool stored = !scene.shares();
     for (const Probe& probe : probes_) {
-      if (stored && probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
+      if (stored && probe.hit != RayBundle::kNoHit) __builtin_prefetch(&scene.triangles[probe.hit]);
     }
     for (const Probe& probe : probes_) {
-      if (!stored || probe.hit == RayBundle::no_hit) continue;
+      if (!stored || probe.hit == RayBundle::kNoHit) continue;
       for (const std::uint32_t corner : scene.triangles[probe.hit]) __builtin_prefetch(&scene.positions[corner]);
     }
     std::size_t kept = 0;
     for (std::size_t k = 0; k < voxel_rays_.size(); ++k) {
       VoxelRays rays = voxel_rays_[k];
-      if (probes_[k].hit == RayBundle::no_hit) {
+      if (probes_[k].hit == RayBundle::kNoHit) {
         rays.probed = true;
         visible_.push_back(rays);
         continue;
@@ -650,7 +650,7 @@ void SampledVoxelCounter::finish() {
   hits_.size = 0;
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
     const std::uint32_t triangle = bundle_.primitive[slot];
-    if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;
+    if (triangle == RayBundle::kNoHit || !surface.surveyed(triangle)) continue;
     const Ray& ray = listed_[cast_ray_[slot]];
     hits_.add(bundle_, slot, rays_->ray(ray.row, ray.column));
   }

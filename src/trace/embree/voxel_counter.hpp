@@ -62,7 +62,7 @@ class SampledVoxelCounter {
     double reach = 0;                            // by which noise moves its hits at most
     Box hits;                                    // holds every hit that counts, relative to the head
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
-    std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
+    std::uint32_t occluder = RayBundle::kNoHit;  // triangle before the voxel that hides some of it
   };
   // A plane, and the head's height over it.
   struct Ahead {
@@ -89,7 +89,7 @@ class SampledVoxelCounter {
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
     bool probed = false;  // its first ray was probed
-    std::uint32_t occluder = RayBundle::no_hit;
+    std::uint32_t occluder = RayBundle::kNoHit;
   };
   struct Ray {
     Float3 d;

@@ -69,7 +69,7 @@ TEST(PaneView, FindsWhatTheTreeFinds) {
       PaneView::Crossings crossings;
       view->find(hits, hits.t, crossings);
       for (std::uint32_t k = 0; k < hits.size; ++k) {
-        const Passed none{1, RayBundle::no_hit, 0}, a = by_tree ? expected[k] : none, b = by_view ? found[k] : none;
+        const Passed none{1, RayBundle::kNoHit, 0}, a = by_tree ? expected[k] : none, b = by_view ? found[k] : none;
         EXPECT_EQ(a.share, b.share);
         EXPECT_EQ(a.pane, b.pane);
         EXPECT_EQ(a.t, b.t);

@@ -49,9 +49,9 @@ Compared compare(const TraceScene& scene, const TraceStation& station, const Til
       if (ends.of(a, b) > 0) rays.caster().cast(*bundle);
       for (std::uint32_t k = 0; k < bundle->size; ++k) {
         const std::uint32_t drawn = strip.triangles(k % tile.columns)[tile.row + k / tile.columns];
-        const std::uint32_t traced = ends.of(a, b) > 0 ? bundle->primitive[k] : RayBundle::no_hit;
+        const std::uint32_t traced = ends.of(a, b) > 0 ? bundle->primitive[k] : RayBundle::kNoHit;
         compared.hits += drawn != Picture::none;
-        compared.differ += drawn != (traced == RayBundle::no_hit ? Picture::none : traced);
+        compared.differ += drawn != (traced == RayBundle::kNoHit ? Picture::none : traced);
       }
     }
   }
@@ -280,8 +280,8 @@ TEST(Picture, ScansAreThoseOfTracing) {
           expect_same_bits(drawn.barycentric, traced.barycentric, "barycentric");
           expect_same_bits(drawn.voxel, traced.voxel, "voxel");
           for (const std::uint32_t triangle : drawn.primitive) {
-            points += triangle != RayBundle::no_hit;
-            on_glass += triangle != RayBundle::no_hit && triangle >= scene.scene->opaque_count();
+            points += triangle != RayBundle::kNoHit;
+            on_glass += triangle != RayBundle::kNoHit && triangle >= scene.scene->opaque_count();
           }
         }
       }

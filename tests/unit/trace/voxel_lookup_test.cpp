@@ -38,7 +38,7 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
         if (k % 50 == 10) p = {grid.min()[0], grid.min()[1], grid.min()[2]};
         lookup.add(p);
         voxel_of[k] = grid.index_of(p);
-        if (voxel_of[k] != no_voxel) expected.push_back(voxel_of[k]);
+        if (voxel_of[k] != kNoVoxel) expected.push_back(voxel_of[k]);
       }
       lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t k = begin; k < end; ++k) ASSERT_EQ(voxel_index, voxel_of[k]);
