@@ -28,10 +28,10 @@ inline std::unique_ptr<const NoiseReaches> noise_reaches(const NoiseModel& model
 
 // Upper bound on how far noise moves a hit nearer than t, on a surface that is at least so bright.
 inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t, float reflectivity = 0) {
-  constexpr auto last = static_cast<float>(NoiseModel::kSide - 1);
-  const float column = (t - model.min_range) * model.inverse_span * last + 1.01f, row = reflectivity * last - 0.01f;
-  return reaches[static_cast<std::size_t>(std::clamp(row, 0.0f, last))]
-                [static_cast<std::size_t>(std::clamp(column, 0.0f, last))];
+  constexpr auto kLast = static_cast<float>(NoiseModel::kSide - 1);
+  const float column = (t - model.min_range) * model.inverse_span * kLast + 1.01f, row = reflectivity * kLast - 0.01f;
+  return reaches[static_cast<std::size_t>(std::clamp(row, 0.0f, kLast))]
+                [static_cast<std::size_t>(std::clamp(column, 0.0f, kLast))];
 }
 
 }  // namespace vantage

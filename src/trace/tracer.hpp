@@ -160,7 +160,7 @@ class Tracer {
     std::vector<float> reflectivity;
     std::vector<std::uint32_t> primitive;  // scene triangle; 2^32 − 1 without a hit
     std::vector<Float2> barycentric;       // weights of the triangle's second and third vertex
-    std::vector<std::uint32_t> voxel;      // kNoVoxel if the point does not count
+    std::vector<std::uint32_t> voxel;      // no_voxel if the point does not count
   };
   enum RawOutput : std::uint32_t {
     range = 1,

@@ -16,17 +16,17 @@ namespace vantage {
 class PaneView {
  public:
   // The largest number of faces. A tree finds the faces of a ray faster if there are more.
-  static constexpr std::size_t most_faces = 2048;
+  static constexpr std::size_t kMostFaces = 2048;
 
   // Shares ownership of both. REQUIRES: the scene has glass.
   PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, const Float3& head);
 
   // The crossings of each hit's ray before `end`, by distance and triangle, as RayCaster::crossings() has them.
   struct Crossings {
-    static constexpr std::uint32_t most = 8, unsure = most + 1;
-    std::uint32_t count[Hits::capacity];  // or unsure: RayCaster knows
-    float t[Hits::capacity][most];
-    std::uint32_t triangle[Hits::capacity][most];
+    static constexpr std::uint32_t kMost = 8, kUnsure = kMost + 1;
+    std::uint32_t count[Hits::kCapacity];  // or unsure: RayCaster knows
+    float t[Hits::kCapacity][kMost];
+    std::uint32_t triangle[Hits::kCapacity][kMost];
   };
   // Returns false if no ray has any, or may have one. `end` has whole vectors, as hits do.
   bool find(const Hits& hits, const float* end, Crossings& found) const;

@@ -32,12 +32,12 @@ class RangeNoise {
 
   // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
   float sigma(float t, float reflectivity) const {
-    constexpr std::uint32_t cells = NoiseModel::kSide - 1;
+    constexpr std::uint32_t kCells = NoiseModel::kSide - 1;
     const auto place = [](float normalised, std::uint32_t& cell) {
       const float clamped = normalised > 0.0f ? (normalised < 1.0f ? normalised : 1.0f) : 0.0f;
-      const float scaled = clamped * static_cast<float>(cells);
+      const float scaled = clamped * static_cast<float>(kCells);
       cell = static_cast<std::uint32_t>(scaled);
-      if (cell >= cells) cell = cells - 1;
+      if (cell >= kCells) cell = kCells - 1;
       return scaled - static_cast<float>(cell);
     };
     std::uint32_t column, row;
@@ -99,11 +99,11 @@ class RangeNoise {
  private:
   // Of eight, where sigma() finds a value: the cell, and the part of it.
   [[gnu::always_inline]] static void find_place(const Floats8& normalised, Ints8& cell, Floats8& part) {
-    constexpr std::int32_t cells = NoiseModel::kSide - 1;
+    constexpr std::int32_t kCells = NoiseModel::kSide - 1;
     const Floats8 below = normalised < 1.0f ? normalised : 1.0f - Floats8{};
-    const Floats8 scaled = (normalised > 0.0f ? below : Floats8{}) * static_cast<float>(cells);
+    const Floats8 scaled = (normalised > 0.0f ? below : Floats8{}) * static_cast<float>(kCells);
     const Ints8 whole = __builtin_convertvector(scaled, Ints8);
-    cell = whole >= cells ? cells - 1 - Ints8{} : whole;
+    cell = whole >= kCells ? kCells - 1 - Ints8{} : whole;
     part = scaled - __builtin_convertvector(cell, Floats8);
   }
   // normal_from_bits() of eight. As a double, m has its highest bit e in the exponent, and the bits below in order.

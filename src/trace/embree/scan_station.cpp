@@ -43,7 +43,7 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
 // whether a point meets all limits. Overwrites the bundle's hits.
 void find_points(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
                  Hits& points, bool* counts) {
-  std::array<Passed, RayBundle::capacity> passed;
+  std::array<Passed, RayBundle::kCapacity> passed;
   bool behind_glass = false;
   if (station_rays.glass()) {
     RayBundle beams = rays;
@@ -52,7 +52,7 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
       if (rays.primitive[slot] != RayBundle::kNoHit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);
   }
-  std::array<bool, RayBundle::capacity> returned{};  // by a pane
+  std::array<bool, RayBundle::kCapacity> returned{};  // by a pane
   if (behind_glass)
     for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
       const Passed& way = passed[slot];
@@ -112,10 +112,10 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   Tracer::RawChunk& chunk = wanted.chunk;
   clear(tile, station_rays, wanted);
   Hits points;
-  bool counts[RayBundle::capacity];
+  bool counts[RayBundle::kCapacity];
   find_points(station_rays, station, tile, rays, points, counts);
   if (points.size == 0) return;
-  std::uint64_t at[RayBundle::capacity];  // in the chunk
+  std::uint64_t at[RayBundle::kCapacity];  // in the chunk
   for (std::uint32_t k = 0; k < points.size; ++k) at[k] = points.ray(k) - wanted.first_ray;
 
   if (outputs & (Tracer::normal | Tracer::reflectivity | Tracer::barycentric))
@@ -129,7 +129,7 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   if (outputs & Tracer::position)
     for (std::uint32_t k = 0; k < points.size; ++k) chunk.position[at[k]] = points.point(station.origin, k);
   if ((outputs & Tracer::voxel) == 0) return;
-  std::uint64_t counted[RayBundle::capacity];  // in the chunk
+  std::uint64_t counted[RayBundle::kCapacity];  // in the chunk
   std::uint32_t many = 0;
   voxels.clear();
   for (std::uint32_t k = 0; k < points.size; ++k) {

@@ -51,7 +51,7 @@ TEST(RayCaster, HitsDoNotDependOnTheBundle) {
   RandomStream random(11);
   std::size_t hits = 0;
   for (int k = 0; k < 200; ++k) {
-    const auto rays = cone(random, k % 2 ? 0.05 : 1.5, 1 + random.bits() % RayBundle::capacity, 100);
+    const auto rays = cone(random, k % 2 ? 0.05 : 1.5, 1 + random.bits() % RayBundle::kCapacity, 100);
     caster.cast(*rays);
     std::vector<Probe> probes;
     for (std::uint32_t i = 0; i < rays->size; ++i) probes.push_back({{rays->x[i], rays->y[i], rays->z[i]}, 100});
