@@ -85,7 +85,7 @@ VANTAGE_TARGET_CLONES
 std::uint32_t VoxelGrid::find(std::uint64_t key) const {
   const auto [x, y, z] = morton_decode(key >> (3 * brick_bits));
   const std::uint32_t index = find_brick(slots_, x, y, z);
-  if (index == no_brick) return kNoVoxel;
+  if (index == kNoBrick) return kNoVoxel;
   const VoxelBrick& brick = bricks_[index];
   const auto bit = static_cast<std::uint32_t>(key & 511);
   const std::uint32_t word = bit / 32, flag = std::uint32_t{1} << (bit % 32);

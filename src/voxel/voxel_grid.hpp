@@ -23,7 +23,7 @@ struct VoxelBricks;      // voxel/voxel_bricks.hpp
 struct SceneDifference;  // scene/scene_difference.hpp
 
 inline constexpr std::uint32_t kNoVoxel = 0xFFFFFFFFu;
-inline constexpr int max_voxel_depth = 18;  // 2^18 cells per side; 54-bit Morton keys
+inline constexpr int kMaxVoxelDepth = 18;  // 2^18 cells per side; 54-bit Morton keys
 
 // Voxel coordinates interleaved, x lowest: bit 3k of the key is bit k of x.
 std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z);
@@ -33,7 +33,7 @@ class VoxelGrid {
  public:
   // Equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on their bounds. It is
   // moved within that margin to keep surveyed axis-aligned planes off voxel faces (docs/method.md). Throws Error
-  // invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
+  // invalid_argument: user size not positive, or so small that the depth exceeds kMaxVoxelDepth.
   static VoxelGrid build(const SceneData& scene, double user_size_m);
   // The same, with progress; empty if stopped.
   static std::optional<VoxelGrid> build(const SceneData& scene, double user_size_m, const Progress& progress);

@@ -25,7 +25,7 @@ constexpr double kFlat = 1e-3;
 constexpr double kWide_m = 0.75, kWideInVoxels = 0.5;
 // Two planes of a voxel that differ by less, in their normals and by this share of a voxel in place, are one.
 constexpr double kSame = 1e-3;
-// Least share of a voxel's surface that lies in one direction (`one_plane`) if the voxel is flat.
+// Least share of a voxel's surface that lies in one direction (`kOnePlaneCosine`) if the voxel is flat.
 constexpr double kFlatShare = 0.95;
 // A triangle of so many voxels or more is walked in parts, side by side.
 constexpr double kLargeTriangle = 1 << 16;
@@ -137,7 +137,7 @@ std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<c
   double height = 0, along = 0;
   for (const Part& part : parts) {
     const double turned = dot(part.normal, parts[largest].normal);
-    if (std::abs(turned) < one_plane) continue;
+    if (std::abs(turned) < kOnePlaneCosine) continue;
     const double signed_area = turned < 0 ? -part.area : part.area;
     sum = sum + part.normal * signed_area;
     height += part.height * signed_area;
