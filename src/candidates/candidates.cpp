@@ -16,7 +16,7 @@ namespace vantage {
 namespace {
 
 // Candidates between two checks of the clock.
-constexpr std::size_t chunk = 64;
+constexpr std::size_t kCandidatesAtOnce = 64;
 constexpr std::size_t kExpected = 512;
 // Whatever the sum over a large site says, there are candidates until the ground has one within this distance, and
 // every place sees one within this multiple of their spacing. No room is missed by candidates nearer than its width.
@@ -110,7 +110,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
   double before = -1;
   while (found.ended_.empty()) {
     while (found.coverage_.size() < goal && found.ended_.empty()) {
-      const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
+      const std::size_t first = found.coverage_.size(), here = std::min(kCandidatesAtOnce, goal - first);
       const auto share = [&](double done) {
         // How often they are doubled is not known yet; mostly this often.
         const std::size_t expected = std::min(std::max(goal, kExpected), spread.stations.size());

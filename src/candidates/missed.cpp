@@ -19,7 +19,7 @@ namespace vantage {
 namespace {
 
 // Voxels between two checks for a stop.
-constexpr std::size_t voxels_at_once = 4096;
+constexpr std::size_t kVoxelsAtOnce = 4096;
 // Enough for shares to a tenth of a percent, few enough for seconds.
 constexpr std::uint64_t kJudgedVoxels = 50'000;
 
@@ -156,10 +156,10 @@ std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> c
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < ranks.size(); ++i)
     if (points[i] < simulator.goal_density(ranks[i])) missed.push_back(i);
-  for (std::size_t first = 0; first < missed.size(); first += voxels_at_once) {
+  for (std::size_t first = 0; first < missed.size(); first += kVoxelsAtOnce) {
     if (progress.stopped()) return {};
     const std::span<const std::size_t> here =
-        std::span(missed).subspan(first, std::min(voxels_at_once, missed.size() - first));
+        std::span(missed).subspan(first, std::min(kVoxelsAtOnce, missed.size() - first));
     std::vector<std::uint32_t> of;
     for (const std::size_t i : here) of.push_back(ranks[i]);
     const std::vector<VoxelPatch> patches = simulator.voxel_patches(of);

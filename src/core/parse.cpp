@@ -133,14 +133,14 @@ std::uint64_t SampleSize::of(std::uint64_t population) const {
 }
 
 SampleSize parse_sample(std::string_view text, const std::string& what) {
-  constexpr Interval some_share{.low = 0, .high = 1, .low_included = false};
+  constexpr Interval kSomeShare{.low = 0, .high = 1, .low_included = false};
   if (text.ends_with('%'))
     return {
         .voxels = std::nullopt,
         .share =
             parse_number(text.substr(0, text.size() - 1), what, {.low = 0, .high = 100, .low_included = false}) / 100};
   if (text.find('.') != std::string_view::npos)
-    return {.voxels = std::nullopt, .share = parse_number(text, what, some_share)};
+    return {.voxels = std::nullopt, .share = parse_number(text, what, kSomeShare)};
   return {.voxels = parse_count(text, what, 1), .share = std::nullopt};
 }
 
@@ -210,8 +210,8 @@ std::uint64_t parse_bytes(std::string_view text, const std::string& what) {
       break;
     }
   double unit = 1;
-  constexpr std::string_view prefixes = "KMGT";
-  if (const auto power = number.empty() ? std::string_view::npos : prefixes.find(number.back());
+  constexpr std::string_view kPrefixes = "KMGT";
+  if (const auto power = number.empty() ? std::string_view::npos : kPrefixes.find(number.back());
       power != std::string_view::npos) {
     unit = std::exp2(10.0 * static_cast<double>(power + 1));
     number.remove_suffix(1);

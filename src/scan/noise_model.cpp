@@ -61,18 +61,18 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
   model.inverse_span = static_cast<float>(1.0 / (scanner.max_range_m - scanner.min_range_m));
   if (scanner.noise.empty()) return model;
 
-  constexpr double intervals = NoiseModel::kSide - 1;
+  constexpr double kIntervals = NoiseModel::kSide - 1;
   model.sigma.reserve(std::size_t{NoiseModel::kSide} * NoiseModel::kSide);
   for (std::uint32_t r = 0; r < NoiseModel::kSide; ++r) {
     for (std::uint32_t d = 0; d < NoiseModel::kSide; ++d) {
       const auto distance_at = [&](double step) {
-        return mix(scanner.min_range_m, scanner.max_range_m, step / intervals);
+        return mix(scanner.min_range_m, scanner.max_range_m, step / kIntervals);
       };
       // Surfaces that are not detected have no noise, and would make the reach large: the darkest cell that has a
       // detected point in it is the last one, at the nearer end of its distances.
-      const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / intervals;
+      const double darkest = darkest_detected(scanner, distance_at(d > 0 ? d - 1.0 : 0.0)) - 1 / kIntervals;
       model.sigma.push_back(
-          static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / intervals, darkest))));
+          static_cast<float>(table_sigma(scanner.noise, distance_at(d), std::max(r / kIntervals, darkest))));
     }
   }
   // Rounded up: |z| stays 1.5e-5 below its limit, which is more than the look-up's own rounding.
@@ -87,17 +87,17 @@ NoiseModel make_noise_model(const Scanner& scanner, std::uint64_t seed) {
 
 double model_sigma(const NoiseModel& model, double range_m, double reflectivity) {
   if (!model.enabled()) return 0;
-  constexpr int last = static_cast<int>(NoiseModel::kSide) - 1;
+  constexpr int kLast = static_cast<int>(NoiseModel::kSide) - 1;
   const auto cell = [](double normalised) {
-    const double x = std::clamp(normalised, 0.0, 1.0) * last;
-    const int low = std::min(static_cast<int>(x), last - 1);
+    const double x = std::clamp(normalised, 0.0, 1.0) * kLast;
+    const int low = std::min(static_cast<int>(x), kLast - 1);
     return std::pair{low, x - low};
   };
   const auto [d, d_share] =
       cell((range_m - static_cast<double>(model.min_range)) * static_cast<double>(model.inverse_span));
   const auto [r, r_share] = cell(reflectivity);
   const auto at = [&](int row, int column) {
-    return static_cast<double>(model.sigma[static_cast<std::size_t>(row * (last + 1) + column)]);
+    return static_cast<double>(model.sigma[static_cast<std::size_t>(row * (kLast + 1) + column)]);
   };
   return mix(mix(at(r, d), at(r, d + 1), d_share), mix(at(r + 1, d), at(r + 1, d + 1), d_share), r_share);
 }

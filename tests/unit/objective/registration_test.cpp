@@ -373,7 +373,7 @@ TEST(RegistrationError, CountsRangeNoiseByTheRaysOfAFreeView) {
   m.one({10.5, 0, 0}, X, 0.01, 3);
   m.one({-9.5, 0, 0}, X, 0.01, 3);
   NoiseModel noise;
-  noise.sigma.assign(NoiseModel::kSide * NoiseModel::kSide, 0.004f);
+  noise.sigma.assign(NoiseModel::side * NoiseModel::side, 0.004f);
   noise.inverse_span = 0.01f;
   const double points = 0.01 / (100 * 1e-6);  // area / (r² Δh Δv)
   const double s2 = 0.004 * 0.004 / points + model.rho_m * model.rho_m * model.patch_m * model.patch_m / 0.01;
