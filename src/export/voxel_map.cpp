@@ -107,7 +107,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
       canvas.disc(at, 4.5, kHead);
     }
     canvas.unclip();
-    canvas.rectangle(map, {.colour = style::faint, .width = 1});
+    canvas.rectangle(map, {.colour = style::kFaint, .width = 1});
   }
   const Point end = legend(canvas, {last.right() + 24, last.y + 8});
   canvas.disc({end.x + 12, end.y}, 4.5, kHead);

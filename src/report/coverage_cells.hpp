@@ -30,10 +30,10 @@ struct CoverageCells {
 // Makes as many cells as fit into `cells`, from at most `voxels` sampled voxels.
 CoverageCells coverage_cells(const Simulator& simulator, std::uint64_t voxels, std::size_t cells);
 
-// Stations with points somewhere: 0, none; k, the k-th station alone; `several_stations`.
+// Stations with points somewhere: 0, none; k, the k-th station alone; `kSeveralStations`.
 using Seer = std::uint16_t;
-inline constexpr Seer several_stations = 0xFFFF;
-constexpr Seer together(Seer a, Seer b) { return a == 0 || a == b ? b : b == 0 ? a : several_stations; }
+inline constexpr Seer kSeveralStations = 0xFFFF;
+constexpr Seer together(Seer a, Seer b) { return a == 0 || a == b ? b : b == 0 ? a : kSeveralStations; }
 // The same for a voxel; 0 if the field has no masks.
 Seer seer_of(const VoxelField& field, std::uint32_t rank);
 

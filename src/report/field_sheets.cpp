@@ -368,9 +368,9 @@ class SheetPanel {
 
   void legend(bool cut, bool route, bool tape, bool kept, bool left_out, bool targets, bool control) {
     Canvas& canvas = *sheet_.canvas;
-    constexpr TextStyle text{.size = 8};
+    constexpr TextStyle kText{.size = 8};
     const auto words = [&](const std::string& what) {
-      canvas.text({x_ + 26, y_}, what, text);
+      canvas.text({x_ + 26, y_}, what, kText);
       y_ += 15;
     };
     PlacedStation example;

@@ -99,7 +99,7 @@ void add_alone(std::vector<StationFacts>& facts, const VoxelField* field, const 
   std::vector<std::uint32_t> alone, seer;
   for (const std::uint32_t rank : ranks) {
     const Seer by = seer_of(*field, rank);
-    if (by == 0 || by == several_stations || by > facts.size()) continue;
+    if (by == 0 || by == kSeveralStations || by > facts.size()) continue;
     alone.push_back(rank), seer.push_back(by - 1u);
   }
   const PlaceNames names(simulator.scene());

@@ -103,7 +103,7 @@ std::vector<double> flat(const std::vector<ParetoPoint>& front) {
   return f;
 }
 
-constexpr std::array<Colour, 4> kColours{{style::orange, style::blue, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kColours{{style::kOrange, style::kBlue, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
 void draw(const std::string& file, const FrontOptions& options, const std::vector<Curve>& curves) {
   constexpr double kWidth = 860, kHeight = 520;

@@ -20,7 +20,7 @@ struct Dot {
   double bound, found;
 };
 
-constexpr std::array<Colour, 4> kColours{{style::blue, style::orange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
 void draw(const std::string& file, const GapOptions& options, const std::vector<Dot>& dots) {
   constexpr double kWidth = 820, kHeight = 520;

@@ -44,7 +44,7 @@ TEST(CoverageCells, ColoursAreMeansOfTheirVoxels) {
   std::vector<Seer> seen_by;
   for (std::size_t i = 0; i < cells.ranks.size(); ++i) {
     counts.push_back(static_cast<std::uint32_t>(static_cast<double>(i * 7 % 11) / 6 * goal));
-    seen_by.push_back(counts.back() == 0 ? 0 : i % 5 == 0 ? several_stations : 3);
+    seen_by.push_back(counts.back() == 0 ? 0 : i % 5 == 0 ? kSeveralStations : 3);
   }
   const CellColours colours = cell_colours(cells, cells.ranks, counts, seen_by, site.simulator);
   ASSERT_EQ(colours.coverage.size(), cells.keys.size());
@@ -54,7 +54,7 @@ TEST(CoverageCells, ColoursAreMeansOfTheirVoxels) {
     for (std::size_t i = 0; i < cells.ranks.size(); ++i)
       if (cells.cell_of[i] == c)
         sum += std::min(counts[i] / goal, 1.0), ++voxels, third |= seen_by[i] == 3,
-            several |= seen_by[i] == several_stations;
+            several |= seen_by[i] == kSeveralStations;
     EXPECT_NEAR(colours.coverage[c], 254 * sum / voxels, 0.5 + 1e-9);
     EXPECT_EQ(colours.only[c], several ? 255 : third ? 3 : 0);
   }
@@ -65,9 +65,9 @@ TEST(CoverageCells, TellWhetherOneStationSeesAlone) {
   EXPECT_EQ(together(0, 70), 70);
   EXPECT_EQ(together(70, 0), 70);
   EXPECT_EQ(together(70, 70), 70);
-  EXPECT_EQ(together(70, 6), several_stations);
-  EXPECT_EQ(together(several_stations, 70), several_stations);
-  EXPECT_EQ(together(several_stations, 0), several_stations);
+  EXPECT_EQ(together(70, 6), kSeveralStations);
+  EXPECT_EQ(together(kSeveralStations, 70), kSeveralStations);
+  EXPECT_EQ(together(kSeveralStations, 0), kSeveralStations);
 }
 
 TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
