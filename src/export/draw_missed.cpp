@@ -13,11 +13,11 @@ namespace vantage {
 
 void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
                  std::span<const PlacedStation> stations, const std::string& title) {
-  if (missed.ranks.empty()) throw Error(Errc::invalid_argument, "draw_missed: no voxel was judged");
+  if (missed.voxels.empty()) throw Error(Errc::invalid_argument, "draw_missed: no voxel was judged");
   std::vector<ColouredVoxel> voxels;
   const auto add = [&](const MissedStyle& style) {
-    for (std::size_t i = 0; i < missed.ranks.size(); ++i)
-      if (missed.status[i].why == style.why) voxels.push_back({missed.ranks[i], style.colour});
+    for (std::size_t i = 0; i < missed.voxels.size(); ++i)
+      if (missed.status[i].why == style.why) voxels.push_back({missed.voxels[i], style.colour});
   };
   // Most hidden voxels are undersides, of slabs whose upper sides are captured.
   add(missed_style(WhyMissed::hidden));

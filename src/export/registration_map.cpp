@@ -37,13 +37,13 @@ double largest(std::span<const float> errors) {
 }  // namespace
 
 std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
-                                   std::span<const std::uint32_t> ranks) {
-  std::vector<float> found(ranks.size());
-  parallel::for_all(std::size_t{0}, ranks.size(), [&](std::size_t k) {
-    const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
+                                   std::span<const std::uint32_t> voxels) {
+  std::vector<float> found(voxels.size());
+  parallel::for_all(std::size_t{0}, voxels.size(), [&](std::size_t k) {
+    const Vec3 place = simulator.voxel_centre(voxels[k]) - simulator.origin();
     double squares = 0;
     int seen = 0;
-    field.stations.for_each_station(ranks[k], [&](std::size_t station) {
+    field.stations.for_each_station(voxels[k], [&](std::size_t station) {
       const double one = error.at(station, place);
       squares += one * one;
       ++seen;
@@ -56,18 +56,18 @@ std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField&
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error, PlyCoordinates coordinates) {
   check(simulator, field);
-  std::vector<std::uint32_t> ranks;
-  for (std::uint32_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t voxel = 0; voxel < simulator.voxel_count(); ++voxel) {
     bool seen = false;
-    field.stations.for_each_station(rank, [&](std::size_t) { seen = true; });
-    if (seen) ranks.push_back(rank);
+    field.stations.for_each_station(voxel, [&](std::size_t) { seen = true; });
+    if (seen) voxels.push_back(voxel);
   }
-  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, voxels);
   const double most = largest(errors);
-  write_voxel_ply(file, coordinates, simulator, {{"float", "error_mm"}}, ranks.size(),
+  write_voxel_ply(file, coordinates, simulator, {{"float", "error_mm"}}, voxels.size(),
                   [&](std::uint64_t k, std::string& bytes) {
                     append(bytes, errors[k]);
-                    return VoxelVertex{ranks[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
+                    return VoxelVertex{voxels[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
                   });
 }
 
@@ -76,16 +76,16 @@ void draw_registration(const std::filesystem::path& file, Site& site, const Voxe
                        const std::string& title) {
   const Simulator& simulator = site.simulator();
   check(simulator, field);
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
-  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, sample);
   const double most = largest(errors);
   // The worst on top, so that nothing hides it.
-  std::vector<std::size_t> order(ranks.size());
+  std::vector<std::size_t> order(sample.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return errors[k]; });
   std::vector<ColouredVoxel> voxels;
   for (const std::size_t k : order)
-    voxels.push_back({ranks[k], errors[k] < 0 ? kUnseen : ramp(kRisingRamp, static_cast<double>(errors[k]) / most)});
+    voxels.push_back({sample[k], errors[k] < 0 ? kUnseen : ramp(kRisingRamp, static_cast<double>(errors[k]) / most)});
   const auto legend = [&](Canvas& canvas, Point at) {
     canvas.text(at, "Predicted error", {.size = 12.5, .bold = true});
     canvas.text({at.x, at.y + 17}, "one sigma, after registration", {.size = 12.5});
