@@ -54,10 +54,10 @@ inline std::string shape_text(const py::array& array) { return py::str(array.att
 /// Rows of two or three numbers. Throws Error invalid_argument for another shape.
 template <class Row>
 std::span<const Row> rows_of(const Doubles& array, const char* what) {
-  constexpr py::ssize_t width = sizeof(Row) / sizeof(double);
-  if (array.ndim() == 2 && array.shape(1) == width)
+  constexpr py::ssize_t kWidth = sizeof(Row) / sizeof(double);
+  if (array.ndim() == 2 && array.shape(1) == kWidth)
     return {reinterpret_cast<const Row*>(array.data()), static_cast<std::size_t>(array.shape(0))};
-  throw Error(Errc::invalid_argument, std::string(what) + ": an array of shape (n, " + std::to_string(width) +
+  throw Error(Errc::invalid_argument, std::string(what) + ": an array of shape (n, " + std::to_string(kWidth) +
                                           ") is wanted, and this one's is " + shape_text(array));
 }
 

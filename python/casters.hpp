@@ -22,31 +22,31 @@ template <class Enum>
 struct Names;
 template <>
 struct Names<Role> {
-  static constexpr const char* what = "role";
-  static constexpr std::array<std::pair<Role, const char*>, 4> all{
+  static constexpr const char* kWhat = "role";
+  static constexpr std::array<std::pair<Role, const char*>, 4> kAll{
       {{Role::surveyed, "surveyed"}, {Role::blocking, "blocking"}, {Role::search, "search"}, {Role::ignore, "ignore"}}};
 };
 template <>
 struct Names<RegistrationSurfaces> {
-  static constexpr const char* what = "choice of surfaces";
-  static constexpr std::array<std::pair<RegistrationSurfaces, const char*>, 2> all{
+  static constexpr const char* kWhat = "choice of surfaces";
+  static constexpr std::array<std::pair<RegistrationSurfaces, const char*>, 2> kAll{
       {{RegistrationSurfaces::surveyed, "surveyed"}, {RegistrationSurfaces::all, "all"}}};
 };
 template <>
 struct Names<MoScheme> {
-  static constexpr const char* what = "scheme";
-  static constexpr std::array<std::pair<MoScheme, const char*>, 2> all{
+  static constexpr const char* kWhat = "scheme";
+  static constexpr std::array<std::pair<MoScheme, const char*>, 2> kAll{
       {{MoScheme::generational, "generational"}, {MoScheme::steady_state, "steady-state"}}};
 };
 template <>
 struct Names<Errc> {
-  static constexpr const char* what = "code";
-  static constexpr std::array<std::pair<Errc, const char*>, 6> all{{{Errc::invalid_argument, "invalid_argument"},
-                                                                    {Errc::io, "io"},
-                                                                    {Errc::malformed_file, "malformed_file"},
-                                                                    {Errc::no_suitable_device, "no_suitable_device"},
-                                                                    {Errc::out_of_memory, "out_of_memory"},
-                                                                    {Errc::device_failure, "device_failure"}}};
+  static constexpr const char* kWhat = "code";
+  static constexpr std::array<std::pair<Errc, const char*>, 6> kAll{{{Errc::invalid_argument, "invalid_argument"},
+                                                                     {Errc::io, "io"},
+                                                                     {Errc::malformed_file, "malformed_file"},
+                                                                     {Errc::no_suitable_device, "no_suitable_device"},
+                                                                     {Errc::out_of_memory, "out_of_memory"},
+                                                                     {Errc::device_failure, "device_failure"}}};
 };
 
 template <class Enum>
@@ -54,7 +54,7 @@ std::string name_of(Enum value) {
   if constexpr (requires { to_string(value); }) {
     return to_string(value);
   } else {
-    return std::ranges::find(Names<Enum>::all, value, [](const auto& pair) { return pair.first; })->second;
+    return std::ranges::find(Names<Enum>::kAll, value, [](const auto& pair) { return pair.first; })->second;
   }
 }
 
@@ -66,11 +66,11 @@ inline void from_name(const std::string& text, Returns& value) { value = returns
 template <class Enum>
 void from_name(const std::string& text, Enum& value) {
   std::string known;
-  for (const auto& [each, name] : Names<Enum>::all) {
+  for (const auto& [each, name] : Names<Enum>::kAll) {
     if (text == name) return void(value = each);
     known += std::string(known.empty() ? "" : ", ") + name;
   }
-  throw Error(Errc::invalid_argument, "'" + text + "' is no " + Names<Enum>::what + "; there are " + known);
+  throw Error(Errc::invalid_argument, "'" + text + "' is no " + Names<Enum>::kWhat + "; there are " + known);
 }
 
 /// An enumerator as its name.

@@ -53,7 +53,7 @@ void add_missed(py::module_& m) {
   type.def_property_readonly(
           "voxels",
           [](const py::object& self) {
-            return view<std::uint32_t>(std::span(self.cast<const MissedVoxels&>().ranks), self);
+            return view<std::uint32_t>(std::span(self.cast<const MissedVoxels&>().voxels), self);
           },
           "Voxel indices, in the order of `Simulator.voxel_centres`: (k,), ascending, read-only.")
       .def_property_readonly(

@@ -71,7 +71,7 @@ inline auto members(MissedShare& s) { return std::tie(s.node, s.voxels, s.shares
 inline auto members(RoomShare& r) { return std::tie(r.share, r.ground_m2, r.left_out); }
 inline auto members(Room& r) { return std::tie(r.name, r.storey, r.box, r.outline); }
 inline auto members(VoxelStatus& s) { return std::tie(s.why, s.captured, s.attainable); }
-inline auto members(MissedVoxels& m) { return std::tie(m.ranks, m.points, m.status, m.shares, m.rooms, m.candidates); }
+inline auto members(MissedVoxels& m) { return std::tie(m.voxels, m.points, m.status, m.shares, m.rooms, m.candidates); }
 inline auto members(Scan& s) {
   return std::tie(s.ray, s.position, s.range_m, s.normal, s.reflectivity, s.mesh, s.primitive, s.colour, s.voxel,
                   s.ghost, s.return_number, s.returns, s.summary, s.rows, s.columns, s.outputs, s.grid);

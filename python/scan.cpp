@@ -47,17 +47,17 @@ void spread(std::vector<Value>& values, const std::vector<std::uint64_t>& ray, s
 }
 
 void spread(Scan& scan) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  constexpr std::uint32_t nothing = ~std::uint32_t{0};
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr std::uint32_t kNothing = ~std::uint32_t{0};
   const std::uint64_t rays = scan.summary.rays;
   spread(scan.range_m, scan.ray, rays, std::numeric_limits<float>::infinity());
-  spread(scan.position, scan.ray, rays, Vec3{nan, nan, nan});
+  spread(scan.position, scan.ray, rays, Vec3{kNan, kNan, kNan});
   spread(scan.normal, scan.ray, rays, {0, 0, 0});
   spread(scan.reflectivity, scan.ray, rays, 0.0F);
   spread(scan.mesh, scan.ray, rays, -1);
-  spread(scan.primitive, scan.ray, rays, nothing);
+  spread(scan.primitive, scan.ray, rays, kNothing);
   spread(scan.colour, scan.ray, rays, std::uint32_t{0});
-  spread(scan.voxel, scan.ray, rays, nothing);
+  spread(scan.voxel, scan.ray, rays, kNothing);
   spread(scan.ghost, scan.ray, rays, std::uint8_t{0});
   spread(scan.return_number, scan.ray, rays, std::uint8_t{0});
   spread(scan.returns, scan.ray, rays, std::uint8_t{0});
@@ -72,11 +72,11 @@ py::array_t<Number> array_of(const py::object& self, std::vector<Value> ScanPoin
   const Scan& scan = self.cast<const Scan&>();
   if ((scan.outputs & bit) == 0)
     throw Error(Errc::invalid_argument, std::string(name) + ": was not asked for; name it in `outputs`");
-  constexpr std::size_t width = sizeof(Value) / sizeof(Number);
-  py::array_t<Number> flat = view<Number>(std::span<const Value>(scan.*member), self, width);
+  constexpr std::size_t kWidth = sizeof(Value) / sizeof(Number);
+  py::array_t<Number> flat = view<Number>(std::span<const Value>(scan.*member), self, kWidth);
   if (!scan.grid || scan.summary.cancelled) return flat;
   Shape shape{scan.rows, scan.columns};
-  if (width > 1) shape.push_back(width);
+  if (kWidth > 1) shape.push_back(kWidth);
   return flat.reshape(shape);
 }
 

@@ -77,7 +77,7 @@ std::vector<std::vector<std::size_t>> stations_in_rooms(std::span<const Room> ro
 
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
-  std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending; the next two have an element for each.
+  std::vector<std::uint32_t> voxels = {};  ///< Voxel indices, ascending; the next two have an element for each.
   std::vector<std::uint32_t> points = {};  ///< Points of the network in each.
   std::vector<VoxelStatus> status = {};    ///< Status of each.
   /// The whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are one. The

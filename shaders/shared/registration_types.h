@@ -15,8 +15,8 @@ struct RegistrationPatch {
   float variance;  // m² of the modelling error, ρ²L²/A; 0: no plane to register by
   float diffuse;
   float extent;     // surface of the voxel as a share of a face, times 2^15
-  int jacobian[6];  // [(p − c)/R × n, n] · patch_unit
-  int place[3];     // (p − c)/R · patch_unit
+  int jacobian[6];  // [(p − c)/R × n, n] · kPatchUnit
+  int place[3];     // (p − c)/R · kPatchUnit
 };
 VANTAGE_CONST uint pair_sums = 21;     // the upper triangle, row by row, of J Jᵀ
 VANTAGE_CONST uint station_sums = 10;  // moments 1, x, y, z, xx, xy, xz, yy, yz, zz

@@ -16,7 +16,7 @@ namespace vantage {
 namespace {
 
 // Candidates between two checks of the clock.
-constexpr std::size_t chunk = 64;
+constexpr std::size_t kCandidatesAtOnce = 64;
 constexpr std::size_t kExpected = 512;
 // Candidates grow at least until all ground has one within this distance, and every place sees one within this multiple
 // of their spacing. Candidates nearer than the width of a room do not miss it.
@@ -40,8 +40,8 @@ void check(const CandidateConfig& config, std::size_t scanners) {
   if (config.first < 1 || config.most < config.first)
     throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
                                             std::to_string(config.most) + " are asked for; at least 1 is needed");
-  check_number(config.change, "candidates: the change", not_negative);
-  check_number(config.max_seconds, "candidates: the time limit", any_seconds);
+  check_number(config.change, "candidates: the change", kNotNegative);
+  check_number(config.max_seconds, "candidates: the time limit", kAnySeconds);
   if (config.sample_voxels == 0) throw Error(Errc::invalid_argument, "candidates: a sample has at least one voxel");
 }
 
@@ -110,7 +110,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
   double before = -1;
   while (found.ended_.empty()) {
     while (found.coverage_.size() < goal && found.ended_.empty()) {
-      const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
+      const std::size_t first = found.coverage_.size(), here = std::min(kCandidatesAtOnce, goal - first);
       const auto share = [&](double done) {
         // The number of doublings is not known yet; `kExpected` candidates is the most common end.
         const std::size_t expected = std::min(std::max(goal, kExpected), spread.stations.size());

@@ -19,7 +19,7 @@ namespace vantage {
 namespace {
 
 // Voxels between two checks for a stop.
-constexpr std::size_t voxels_at_once = 4096;
+constexpr std::size_t kVoxelsAtOnce = 4096;
 // Enough for shares to a tenth of a percent, few enough for seconds.
 constexpr std::uint64_t kJudgedVoxels = 50'000;
 
@@ -56,9 +56,9 @@ class Judge {
   }
 
   // `captured` is the share of the goal that the network has.
-  VoxelStatus status(std::uint32_t rank, const VoxelPatch& patch, double captured) const {
+  VoxelStatus status(std::uint32_t voxel, const VoxelPatch& patch, double captured) const {
     const Scanner& scanner = simulator_.scanner();
-    const Vec3 centre = simulator_.voxel_centre(rank);
+    const Vec3 centre = simulator_.voxel_centre(voxel);
     const double half = simulator_.voxel_size_m() / 2;
     // The nearest first: few lines decide most voxels.
     std::vector<std::pair<double, std::size_t>> order(candidates_.size());
@@ -69,7 +69,7 @@ class Judge {
     bool free_line = false, in_range = false, steep = false, bright = false;
     const double reach_square = scanner.detection_range_m * scanner.detection_range_m *
                                 simulator_.scene().meshes()[patch.mesh].diffuse / scanner.detection_reflectivity;
-    const double goal = simulator_.goal_density(rank);
+    const double goal = simulator_.goal_density(voxel);
     double best = 0;
     while (left > 0) {
       std::ranges::pop_heap(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(left), std::greater<>{});
@@ -139,29 +139,29 @@ Settings settings(const MissedOptions& options) {
 }
 
 std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> candidates,
-                                    std::span<const std::uint32_t> ranks, std::span<const std::uint32_t> points,
+                                    std::span<const std::uint32_t> voxels, std::span<const std::uint32_t> points,
                                     const MissedOptions& options, const Progress& progress) {
   const Simulator& simulator = site.simulator();
-  if (ranks.size() != points.size())
-    throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(ranks.size()) + " voxels, but counts of " +
+  if (voxels.size() != points.size())
+    throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(voxels.size()) + " voxels, but counts of " +
                                             std::to_string(points.size()));
   if (candidates.empty() || options.candidates == 0)
     throw Error(Errc::invalid_argument, "why_missed: there are no candidates to look from");
-  for (const std::uint32_t rank : ranks)
-    if (rank >= simulator.voxel_count())
-      throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(rank) + " of " +
+  for (const std::uint32_t voxel : voxels)
+    if (voxel >= simulator.voxel_count())
+      throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(voxel) + " of " +
                                               std::to_string(simulator.voxel_count()));
   const Judge judge(site, candidates.first(std::min(candidates.size(), options.candidates)), options);
-  std::vector<VoxelStatus> status(ranks.size(), {WhyMissed::captured, 1, 1});
+  std::vector<VoxelStatus> status(voxels.size(), {WhyMissed::captured, 1, 1});
   std::vector<std::size_t> missed;
-  for (std::size_t i = 0; i < ranks.size(); ++i)
-    if (points[i] < simulator.goal_density(ranks[i])) missed.push_back(i);
-  for (std::size_t first = 0; first < missed.size(); first += voxels_at_once) {
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (points[i] < simulator.goal_density(voxels[i])) missed.push_back(i);
+  for (std::size_t first = 0; first < missed.size(); first += kVoxelsAtOnce) {
     if (progress.stopped()) return {};
     const std::span<const std::size_t> here =
-        std::span(missed).subspan(first, std::min(voxels_at_once, missed.size() - first));
+        std::span(missed).subspan(first, std::min(kVoxelsAtOnce, missed.size() - first));
     std::vector<std::uint32_t> of;
-    for (const std::size_t i : here) of.push_back(ranks[i]);
+    for (const std::size_t i : here) of.push_back(voxels[i]);
     const std::vector<VoxelPatch> patches = simulator.voxel_patches(of);
     parallel::for_all(std::size_t{0}, here.size(), [&](std::size_t k) {
       status[here[k]] = judge.status(of[k], patches[k], points[here[k]] / simulator.goal_density(of[k]));
@@ -194,19 +194,19 @@ class ShareSum {
 };
 }  // namespace
 
-std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
+std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> voxels,
                                         std::span<const VoxelStatus> status) {
-  if (ranks.size() != status.size())
-    throw Error(Errc::invalid_argument, "missed_by_node: " + std::to_string(ranks.size()) + " voxels, but reasons of " +
-                                            std::to_string(status.size()));
+  if (voxels.size() != status.size())
+    throw Error(Errc::invalid_argument, "missed_by_node: " + std::to_string(voxels.size()) +
+                                            " voxels, but reasons of " + std::to_string(status.size()));
   const MeshesByName meshes = meshes_by_name(simulator.scene().meshes());
   std::vector<MissedShare> shares(1);
   for (const std::string& name : meshes.names) shares.push_back({.node = name});
   std::vector<ShareSum> sums(shares.begin(), shares.end());
-  const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
-  for (std::size_t i = 0; i < ranks.size(); ++i)
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(voxels);
+  for (std::size_t i = 0; i < voxels.size(); ++i)
     for (const std::size_t k : {std::size_t{0}, 1 + meshes.of_mesh[patches[i].mesh]})
-      sums[k].add(status[i], simulator.voxel_weight(ranks[i]));
+      sums[k].add(status[i], simulator.voxel_weight(voxels[i]));
   for (const ShareSum& sum : sums) sum.finish();
   std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
   return shares;
@@ -237,10 +237,10 @@ std::vector<RoomShare> missed_by_room(Site& site, const MissedVoxels& judged) {
   std::vector<ShareSum> sums;
   for (std::size_t k = 0; k < rooms.size(); ++k)
     shares[k].share.node = rooms[k].name, sums.emplace_back(shares[k].share);
-  const std::vector<VoxelPatch> patches = simulator.voxel_patches(judged.ranks);
-  for (std::size_t i = 0; i < judged.ranks.size(); ++i)
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(judged.voxels);
+  for (std::size_t i = 0; i < judged.voxels.size(); ++i)
     if (const auto room = room_at(rooms, patches[i].point))
-      sums[*room].add(judged.status[i], simulator.voxel_weight(judged.ranks[i]));
+      sums[*room].add(judged.status[i], simulator.voxel_weight(judged.voxels[i]));
   for (const ShareSum& sum : sums) sum.finish();
   return shares;
 }
@@ -251,11 +251,11 @@ MissedVoxels missed_voxels(Site& site, const VoxelField& field, const MissedOpti
   const Simulator& simulator = site.simulator();
   if (simulator.voxel_count() == 0) return {};
   const std::vector<PlacedStation> candidates = candidate_positions(site, options.candidates);
-  MissedVoxels judged{.ranks = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
-  for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
-  judged.status = why_missed(site, candidates, judged.ranks, judged.points, options, progress);
+  MissedVoxels judged{.voxels = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
+  for (const std::uint32_t voxel : judged.voxels) judged.points.push_back(field.count[voxel]);
+  judged.status = why_missed(site, candidates, judged.voxels, judged.points, options, progress);
   if (judged.status.empty()) return {};
-  judged.shares = missed_by_node(simulator, judged.ranks, judged.status);
+  judged.shares = missed_by_node(simulator, judged.voxels, judged.status);
   take_whole_coverage(judged.shares.front(), simulator, field);
   judged.rooms = missed_by_room(site, judged);
   judged.candidates = candidates.size();

@@ -13,9 +13,9 @@ namespace vantage {
 namespace {
 
 // Stations counted together: enough to keep a device busy, few enough that the caller can stop soon.
-constexpr std::size_t stations_at_once = 64;
+constexpr std::size_t kStationsAtOnce = 64;
 // Groups of a sample, for the jackknife of weighted coverage; as many as the simulator makes.
-constexpr std::uint32_t sample_groups = 20;
+constexpr std::uint32_t kSampleGroups = 20;
 
 }  // namespace
 
@@ -30,8 +30,8 @@ SampledCoverage::SampledCoverage(const Simulator& simulator, std::uint64_t sampl
   }
   // Either all point weights are 1, or none is.
   if (!point_weights_.empty() && point_weights_.front() == 1) point_weights_.clear();
-  matrix_ = CoverageMatrix(std::move(weights),
-                           simulator.goal_density() * (point_weights_.empty() ? 1 : densest_point_weight));
+  matrix_ =
+      CoverageMatrix(std::move(weights), simulator.goal_density() * (point_weights_.empty() ? 1 : kDensestPointWeight));
 }
 
 std::uint32_t SampledCoverage::amount(std::uint32_t element, std::uint32_t points) const {
@@ -52,7 +52,7 @@ Estimate SampledCoverage::coverage_of(std::span<const std::uint32_t> amounts) co
   VoxelDemands demands;
   if (std::ranges::any_of(matrix_.weights(), [](std::uint32_t w) { return w != 1; }))
     demands.weights.assign(matrix_.weights().begin(), matrix_.weights().end());
-  const NetworkCounts counts = reduce_sample(amounts, {}, sample_groups, 1, matrix_.goal(), demands);
+  const NetworkCounts counts = reduce_sample(amounts, {}, kSampleGroups, 1, matrix_.goal(), demands);
   return coverage_estimate(counts, matrix_.goal(), population_);
 }
 
@@ -73,8 +73,8 @@ Estimate SampledCoverage::coverage() const {
 SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStation> stations,
                                 std::uint64_t sample_voxels, const Progress& progress, CountTo count_to) {
   SampledCoverage sampled(simulator, sample_voxels);
-  for (std::size_t first = 0; first < stations.size(); first += stations_at_once) {
-    const std::size_t here = std::min(stations_at_once, stations.size() - first);
+  for (std::size_t first = 0; first < stations.size(); first += kStationsAtOnce) {
+    const std::size_t here = std::min(kStationsAtOnce, stations.size() - first);
     std::vector<Network> networks;
     for (const PlacedStation& station : stations.subspan(first, here))
       networks.push_back(to_network(std::span(&station, 1)));

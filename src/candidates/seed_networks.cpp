@@ -69,8 +69,8 @@ GreedyResult greedy_network(Site& site, const GreedyConfig& config, const Progre
 
 ExactResult exact_network(Site& site, const ExactConfig& config, const Progress& progress) {
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "exact: at least one candidate is needed");
-  check_number(config.apart_m, "exact: the least distance of heads in metres", not_negative);
-  check_number(config.link, "exact: the least overlap of a link", any_share);
+  check_number(config.apart_m, "exact: the least distance of heads in metres", kNotNegative);
+  check_number(config.link, "exact: the least overlap of a link", kAnyShare);
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");

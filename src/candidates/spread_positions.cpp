@@ -15,9 +15,9 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t pool_per_position = 4;
-constexpr std::size_t tries_per_position = 48;  // for sites with mostly forbidden ground
-constexpr std::size_t tries_at_once = 4096;
+constexpr std::size_t kPoolPerPosition = 4;
+constexpr std::size_t kTriesPerPosition = 48;  // for sites with mostly forbidden ground
+constexpr std::size_t kTriesAtOnce = 4096;
 
 double fraction(double x) { return x - std::floor(x); }
 
@@ -57,13 +57,14 @@ std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const 
   const GroundByArea ground(mesh);
   std::vector<PlacedStation> allowed;
   if (!(ground.area() > 0)) return allowed;
-  constexpr double g = 1.32471795724474602596;  // g³ = g + 1
-  for (std::size_t first = 0; first < tries && allowed.size() < wanted; first += tries_at_once) {
-    const std::size_t here = std::min(tries_at_once, tries - first);
+  constexpr double kPlastic = 1.32471795724474602596;  // g³ = g + 1
+  for (std::size_t first = 0; first < tries && allowed.size() < wanted; first += kTriesAtOnce) {
+    const std::size_t here = std::min(kTriesAtOnce, tries - first);
     std::vector<PlacedStation> tried(here);
     parallel::for_all(std::size_t{0}, here, [&](std::size_t k) {
       const double n = static_cast<double>(first + k + 1);
-      tried[k] = place_station(site, ground.at(fraction(0.5 + n / g), fraction(0.5 + n / (g * g))), height_m);
+      tried[k] = place_station(site, ground.at(fraction(0.5 + n / kPlastic), fraction(0.5 + n / (kPlastic * kPlastic))),
+                               height_m);
     });
     for (const PlacedStation& station : tried)
       if (station.status == StationStatus::ok && allowed.size() < wanted) allowed.push_back(station);
@@ -125,7 +126,7 @@ std::vector<PlacedStation> unseen_positions(const PlacementOracle& site, std::sp
 SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                  std::size_t most) {
   const std::vector<PlacedStation> pool =
-      allowed_positions(site, mesh, height_m, pool_per_position * most, tries_per_position * most);
+      allowed_positions(site, mesh, height_m, kPoolPerPosition * most, kTriesPerPosition * most);
   SpreadPositions spread;
   std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken position
   std::vector<char> taken_already(pool.size(), 0);

@@ -110,18 +110,18 @@ ProgressLine::ProgressLine(Console& console, std::string label)
 ProgressLine::~ProgressLine() { console_.set_status(""); }
 
 void ProgressLine::update(std::optional<double> done, const std::string& note, double seconds_left) {
-  constexpr std::chrono::duration<double> redraw{0.1}, line_every{10};
+  constexpr std::chrono::duration<double> kRedrawEvery{0.1}, kLineEvery{10};
   const auto now = Clock::now();
-  if (now - last_ < (console_.interactive() ? redraw : line_every)) return;
+  if (now - last_ < (console_.interactive() ? kRedrawEvery : kLineEvery)) return;
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string text = label_;
   if (done) {
     const double share = std::clamp(*done, 0.0, 1.0);
     if (seconds_left < 0 && share > 0) seconds_left = elapsed * (1 - share) / share;
-    constexpr std::size_t bar_width = 24;
-    const auto filled = static_cast<std::size_t>(share * bar_width);
-    text += console_.interactive() ? " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "]" : ":";
+    constexpr std::size_t kBarWidth = 24;
+    const auto filled = static_cast<std::size_t>(share * kBarWidth);
+    text += console_.interactive() ? " [" + std::string(filled, '=') + std::string(kBarWidth - filled, ' ') + "]" : ":";
     text += fmt::format(" {:.0f} % done", 100 * share);
   } else {
     text += ": " + duration_text(elapsed) + " so far";

@@ -11,17 +11,17 @@ namespace vantage::cli {
 namespace {
 
 [[noreturn]] void die() {
-  constexpr char farewell[] = "\nvantage: aborted\n";
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, farewell, sizeof farewell - 1);
+  constexpr char kFarewell[] = "\nvantage: aborted\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kFarewell, sizeof kFarewell - 1);
   _exit(130);
 }
 
 void watch(const std::stop_token& finished, const sigset_t& signals, std::stop_source stop, std::stop_source abort,
            const std::atomic<bool>& several) {
-  constexpr timespec tick{.tv_sec = 0, .tv_nsec = 50'000'000};
+  constexpr timespec kTick{.tv_sec = 0, .tv_nsec = 50'000'000};
   int ticks_left = 200;
   while (!finished.stop_requested()) {
-    if (sigtimedwait(&signals, nullptr, &tick) < 0) {
+    if (sigtimedwait(&signals, nullptr, &kTick) < 0) {
       if (abort.stop_requested() && --ticks_left == 0) die();
     } else if (stop.request_stop()) {
       spdlog::warn(several

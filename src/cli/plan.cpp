@@ -178,8 +178,8 @@ std::string told(const PlanProgress& now, const SurveyProblem& problem) {
 PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config, Program& program,
                     const Deadline& all_by) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
-  constexpr double kWithResults = 1.1;     // what is missed and the files take about a tenth of the search
+  constexpr std::chrono::seconds kSoon{3};  // before that, what a part of it takes is a guess
+  constexpr double kWithResults = 1.1;      // what is missed and the files take about a tenth of the search
   ProgressLine line(program.console, doing("search"));
   std::string phase, told_phase;
   Clock::time_point begun;
@@ -194,7 +194,7 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, PlanConfig config,
       const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
       spdlog::info("the number of stations is nearly known; about {} left in all", duration_text(left));
     }
-    if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {
+    if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > kSoon) {
       told_phase = phase;
       spdlog::info("{}: about {} left", doing(phase), duration_text(now.seconds_left));
     }

@@ -93,17 +93,17 @@ namespace {
 
 // The ground at x, y. Throws Error invalid_argument if there is none, or if floors lie above each other.
 Vec3 ground_at(Site& site, const std::array<double, 2>& xy) {
-  constexpr double same_floor_m = 0.5, far = 1e6;  // beyond any site
+  constexpr double kSameFloor_m = 0.5, kFar_m = 1e6;  // beyond any site
   const auto at = fmt::format("x,y = {},{}", xy[0], xy[1]);
   const auto ground = [&](double z) -> std::optional<Vec3> {
     const auto uv = site.area().project({xy[0], xy[1], z});
     return uv ? site.area().locate(*uv) : std::nullopt;
   };
-  const auto low = ground(-far), high = ground(far);
+  const auto low = ground(-kFar_m), high = ground(kFar_m);
   if (!low || !high)
     throw Error(Errc::invalid_argument, "--station: there is no ground to stand on at " + at +
                                             "; with a height, as x=…,y=…,z=…, the head goes anywhere");
-  if (high->z - low->z > same_floor_m)
+  if (high->z - low->z > kSameFloor_m)
     throw Error(Errc::invalid_argument,
                 fmt::format("--station: at {0} there are floors at {1:.2f} and {2:.2f}; say which, as "
                             "x={3},y={4},ground={1:.2f}",

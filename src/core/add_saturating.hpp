@@ -8,8 +8,8 @@ namespace vantage {
 
 // Saturating addition of point counts.
 inline void add_saturating(std::uint32_t& sum, std::uint32_t points) {
-  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
-  sum = points > most - sum ? most : sum + points;
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  sum = points > kMost - sum ? kMost : sum + points;
 }
 
 }  // namespace vantage

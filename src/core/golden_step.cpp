@@ -23,7 +23,7 @@ std::uint64_t largest_quotient(std::uint64_t step, std::uint64_t population) {
 }  // namespace
 
 std::uint64_t golden_step(std::uint64_t population) {
-  constexpr std::uint64_t search = 1000;
+  constexpr std::uint64_t kFarthest = 1000;
   const auto nearest = static_cast<std::uint64_t>(std::llround(static_cast<double>(population) / std::numbers::phi));
   std::uint64_t best = 1, best_quotient = population;  // a step of 1 always walks, though not evenly
   const auto consider = [&](std::uint64_t step) {
@@ -33,7 +33,7 @@ std::uint64_t golden_step(std::uint64_t population) {
       best_quotient = quotient;
     }
   };
-  for (std::uint64_t away = 0; away <= search; ++away) {
+  for (std::uint64_t away = 0; away <= kFarthest; ++away) {
     if (nearest + away < population) consider(nearest + away);
     if (away < nearest) consider(nearest - away);
   }

@@ -12,16 +12,16 @@ namespace vantage {
 template <class T>
 class LruCache {
  public:
-  static constexpr std::size_t most = 4;
+  static constexpr std::size_t kMostKept = 4;
 
-  // Returns the object that fits, or makes one in place of the least recently used. Valid until `most` others were
+  // Returns the object that fits, or makes one in place of the least recently used. Valid until `kMostKept` others were
   // made.
   template <class Fits, class Make>
   T& get(const Fits& fits, const Make& make) {
     auto found = std::find_if(kept_.begin(), kept_.end(), [&](const std::unique_ptr<T>& one) { return fits(*one); });
     if (found == kept_.end()) {
       auto made = std::make_unique<T>(make());
-      if (kept_.size() == most) kept_.pop_back();
+      if (kept_.size() == kMostKept) kept_.pop_back();
       found = kept_.insert(kept_.end(), std::move(made));
     }
     std::rotate(kept_.begin(), found, found + 1);

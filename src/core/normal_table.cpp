@@ -48,7 +48,7 @@ std::vector<float> make_table() {
 }  // namespace
 
 double truncated_normal_quantile(double p) {
-  const double beyond = upper_tail(normal_limit);
+  const double beyond = upper_tail(kNormalLimit);
   const double q = beyond + p * (1 - 2 * beyond);
   // Newton on log Q(z) = log q: concave and falling, so from 0 it overshoots once and then converges to the root.
   double z = 0;

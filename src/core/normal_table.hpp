@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-inline constexpr double normal_limit = 5;  // |z| never exceeds it
+inline constexpr double kNormalLimit = 5;  // |z| never exceeds it
 
 // g(p): the value that the truncated normal exceeds with probability p, for p in (0, ½]. In double, to a few ulp.
 double truncated_normal_quantile(double p);

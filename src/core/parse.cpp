@@ -133,14 +133,14 @@ std::uint64_t SampleSize::of(std::uint64_t population) const {
 }
 
 SampleSize parse_sample(std::string_view text, const std::string& what) {
-  constexpr Interval some_share{.low = 0, .high = 1, .low_included = false};
+  constexpr Interval kSomeShare{.low = 0, .high = 1, .low_included = false};
   if (text.ends_with('%'))
     return {
         .voxels = std::nullopt,
         .share =
             parse_number(text.substr(0, text.size() - 1), what, {.low = 0, .high = 100, .low_included = false}) / 100};
   if (text.find('.') != std::string_view::npos)
-    return {.voxels = std::nullopt, .share = parse_number(text, what, some_share)};
+    return {.voxels = std::nullopt, .share = parse_number(text, what, kSomeShare)};
   return {.voxels = parse_count(text, what, 1), .share = std::nullopt};
 }
 
@@ -179,7 +179,7 @@ double parse_duration(std::string_view text, const std::string& what) {
   if (digits.empty() || std::from_chars(digits.begin(), digits.end(), parsed).ptr != digits.end())
     refuse(what, text, "is no time; write a number and s, min or h: 90s, 15min or 2h");
   const double seconds = unit * parse_number(number, what, {.low = 1e-6});
-  if (seconds > any_seconds.high) refuse(what, text, "must be at most " + number_text(any_seconds.high) + " seconds");
+  if (seconds > kAnySeconds.high) refuse(what, text, "must be at most " + number_text(kAnySeconds.high) + " seconds");
   return seconds;
 }
 
@@ -210,14 +210,14 @@ std::uint64_t parse_bytes(std::string_view text, const std::string& what) {
       break;
     }
   double unit = 1;
-  constexpr std::string_view prefixes = "KMGT";
-  if (const auto power = number.empty() ? std::string_view::npos : prefixes.find(number.back());
+  constexpr std::string_view kPrefixes = "KMGT";
+  if (const auto power = number.empty() ? std::string_view::npos : kPrefixes.find(number.back());
       power != std::string_view::npos) {
     unit = std::exp2(10.0 * static_cast<double>(power + 1));
     number.remove_suffix(1);
   }
   while (number.ends_with(' ')) number.remove_suffix(1);
-  const double bytes = unit * parse_number(number, what, positive);
+  const double bytes = unit * parse_number(number, what, kPositive);
   if (!(bytes >= 1 && bytes < 0x1p63)) refuse(what, text, "is no number of bytes");
   return static_cast<std::uint64_t>(bytes);
 }

@@ -19,22 +19,22 @@ struct Interval {
   double high = std::numeric_limits<double>::infinity();
   bool low_included = true, high_included = true;
 };
-inline constexpr Interval any_number{};
-inline constexpr Interval positive{.low = 0, .low_included = false};
-inline constexpr Interval not_negative{.low = 0};
-inline constexpr Interval any_share{.low = 0, .high = 1};
-inline constexpr Interval share_below_1{.low = 0, .high = 1, .high_included = false};
+inline constexpr Interval kAnyNumber{};
+inline constexpr Interval kPositive{.low = 0, .low_included = false};
+inline constexpr Interval kNotNegative{.low = 0};
+inline constexpr Interval kAnyShare{.low = 0, .high = 1};
+inline constexpr Interval kShareBelow1{.low = 0, .high = 1, .high_included = false};
 // Lengths, steps and rates that must not be 0, in any of their units. Smaller and larger ones would overflow values
 // computed from them.
-inline constexpr Interval measurable{.low = 1e-6, .high = 1e9};
+inline constexpr Interval kMeasurable{.low = 1e-6, .high = 1e9};
 // Limits of time in seconds, 0 for none: at most thirty years, since clocks count in 64 bits of nanoseconds.
-inline constexpr Interval any_seconds{.low = 0, .high = 1e9};
+inline constexpr Interval kAnySeconds{.low = 0, .high = 1e9};
 
 // Throws unless the number is finite and in the interval.
-void check_number(double value, const std::string& what, const Interval& interval = any_number);
+void check_number(double value, const std::string& what, const Interval& interval = kAnyNumber);
 
 // Messages begin with `what`, the name of the setting.
-double parse_number(std::string_view text, const std::string& what, const Interval& interval = any_number);
+double parse_number(std::string_view text, const std::string& what, const Interval& interval = kAnyNumber);
 std::uint64_t parse_count(std::string_view text, const std::string& what, std::uint64_t low = 0,
                           std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
 // Parses "true" or "false".
@@ -44,7 +44,7 @@ std::string_view trimmed_text(std::string_view text);
 std::vector<std::string_view> split(std::string_view text, char separator);
 // Parses comma-separated numbers, from `fewest` to `most` of them.
 std::vector<double> parse_numbers(std::string_view text, const std::string& what, std::size_t fewest, std::size_t most,
-                                  const Interval& interval = any_number);
+                                  const Interval& interval = kAnyNumber);
 
 struct CountRange {
   std::size_t low = 0, high = 0;

@@ -13,7 +13,7 @@ namespace vantage {
 
 CoverageMatrix::CoverageMatrix(std::vector<std::uint32_t> weights, double goal)
     : weights_(std::move(weights)), total_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)), goal_(goal) {
-  check_number(goal, "coverage matrix: the goal", positive);
+  check_number(goal, "coverage matrix: the goal", kPositive);
 }
 
 void CoverageMatrix::set_goals(std::span<const double> goals) {

@@ -58,16 +58,16 @@ void check(const CoverProblem& problem) {
   if (problem.graph && problem.graph->size() != candidates)
     throw Error(Errc::invalid_argument, "cover: a graph of " + std::to_string(problem.graph->size()) +
                                             " stations for " + std::to_string(candidates) + " candidates");
-  check_number(problem.link, "cover: the least overlap of a link", not_negative);
-  check_number(problem.least_help, "cover: the least help of a further candidate", not_negative);
+  check_number(problem.link, "cover: the least overlap of a link", kNotNegative);
+  check_number(problem.least_help, "cover: the least help of a further candidate", kNotNegative);
   if (problem.link > 0 && !problem.graph)
     throw Error(Errc::invalid_argument, "cover: a connected network is asked for, but no graph of overlaps is given");
 }
 
 void check(const BoundConfig& config) {
   check_number(config.tolerance, "cover: the tolerance", {.low = 0, .high = 1, .low_included = false});
-  check_number(config.max_seconds, "cover: the time limit", any_seconds);
-  check_number(config.exact_seconds, "cover: the time for branch and bound", any_seconds);
+  check_number(config.max_seconds, "cover: the time limit", kAnySeconds);
+  check_number(config.exact_seconds, "cover: the time for branch and bound", kAnySeconds);
 }
 
 std::vector<std::size_t> free_candidates(const CoverProblem& problem) {

@@ -81,7 +81,7 @@ StationGraph::StationGraph(std::size_t size, std::span<const float> overlaps) : 
   if (overlaps.size() != size * size)
     throw Error(Errc::invalid_argument, "station graph: " + std::to_string(overlaps.size()) + " overlaps of " +
                                             std::to_string(size) + " candidates; give one for each pair of them");
-  for (const float overlap : overlaps) check_number(overlap, "station graph: an overlap", any_share);
+  for (const float overlap : overlaps) check_number(overlap, "station graph: an overlap", kAnyShare);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < size; ++j)
       if (i != j && overlaps[i * size + j] != 0)

@@ -450,11 +450,11 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<st
   if (exact.counts.cancelled) return;
   std::vector<std::uint32_t> points;
   std::vector<Seer> seen_by;
-  for (const std::uint32_t rank : cells_.ranks) {
-    points.push_back(exact.field.count[rank]);
-    seen_by.push_back(seer_of(exact.field, rank));
+  for (const std::uint32_t voxel : cells_.voxels) {
+    points.push_back(exact.field.count[voxel]);
+    seen_by.push_back(seer_of(exact.field, voxel));
   }
-  CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_);
+  CellColours colours = cell_colours(cells_, cells_.voxels, points, seen_by, simulator_);
   {
     const std::scoped_lock lock(mutex_);
     evaluation_ = exact, evaluation_.field = {}, colours_ = std::move(colours);

@@ -46,8 +46,8 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("attainable coverage is measured by rays without a width; choose either it or a beam with a width");
   if (options.field && options.sample_voxels)
     refuse("a sample has no points of every voxel; choose either the field or a sample");
-  check_number(options.link, "evaluate: link", any_share);
-  check_number(options.link_overlap, "evaluate: link-overlap", any_share);
+  check_number(options.link, "evaluate: link", kAnyShare);
+  check_number(options.link_overlap, "evaluate: link-overlap", kAnyShare);
   if (options.registration) check_settings(registration_settings(), *options.registration);
   check_settings(target_settings(), options.target);
   for (const Requirement& requirement : options.requirements)

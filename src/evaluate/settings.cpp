@@ -8,8 +8,8 @@
 namespace vantage {
 namespace {
 
-constexpr Interval minutes{.low = 0, .high = 1e6};
-constexpr Interval of_day{.low = 0, .high = 24 * 60};  // minutes
+constexpr Interval kMinutes{.low = 0, .high = 1e6};
+constexpr Interval kMinutesOfDay{.low = 0, .high = 24 * 60};  // minutes
 
 [[noreturn]] void refuse_window(const std::string& text, const std::string& what) {
   throw Error(Errc::invalid_argument,
@@ -60,17 +60,17 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
       SettingRows<OnSiteOptions>()
           .group("Problem")
           .number("set-up", "MIN", "Minutes at each station besides the scan itself", &OnSiteOptions::set_up_min,
-                  minutes)
+                  kMinutes)
           .number("photos", "MIN", "Minutes at each station for pictures, where the scanner takes some",
-                  &OnSiteOptions::photos_min, not_negative)
+                  &OnSiteOptions::photos_min, kNotNegative)
           .number("walking", "M/S", "Walking speed with the scanner, in metres per second",
-                  &OnSiteOptions::walking_m_per_s, measurable)
+                  &OnSiteOptions::walking_m_per_s, kMeasurable)
           .optional("day", "T",
                     "Longest session, from the entrance and back: 8h or 450min. A longer round is split into sessions",
                     &OnSiteOptions::day_min,
                     [](const std::string& text, const std::string& what) { return parse_duration(text, what) / 60; })
           .checked([](const OnSiteOptions& options, const std::string& what) {
-            if (options.day_min) check_number(*options.day_min, what, positive);
+            if (options.day_min) check_number(*options.day_min, what, kPositive);
           })
           .count("crews", "N", "Crews that work side by side, a session each, every day; 1 otherwise. Takes a day",
                  &OnSiteOptions::crews, 1, 1000)
@@ -82,7 +82,7 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
                     options.day_start_min = parse_clock(text, what);
                   })
           .checked([](const OnSiteOptions& options, const std::string& what) {
-            check_number(options.day_start_min, what, of_day);
+            check_number(options.day_start_min, what, kMinutesOfDay);
           })
           .repeated(
               "window", "ROOMS=HH:MM-HH:MM",
@@ -92,7 +92,7 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
           .checked([](const OnSiteOptions& options, const std::string& what) {
             for (const AccessWindow& window : options.windows) {
               if (window.rooms.empty()) refuse_window(to_string(window), what);
-              for (const double time : {window.from_min, window.to_min}) check_number(time, what, of_day);
+              for (const double time : {window.from_min, window.to_min}) check_number(time, what, kMinutesOfDay);
             }
           })
           .take();

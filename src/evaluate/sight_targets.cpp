@@ -119,7 +119,7 @@ bool any_ties(std::span<const Target> targets) noexcept {
 
 void check(const Target& target, const Vec3& origin) {
   require_in_reach(target.centre, origin, "target \"" + target.name + "\" is");
-  check_number(target.control_m, "targets: the sigma of " + target.name, any_share);
+  check_number(target.control_m, "targets: the sigma of " + target.name, kAnyShare);
 }
 
 std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,

@@ -146,12 +146,12 @@ Ways::Ways(const SearchMesh& ground, std::function<bool(const Vec3&, const Vec3&
     }
     return best;
   };
-  constexpr std::array<std::pair<int, int>, 4> half{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  constexpr std::array<std::pair<int, int>, 4> kHalfOfSides{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   std::vector<std::array<std::optional<std::uint32_t>, 4>> ahead(places_.size());
   parallel::for_all(std::size_t{0}, places_.size(), [&](std::size_t k) {
     const auto from = static_cast<std::uint32_t>(k);
-    for (std::size_t d = 0; d < half.size(); ++d) {
-      const auto to = step_to(from, half[d].first, half[d].second);
+    for (std::size_t d = 0; d < kHalfOfSides.size(); ++d) {
+      const auto to = step_to(from, kHalfOfSides[d].first, kHalfOfSides[d].second);
       if (to && sees_(places_[from], places_[*to])) ahead[k][d] = to;
     }
   });
@@ -226,15 +226,15 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> Ways::gaps(
 std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
   const auto i = static_cast<std::int64_t>(std::lround(ground.x / spacing_)),
              j = static_cast<std::int64_t>(std::lround(ground.y / spacing_));
-  constexpr std::int64_t reach = 3;
+  constexpr std::int64_t kReach = 3;
   std::vector<std::pair<double, std::uint32_t>> near;
-  for (std::int64_t di = -reach; di <= reach; ++di) {
-    for (std::int64_t dj = -reach; dj <= reach; ++dj) {
+  for (std::int64_t di = -kReach; di <= kReach; ++di) {
+    for (std::int64_t dj = -kReach; dj <= kReach; ++dj) {
       const auto found = cells_.find(cell_key(i + di, j + dj));
       if (found == cells_.end()) continue;
       for (const std::uint32_t place : found->second) {
         const Vec3 away = places_[place] - ground;
-        if (std::abs(away.z) > person::kWayStep_m + person::kWaySlope * spacing_ * 2 * reach) continue;
+        if (std::abs(away.z) > person::kWayStep_m + person::kWaySlope * spacing_ * 2 * kReach) continue;
         // Another level counts as further than it looks.
         near.emplace_back(std::hypot(away.x, away.y) + 4 * std::abs(away.z), place);
       }

@@ -23,19 +23,19 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
   // stations would be gigabytes.
   if (words == 1) more.push_back({"uint", "stations_low"}), more.push_back({"uint", "stations_high"});
   if (words > 1) more.push_back({"uint", "stations"});
-  write_voxel_ply(file, coordinates, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
-    const double ratio = captured_share(simulator, static_cast<std::uint32_t>(rank), field.count[rank]);
+  write_voxel_ply(file, coordinates, simulator, more, voxels, [&](std::uint64_t voxel, std::string& bytes) {
+    const double ratio = captured_share(simulator, static_cast<std::uint32_t>(voxel), field.count[voxel]);
     append(bytes, static_cast<float>(ratio));
-    append(bytes, field.count[rank]);
+    append(bytes, field.count[voxel]);
     if (words == 1) {
-      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, rank)));
-      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, rank) >> 32));
+      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, voxel)));
+      append(bytes, static_cast<std::uint32_t>(field.stations.word(0, voxel) >> 32));
     } else if (words > 1) {
       std::uint32_t seen = 0;
-      field.stations.for_each_station(rank, [&](std::size_t) { ++seen; });
+      field.stations.for_each_station(voxel, [&](std::size_t) { ++seen; });
       append(bytes, seen);
     }
-    return VoxelVertex{static_cast<std::uint32_t>(rank), ramp(kCoverageRamp, ratio)};
+    return VoxelVertex{static_cast<std::uint32_t>(voxel), ramp(kCoverageRamp, ratio)};
   });
 }
 

@@ -13,12 +13,12 @@ E57PagedFile::E57PagedFile(const std::filesystem::path& file) : file_(file) {
   file_.write(first.data(), first.size());
 }
 
-std::array<char, E57PagedFile::page_bytes> E57PagedFile::with_checksum(const Content& content) {
-  std::array<char, page_bytes> page{};
+std::array<char, E57PagedFile::kPageBytes> E57PagedFile::with_checksum(const Content& content) {
+  std::array<char, kPageBytes> page{};
   std::copy(content.begin(), content.end(), page.begin());
   const std::uint32_t crc = crc32c(content.data(), content.size());
   // The one number of the format that is big-endian.
-  for (std::size_t k = 0; k < 4; ++k) page[content_bytes + k] = static_cast<char>(crc >> (24 - 8 * k));
+  for (std::size_t k = 0; k < 4; ++k) page[kContentBytes + k] = static_cast<char>(crc >> (24 - 8 * k));
   return page;
 }
 
@@ -32,17 +32,17 @@ void E57PagedFile::fill_page() {
 
 void E57PagedFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const std::size_t n = std::min(bytes.size(), content_bytes - used_);
+    const std::size_t n = std::min(bytes.size(), kContentBytes - used_);
     std::copy_n(bytes.begin(), n, content_.begin() + static_cast<std::ptrdiff_t>(used_));
     bytes.remove_prefix(n);
     used_ += n;
-    if (used_ == content_bytes) fill_page();
+    if (used_ == kContentBytes) fill_page();
   }
 }
 
 void E57PagedFile::align() {
-  constexpr std::string_view zeros("\0\0\0", 3);
-  write(zeros.substr(0, (4 - logical() % 4) % 4));
+  constexpr std::string_view kZeros("\0\0\0", 3);
+  write(kZeros.substr(0, (4 - logical() % 4) % 4));
 }
 
 void E57PagedFile::begin_patchable_page() {
@@ -51,7 +51,7 @@ void E57PagedFile::begin_patchable_page() {
 }
 
 void E57PagedFile::patch(std::string_view bytes) {
-  assert(patchable_page_ > 0 && bytes.size() <= content_bytes);
+  assert(patchable_page_ > 0 && bytes.size() <= kContentBytes);
   if (patchable_page_ == page_) {
     assert(bytes.size() <= used_);
     std::copy(bytes.begin(), bytes.end(), content_.begin());
@@ -59,11 +59,11 @@ void E57PagedFile::patch(std::string_view bytes) {
   }
   std::copy(bytes.begin(), bytes.end(), patchable_.begin());
   const auto page = with_checksum(patchable_);
-  file_.patch(patchable_page_ * page_bytes, page.data(), page.size());
+  file_.patch(patchable_page_ * kPageBytes, page.data(), page.size());
 }
 
 void E57PagedFile::close(std::string_view header) {
-  assert(header.size() <= content_bytes);
+  assert(header.size() <= kContentBytes);
   if (used_ > 0) fill_page();
   Content content{};
   std::copy(header.begin(), header.end(), content.begin());

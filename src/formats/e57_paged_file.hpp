@@ -15,7 +15,7 @@ namespace vantage {
 
 class E57PagedFile {
  public:
-  static constexpr std::size_t page_bytes = 1024, content_bytes = page_bytes - 4;
+  static constexpr std::size_t kPageBytes = 1024, kContentBytes = kPageBytes - 4;
 
   // Leaves the first page for the header, which is known last. Throws Error io, as everything here.
   explicit E57PagedFile(const std::filesystem::path& file);
@@ -29,22 +29,22 @@ class E57PagedFile {
   void patch(std::string_view bytes);
 
   std::uint64_t logical() const { return logical_of(page_, used_); }
-  std::uint64_t physical() const { return page_ * page_bytes + used_; }
+  std::uint64_t physical() const { return page_ * kPageBytes + used_; }
 
   // Fills the last page, puts the header (at most a page) on the first, and gives the file its name.
   void close(std::string_view header);
   // Length of the file once closed, if nothing more is written.
-  std::uint64_t physical_length() const { return (page_ + (used_ > 0 ? 1 : 0)) * page_bytes; }
+  std::uint64_t physical_length() const { return (page_ + (used_ > 0 ? 1 : 0)) * kPageBytes; }
 
  private:
-  using Content = std::array<char, content_bytes>;
-  static std::uint64_t logical_of(std::uint64_t page, std::size_t used) { return page * content_bytes + used; }
+  using Content = std::array<char, kContentBytes>;
+  static std::uint64_t logical_of(std::uint64_t page, std::size_t used) { return page * kContentBytes + used; }
   void fill_page();
-  static std::array<char, page_bytes> with_checksum(const Content& content);
+  static std::array<char, kPageBytes> with_checksum(const Content& content);
 
   AtomicFile file_;
   std::uint64_t page_ = 1;  // the one being filled
-  std::size_t used_ = 0;    // of it; below content_bytes
+  std::size_t used_ = 0;    // of it; below kContentBytes
   Content content_{};
   std::uint64_t patchable_page_ = 0;
   Content patchable_{};  // its content once written

@@ -149,7 +149,7 @@ class E57Sink final : public PointSink {
     append(header, file_.physical_length());
     append(header, address);
     append(header, static_cast<std::uint64_t>(xml.size()));
-    append(header, static_cast<std::uint64_t>(E57PagedFile::page_bytes));
+    append(header, static_cast<std::uint64_t>(E57PagedFile::kPageBytes));
     file_.close(header);
   }
 

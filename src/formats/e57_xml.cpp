@@ -73,8 +73,8 @@ void write_pose(std::string& xml, const E57Scan& scan) {
   const Element pose = structure(xml, "pose");
   {
     const Element rotation = structure(xml, "rotation");
-    constexpr const char* names[] = {"w", "x", "y", "z"};
-    for (std::size_t k = 0; k < 4; ++k) real(xml, names[k], scan.rotation[k]);
+    constexpr const char* kOfQuaternion[] = {"w", "x", "y", "z"};
+    for (std::size_t k = 0; k < 4; ++k) real(xml, kOfQuaternion[k], scan.rotation[k]);
   }
   const Element translation = structure(xml, "translation");
   real(xml, "x", scan.translation.x), real(xml, "y", scan.translation.y), real(xml, "z", scan.translation.z);

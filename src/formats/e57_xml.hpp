@@ -23,8 +23,9 @@ struct E57Field {
 
 // Extremes of the values of one station's points, as stored.
 struct E57Bounds {
-  static constexpr double inf = std::numeric_limits<double>::infinity();
-  std::array<double, 3> low{inf, inf, inf}, high{-inf, -inf, -inf};  // in the scanner's frame, metres
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low{kInfinity, kInfinity, kInfinity},
+      high{-kInfinity, -kInfinity, -kInfinity};  // in the scanner's frame, metres
   std::uint32_t row_low = UINT32_MAX, row_high = 0, column_low = UINT32_MAX, column_high = 0;
 };
 

@@ -54,10 +54,10 @@ std::optional<double> median(std::vector<float>& values) {
 }
 
 // The cosine of the steepest sight of a voxel's surface among the stations that have points in it; 0: none has.
-float steepest_sight(const VoxelPatch& patch, std::size_t rank, const VoxelField& field,
+float steepest_sight(const VoxelPatch& patch, std::size_t voxel, const VoxelField& field,
                      std::span<const PlacedStation> stations) {
   double best = 0;
-  field.stations.for_each_station(rank, [&](std::size_t station) {
+  field.stations.for_each_station(voxel, [&](std::size_t station) {
     const Vec3 way = patch.point - stations[station].position;
     const double range = std::sqrt(dot(way, way));
     best = std::max(best, range > 0 ? std::abs(dot(way, patch.normal)) / range : 1);
@@ -86,26 +86,26 @@ std::vector<ElementShare> element_shares(const Simulator& simulator, const Evalu
     if (scene.meshes[m].role == Role::surveyed) elements[meshes.of_mesh[m]].area_m2 += area_of(scene, scene.ranges[m]);
   if (voxels == 0) return elements;
 
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostVoxels, voxels));
-  const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
-  std::vector<float> errors_mm, cosines(ranks.size(), 0);
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(std::min(kMostVoxels, voxels));
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(sample);
+  std::vector<float> errors_mm, cosines(sample.size(), 0);
   const bool masks = !field.stations.empty();
-  if (evaluation.registration && masks) errors_mm = voxel_errors_mm(simulator, field, *evaluation.registration, ranks);
+  if (evaluation.registration && masks) errors_mm = voxel_errors_mm(simulator, field, *evaluation.registration, sample);
   if (masks)
-    parallel::for_all(std::size_t{0}, ranks.size(), [&](std::size_t k) {
-      cosines[k] = steepest_sight(patches[k], ranks[k], field, evaluation.stations);
+    parallel::for_all(std::size_t{0}, sample.size(), [&](std::size_t k) {
+      cosines[k] = steepest_sight(patches[k], sample[k], field, evaluation.stations);
     });
   std::vector<Seen> seen(elements.size());
-  for (std::size_t k = 0; k < ranks.size(); ++k) {
-    const std::uint32_t rank = ranks[k];
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    const std::uint32_t voxel = sample[k];
     const std::size_t element = meshes.of_mesh[patches[k].mesh];
     Seen& sum = seen[element];
-    const double weight = simulator.voxel_weight(rank);
+    const double weight = simulator.voxel_weight(voxel);
     ++elements[element].voxels;
     sum.weights += weight;
-    sum.captured += weight * captured_share(simulator, rank, field.count[rank]);
-    if (field.count[rank] > 0 && patches[k].area_m2 > 0)
-      sum.distances_m.push_back(static_cast<float>(std::sqrt(patches[k].area_m2 / field.count[rank])));
+    sum.captured += weight * captured_share(simulator, voxel, field.count[voxel]);
+    if (field.count[voxel] > 0 && patches[k].area_m2 > 0)
+      sum.distances_m.push_back(static_cast<float>(std::sqrt(patches[k].area_m2 / field.count[voxel])));
     if (cosines[k] > 0) sum.cosines.push_back(cosines[k]);
     if (!errors_mm.empty() && errors_mm[k] >= 0)
       sum.squares_mm += static_cast<double>(errors_mm[k]) * errors_mm[k], ++sum.with_error;

@@ -45,12 +45,12 @@ void write_rooms_csv(const std::filesystem::path& file, std::span<const Room> ro
 
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed,
                       PlyCoordinates coordinates) {
-  write_voxel_ply(file, coordinates, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.ranks.size(),
+  write_voxel_ply(file, coordinates, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.voxels.size(),
                   [&](std::uint64_t k, std::string& bytes) {
                     const WhyMissed why = missed.status[k].why;
                     append(bytes, static_cast<std::uint8_t>(why));
                     append(bytes, missed.points[k]);
-                    return VoxelVertex{missed.ranks[k], missed_style(why).colour};
+                    return VoxelVertex{missed.voxels[k], missed_style(why).colour};
                   });
 }
 

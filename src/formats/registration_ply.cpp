@@ -10,18 +10,18 @@ namespace vantage {
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error, PlyCoordinates coordinates) {
   require_stations_of(simulator, field);
-  std::vector<std::uint32_t> ranks;
-  for (std::uint32_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t voxel = 0; voxel < simulator.voxel_count(); ++voxel) {
     bool seen = false;
-    field.stations.for_each_station(rank, [&](std::size_t) { seen = true; });
-    if (seen) ranks.push_back(rank);
+    field.stations.for_each_station(voxel, [&](std::size_t) { seen = true; });
+    if (seen) voxels.push_back(voxel);
   }
-  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, voxels);
   const double most = largest_error_mm(errors);
-  write_voxel_ply(file, coordinates, simulator, {{"float", "error_mm"}}, ranks.size(),
+  write_voxel_ply(file, coordinates, simulator, {{"float", "error_mm"}}, voxels.size(),
                   [&](std::uint64_t k, std::string& bytes) {
                     append(bytes, errors[k]);
-                    return VoxelVertex{ranks[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
+                    return VoxelVertex{voxels[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
                   });
 }
 

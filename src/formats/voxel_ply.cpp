@@ -25,8 +25,8 @@ void write_voxel_ply(const std::filesystem::path& file, PlyCoordinates coordinat
       const std::uint64_t begin = first + c * kChunk;
       for (std::uint64_t k = begin; k < std::min(begin + kChunk, voxels); ++k) {
         own.clear();
-        const auto [rank, colour] = vertex(k, own);
-        header.append_place(bytes, simulator.voxel_centre(rank));
+        const auto [voxel, colour] = vertex(k, own);
+        header.append_place(bytes, simulator.voxel_centre(voxel));
         for (const std::uint8_t channel : to_bytes(colour)) append(bytes, channel);
         bytes += own;
       }

@@ -17,7 +17,7 @@ namespace vantage {
 
 // `vertex` returns the k-th voxel's colour and appends the properties named in `more`, in that order. Throws Error io.
 struct VoxelVertex {
-  std::uint32_t rank;
+  std::uint32_t voxel;
   Colour colour;
 };
 void write_voxel_ply(const std::filesystem::path& file, PlyCoordinates coordinates, const Simulator& simulator,

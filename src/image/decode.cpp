@@ -6,7 +6,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t largest_side = 16384;  // 1 GiB of pixels: more is a broken header
+constexpr std::uint32_t kLargestSide = 16384;  // 1 GiB of pixels: more is a broken header
 
 bool is_jpeg(std::span<const std::uint8_t> bytes) { return bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8; }
 
@@ -22,13 +22,13 @@ class Png {
   Png& operator=(const Png&) = delete;
   ~Png() { png_image_free(&image_); }
 
-  bool fits() const { return read_ && image_.width <= largest_side && image_.height <= largest_side; }
+  bool fits() const { return read_ && image_.width <= kLargestSide && image_.height <= kLargestSide; }
   std::uint32_t width() const { return image_.width; }
   std::uint32_t height() const { return image_.height; }
   std::string problem() const {
     if (!read_) return image_.message;
     return "it is " + std::to_string(image_.width) + " × " + std::to_string(image_.height) + " pixels, and at most " +
-           std::to_string(largest_side) + " a side are read";
+           std::to_string(kLargestSide) + " a side are read";
   }
   // Empty if the data is damaged; `problem` says how.
   Image pixels(std::string& problem) {
@@ -47,16 +47,17 @@ class Png {
 }  // namespace
 
 ImageHeader read_image_header(std::span<const std::uint8_t> bytes) {
-  if (is_jpeg(bytes)) return read_jpeg_header(bytes, largest_side);
+  if (is_jpeg(bytes)) return read_jpeg_header(bytes, kLargestSide);
   const Png png(bytes);
   if (!png.fits()) return {};
   // The pixels, some rows, and what libpng allows itself for a chunk and zlib for its window.
-  constexpr std::uint64_t row = 4 * 8, others = PNG_USER_CHUNK_MALLOC_MAX + (std::uint64_t{1} << 18);
-  return {png.width(), png.height(), std::uint64_t{4} * png.width() * png.height() + row * png.width() + others};
+  constexpr std::uint64_t kRowBytes = 4 * 8, kOtherBytes = PNG_USER_CHUNK_MALLOC_MAX + (std::uint64_t{1} << 18);
+  return {png.width(), png.height(),
+          std::uint64_t{4} * png.width() * png.height() + kRowBytes * png.width() + kOtherBytes};
 }
 
 Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
-  if (is_jpeg(bytes)) return decode_jpeg(bytes, largest_side, problem);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, kLargestSide, problem);
   Png png(bytes);
   if (png.fits()) return png.pixels(problem);
   problem = png.problem();

@@ -11,10 +11,10 @@ namespace {
 double decode(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 
 struct Tables {
-  static constexpr int cells = 4096;
+  static constexpr int kCells = 4096;
   std::array<float, 256> linear;
-  std::array<float, 256> next;            // code k ends where linear light reaches next[k]
-  std::array<std::uint8_t, cells> first;  // code at the start of each 4096th of linear light
+  std::array<float, 256> next;             // code k ends where linear light reaches next[k]
+  std::array<std::uint8_t, kCells> first;  // code at the start of each 4096th of linear light
 
   Tables() {
     for (int code = 0; code < 256; ++code) {
@@ -22,8 +22,8 @@ struct Tables {
       next[code] = code < 255 ? static_cast<float>(decode((code + 0.5) / 255.0)) : HUGE_VALF;
     }
     int code = 0;
-    for (int cell = 0; cell < cells; ++cell) {
-      while (next[code] <= static_cast<float>(cell) / cells) ++code;
+    for (int cell = 0; cell < kCells; ++cell) {
+      while (next[code] <= static_cast<float>(cell) / kCells) ++code;
       first[cell] = static_cast<std::uint8_t>(code);
     }
   }
@@ -44,7 +44,7 @@ std::uint8_t srgb8_from_linear(float linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 255;
   const Tables& t = tables();
-  std::uint8_t code = t.first[static_cast<std::size_t>(linear * Tables::cells)];
+  std::uint8_t code = t.first[static_cast<std::size_t>(linear * Tables::kCells)];
   while (t.next[code] <= linear) ++code;
   return code;
 }

@@ -90,7 +90,7 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
       axis->ticks = axis->logarithmic ? logarithmic_ticks(axis->low, axis->high)
                                       : nice_ticks(axis->low, axis->high, axis->wanted_ticks);
   canvas.text({area_.x, subtitle.empty() ? area_.y - 20 : area_.y - 36}, title, {.size = 17, .bold = true});
-  if (!subtitle.empty()) canvas.text({area_.x, area_.y - 15}, subtitle, {.size = 12.5, .colour = style::faint});
+  if (!subtitle.empty()) canvas.text({area_.x, area_.y - 15}, subtitle, {.size = 12.5, .colour = style::kFaint});
 
   const auto labels = [](const Axis& axis) {
     return axis.logarithmic ? logarithmic_labels(axis.ticks) : tick_labels(axis.ticks);
@@ -100,20 +100,20 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
   double labelled = std::numeric_limits<double>::lowest();  // up to where
   for (std::size_t i = 0; i < x_.ticks.size(); ++i) {
     const double px = at(x_.ticks[i], y_.low).x, half = canvas.text_width(x_labels[i], {.size = 12.5}) / 2;
-    canvas.line({px, area_.y}, {px, area_.bottom()}, {.colour = style::grid, .width = 1});
-    canvas.line({px, area_.bottom()}, {px, area_.bottom() + 5}, {.colour = style::faint, .width = 1});
+    canvas.line({px, area_.y}, {px, area_.bottom()}, {.colour = style::kGrid, .width = 1});
+    canvas.line({px, area_.bottom()}, {px, area_.bottom() + 5}, {.colour = style::kFaint, .width = 1});
     if (px - half < labelled + 6) continue;
     canvas.text({px, area_.bottom() + 9}, x_labels[i], {.size = 12.5, .across = Align::middle, .down = Align::start});
     labelled = px + half;
   }
   for (std::size_t i = 0; i < y_.ticks.size(); ++i) {
     const double py = at(x_.low, y_.ticks[i]).y;
-    canvas.line({area_.x, py}, {area_.right(), py}, {.colour = style::grid, .width = 1});
-    canvas.line({area_.x - 5, py}, {area_.x, py}, {.colour = style::faint, .width = 1});
+    canvas.line({area_.x, py}, {area_.right(), py}, {.colour = style::kGrid, .width = 1});
+    canvas.line({area_.x - 5, py}, {area_.x, py}, {.colour = style::kFaint, .width = 1});
     canvas.text({area_.x - 9, py}, y_labels[i], {.size = 12.5, .across = Align::end});
     widest = std::max(widest, canvas.text_width(y_labels[i], {.size = 12.5}));
   }
-  canvas.rectangle(area_, {.colour = style::faint, .width = 1});
+  canvas.rectangle(area_, {.colour = style::kFaint, .width = 1});
   canvas.text({area_.x + area_.width / 2, area_.bottom() + 34}, x_.label,
               {.size = 13.5, .across = Align::middle, .down = Align::start});
   canvas.text({area_.x - widest - 26, area_.y + area_.height / 2}, y_.label,

@@ -54,8 +54,8 @@ std::optional<Rect> place_free_label(Point at, double gap, double most, double w
                                      std::vector<Rect>& taken);
 
 namespace style {
-inline constexpr Colour ink{0.15, 0.15, 0.17}, faint{0.45, 0.45, 0.48}, grid{0.90, 0.90, 0.91};
-inline constexpr Colour blue{0.11, 0.31, 0.58}, orange{0.84, 0.37, 0.05}, pale{0.62, 0.70, 0.80};
+inline constexpr Colour kInk{0.15, 0.15, 0.17}, kFaint{0.45, 0.45, 0.48}, kGrid{0.90, 0.90, 0.91};
+inline constexpr Colour kBlue{0.11, 0.31, 0.58}, kOrange{0.84, 0.37, 0.05}, kPale{0.62, 0.70, 0.80};
 }  // namespace style
 
 }  // namespace vantage

@@ -47,8 +47,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     if (!known(seen)) continue;
     const Point a = chart.at(seen.x, seen.y), b = chart.at(exact.x, exact.y);
     if (!sampled && entry.exact) continue;
-    if (entry.exact) canvas.line(a, b, {.colour = style::pale, .width = 1});
-    canvas.circle(a, 4, {.colour = view.third() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
+    if (entry.exact) canvas.line(a, b, {.colour = style::kPale, .width = 1});
+    canvas.circle(a, 4, {.colour = view.third() ? view.colour(seen) : style::kBlue, .width = 1.1, .opacity = 0.75});
     occupy(a, 5);
   }
   bool any_dominated = false;
@@ -65,7 +65,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
   }
 
   std::vector<LegendItem> legend;
-  const Colour key = view.third() ? style::faint : style::blue;
+  const Colour key = view.third() ? style::kFaint : style::kBlue;
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
   if (any_dominated) legend.push_back({LegendItem::Mark::small, key, "dominated"});
   if (sampled)
@@ -77,15 +77,15 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     const PlanEntry& chosen = *best;
     const FrontDot dot = chosen.exact ? view.confirmed(chosen) : view.searched(chosen);
     const Point p = chart.at(dot.x, dot.y);
-    if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
+    if (!view.single()) canvas.circle(p, 9, {.colour = style::kOrange, .width = 2.2});
     occupy(p, 11);
     const std::string words = view.words(chosen);
-    const TextStyle text{.size = 12.5, .colour = style::orange, .across = Align::middle, .halo = 2};
+    const TextStyle text{.size = 12.5, .colour = style::kOrange, .across = Align::middle, .halo = 2};
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
                                    {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
     if (!view.single())
-      legend.push_back({LegendItem::Mark::ring, style::orange,
+      legend.push_back({LegendItem::Mark::ring, style::kOrange,
                         result.problem.requirements.empty() ? "answer: nearest to the best of all"
                         : met(result)                       ? "answer: meets all requirements"
                                                             : "nearest to the requirements"});
@@ -117,7 +117,7 @@ std::unique_ptr<Canvas> history_picture(const PlanResult& result) {
   std::vector<LegendItem> legend;
   for (std::size_t k = 0; k < moments.size(); ++k) {
     const double t = moments.size() == 1 ? 1 : static_cast<double>(k) / static_cast<double>(moments.size() - 1);
-    const Colour colour = ramp(std::array<Colour, 3>{{{0.96, 0.72, 0.42}, {0.80, 0.36, 0.42}, style::blue}}, t);
+    const Colour colour = ramp(std::array<Colour, 3>{{{0.96, 0.72, 0.42}, {0.80, 0.36, 0.42}, style::kBlue}}, t);
     for (const auto& f : moments[k]->front) {
       if (const auto dot = view.objectives(f)) canvas.disc(chart.at(dot->x, dot->y), 3.6, colour, 0.85);
     }

@@ -37,24 +37,24 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result) {
   if (result.config.target_hypervolume) {
     const double target = *result.config.target_hypervolume;
     canvas.line(chart.at(x.low, target), chart.at(x.high, target),
-                {.colour = style::orange, .width = 1.2, .dashes = {6, 4}});
+                {.colour = style::kOrange, .width = 1.2, .dashes = {6, 4}});
     const Point beside = chart.at(x.low + 0.01 * (x.high - x.low), target);
     canvas.text({beside.x, beside.y - 5}, "target " + number(target),
-                {.size = 12.5, .colour = style::orange, .down = Align::end, .halo = 2});
+                {.size = 12.5, .colour = style::kOrange, .down = Align::end, .halo = 2});
   }
   std::vector<Point> curve;
   for (const PlanIteration& line : result.history)
     curve.push_back(chart.at(static_cast<double>(line.iteration), line.hypervolume));
   canvas.clip({area.x, area.y - 4, area.width + 4, area.height + 8});
-  canvas.path(curve, {.colour = style::blue, .width = 2.2});
+  canvas.path(curve, {.colour = style::kBlue, .width = 2.2});
   canvas.unclip();
   if (!curve.empty()) {
-    canvas.disc(curve.back(), 4.5, style::blue);
+    canvas.disc(curve.back(), 4.5, style::kBlue);
     // A rising curve leaves room below its end.
     canvas.text(
         {std::min(curve.back().x + 4, area.right() - 6), curve.back().y + 12},
         fixed(result.history.back().hypervolume, 4),
-        {.size = 13, .bold = true, .colour = style::blue, .across = Align::end, .down = Align::start, .halo = 2});
+        {.size = 13, .bold = true, .colour = style::kBlue, .across = Align::end, .down = Align::start, .halo = 2});
   }
   return page;
 }

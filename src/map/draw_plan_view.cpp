@@ -46,8 +46,8 @@ std::string link_words(const StationLinks& links) {
 
 // Draws the legend of links. Returns its end, as the function for the whole legend does.
 double draw_link_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
-  constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
-  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };
+  constexpr TextStyle kText{.size = 12.5}, kFaint{.size = 12.5, .colour = style::kFaint};
+  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, kText); };
   if (content.largest > 0) {
     at.y += 6;
     canvas.text(at, link_words(view.links), {.size = 12.5, .bold = true});
@@ -62,17 +62,17 @@ double draw_link_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
       words("the only link of two parts");
       at.y += 22;
     }
-    canvas.text(at, "largest " + fixed(content.largest, 3), faint);
-    canvas.text({at.x, at.y + 17}, "below " + number(view.links.least) + " not drawn", faint);
+    canvas.text(at, "largest " + fixed(content.largest, 3), kFaint);
+    canvas.text({at.x, at.y + 17}, "below " + number(view.links.least) + " not drawn", kFaint);
     at.y += 34;
     if (content.hidden_links > 0) {
-      canvas.text(at, "strongest tree, two of each station;", faint);
+      canvas.text(at, "strongest tree, two of each station;", kFaint);
       canvas.text({at.x, at.y + 17}, number(static_cast<double>(content.hidden_links)) + " further links not drawn",
-                  faint);
+                  kFaint);
       at.y += 34;
     }
   } else if (view.stations.size() > 1 && view.links.values.size() == view.stations.size()) {
-    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.links.least), faint);
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.links.least), kFaint);
     at.y += 24;
   }
   return at.y;
@@ -80,8 +80,8 @@ double draw_link_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
 
 // Draws what the marks mean below each other and returns where it ends.
 double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
-  constexpr TextStyle text{.size = 12.5};
-  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };
+  constexpr TextStyle kText{.size = 12.5};
+  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, kText); };
   const auto swatch = [&](const Colour& colour, const std::string& what) {
     canvas.fill({at.x, at.y - 7, 24, 14}, colour);
     words(what);
@@ -142,20 +142,20 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   }
   if (content.moved) {
     canvas.line({at.x + 3, at.y}, {at.x + 22, at.y}, {.width = 1.5});
-    canvas.disc({at.x + 3, at.y}, 3.4, style::ink);
+    canvas.disc({at.x + 3, at.y}, 3.4, style::kInk);
     words("true spot of a disc beside it");
     at.y += 28;
   }
   if (const double scale = view.ellipse_scale(); scale > 0) {
     canvas.circle({at.x + 12, at.y}, 8, {.colour = {0.72, 0.12, 0.12}, .width = 1.3});
     words("standard ellipse of a head:");
-    canvas.text({at.x + 34, at.y + 17}, "the widest " + tenths(1000 * kWidestEllipse / scale) + " mm", text);
+    canvas.text({at.x + 34, at.y + 17}, "the widest " + tenths(1000 * kWidestEllipse / scale) + " mm", kText);
     at.y += 45;
   }
   const auto holes = std::ranges::count(view.stations, StationStatus::hole, &PlacedStation::status);
   if (holes > 0) {
-    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), text);
-    canvas.text({at.x, at.y + 17}, "not shown", text);
+    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), kText);
+    canvas.text({at.x, at.y + 17}, "not shown", kText);
     at.y += 45;
   }
   return draw_link_legend(canvas, at, view, content);

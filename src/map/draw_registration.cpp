@@ -24,16 +24,16 @@ void draw_registration(const std::filesystem::path& file, Site& site, const Voxe
                        const std::string& title) {
   const Simulator& simulator = site.simulator();
   require_stations_of(simulator, field);
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
-  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, ranks);
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
+  const std::vector<float> errors = voxel_errors_mm(simulator, field, error, sample);
   const double most = largest_error_mm(errors);
   // The worst on top, so that nothing hides it.
-  std::vector<std::size_t> order(ranks.size());
+  std::vector<std::size_t> order(sample.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return errors[k]; });
   std::vector<ColouredVoxel> voxels;
   for (const std::size_t k : order)
-    voxels.push_back({ranks[k], errors[k] < 0 ? kUnseen : ramp(kRisingRamp, static_cast<double>(errors[k]) / most)});
+    voxels.push_back({sample[k], errors[k] < 0 ? kUnseen : ramp(kRisingRamp, static_cast<double>(errors[k]) / most)});
   const auto legend = [&](Canvas& canvas, Point at) {
     canvas.text(at, "Predicted error", {.size = 12.5, .bold = true});
     canvas.text({at.x, at.y + 17}, "one sigma, after registration", {.size = 12.5});

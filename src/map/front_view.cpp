@@ -87,7 +87,7 @@ Axis FrontView::x_axis(const std::vector<FrontDot>& dots) const { return axis_of
 Axis FrontView::y_axis(const std::vector<FrontDot>& dots) const { return axis_of(*y_, dots, single(), &FrontDot::y); }
 
 Colour FrontView::colour(const FrontDot& dot) const {
-  if (!third_) return style::blue;
+  if (!third_) return style::kBlue;
   const double low = std::min(third_->scale.best, third_->scale.worst), range = third_->scale.width();
   const double share = (dot.colour - low) / (range > 0 ? range : 1);
   return ramp(kRisingRamp, 0.95 * std::clamp(share, 0.0, 1.0));  // the last yellow is too pale on white
@@ -153,7 +153,7 @@ void draw_colour_bar(Canvas& canvas, const Rect& area, const FrontView& view) {
       canvas.text({area.right() + 40, y + cell / 2}, measure.by_alpha ? fixed(value, 0) : fixed(value, 2),
                   {.size = 12.5});
   }
-  canvas.rectangle({area.right() + 18, area.y, 16, area.height}, {.colour = style::faint, .width = 1});
+  canvas.rectangle({area.right() + 18, area.y, 16, area.height}, {.colour = style::kFaint, .width = 1});
   canvas.text({area.right() + 72, area.y + area.height / 2}, axis_label(measure),
               {.size = 13.5, .across = Align::middle, .turn = -std::numbers::pi / 2});
 }

@@ -265,7 +265,7 @@ class Stations {
 
   // Writes each room's name in its middle, or nearby within the room if that place is taken.
   void name_rooms(const Rect& inside, std::vector<Rect>& taken) {
-    const TextStyle style{.size = 10, .colour = style::faint, .across = Align::middle, .halo = 2};
+    const TextStyle style{.size = 10, .colour = style::kFaint, .across = Align::middle, .halo = 2};
     for (const Room& room : view_.scene.rooms()) {
       if (!lies_on(room, level_)) continue;
       const Point low = chart_.at(room.box.min.x, room.box.max.y), high = chart_.at(room.box.max.x, room.box.min.y);
@@ -432,7 +432,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
   const SiteMap site = map_site(view.scene, view.area, pixels, level, view.stations, static_cast<double>(fine));
   content.left_out = site.left_out;
   canvas.image(map, halve(site.pixels, pixels.columns), pixels.columns / 2);
-  canvas.rectangle(map, {.colour = style::faint, .width = 1});
+  canvas.rectangle(map, {.colour = style::kFaint, .width = 1});
   canvas.clip(map);
   Stations(canvas, chart, view, level).draw(content);
   canvas.unclip();
@@ -466,17 +466,17 @@ void draw_station(Canvas& canvas, Point at, const std::string& text, const Place
 }
 
 void draw_elsewhere(Canvas& canvas, Point at, const std::string& text, double radius) {
-  canvas.circle(at, 0.7 * radius, {.colour = style::faint, .width = 1.2, .dashes = {2.5, 2}});
+  canvas.circle(at, 0.7 * radius, {.colour = style::kFaint, .width = 1.2, .dashes = {2.5, 2}});
   if (fits_disc(text))
     canvas.text(at, text,
                 {.size = (text.size() > 3 ? 6.0 : 7.5) * radius / kDisc,
-                 .colour = style::faint,
+                 .colour = style::kFaint,
                  .across = Align::middle,
                  .halo = 1.5});
 }
 
 void draw_target(Canvas& canvas, Point at, bool control, double radius) {
-  constexpr Colour white{1, 1, 1};
+  constexpr Colour kWhite{1, 1, 1};
   if (control) {
     const double side = 2.3 * radius;
     std::vector<Point> corners;
@@ -484,10 +484,10 @@ void draw_target(Canvas& canvas, Point at, bool control, double radius) {
       const double angle = 2 * std::numbers::pi * k / 3;
       corners.push_back({at.x + side * std::sin(angle), at.y - side * std::cos(angle)});
     }
-    canvas.polygon(corners, white, 0.85);
+    canvas.polygon(corners, kWhite, 0.85);
     canvas.path(corners, {.colour = kTargetInk, .width = 0.22 * radius});
   }
-  canvas.disc(at, 1.16 * radius, white);
+  canvas.disc(at, 1.16 * radius, kWhite);
   canvas.circle(at, radius, {.colour = kTargetInk, .width = 0.2 * radius});
   for (const double from : {0.0, std::numbers::pi}) {
     std::vector<Point> quarter{at};
@@ -515,7 +515,8 @@ void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bo
   const std::vector<double> dashes = between_floors ? std::vector<double>{6, 4} : std::vector<double>{};
   canvas.line(a, b, {.colour = {1, 1, 1}, .width = width + 1.6, .opacity = 0.45, .dashes = dashes});
   canvas.line(
-      a, b, {.colour = bridge ? style::orange : kLink, .width = width, .opacity = 0.5 + 0.4 * share, .dashes = dashes});
+      a, b,
+      {.colour = bridge ? style::kOrange : kLink, .width = width, .opacity = 0.5 + 0.4 * share, .dashes = dashes});
 }
 
 }  // namespace vantage

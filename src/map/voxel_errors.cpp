@@ -19,13 +19,13 @@ void require_stations_of(const Simulator& simulator, const VoxelField& field) {
 }
 
 std::vector<float> voxel_errors_mm(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
-                                   std::span<const std::uint32_t> ranks) {
-  std::vector<float> found(ranks.size());
-  parallel::for_all(std::size_t{0}, ranks.size(), [&](std::size_t k) {
-    const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
+                                   std::span<const std::uint32_t> voxels) {
+  std::vector<float> found(voxels.size());
+  parallel::for_all(std::size_t{0}, voxels.size(), [&](std::size_t k) {
+    const Vec3 place = simulator.voxel_centre(voxels[k]) - simulator.origin();
     double squares = 0;
     int seen = 0;
-    field.stations.for_each_station(ranks[k], [&](std::size_t station) {
+    field.stations.for_each_station(voxels[k], [&](std::size_t station) {
       const double one = error.at(station, place);
       squares += one * one;
       ++seen;

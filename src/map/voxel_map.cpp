@@ -33,7 +33,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
   const Simulator& simulator = site.simulator();
   const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), site.area().mesh(), stations);
   Box box;
-  for (const ColouredVoxel& voxel : voxels) box.extend(simulator.voxel_centre(voxel.rank));
+  for (const ColouredVoxel& voxel : voxels) box.extend(simulator.voxel_centre(voxel.index));
   for (const PlacedStation& station : stations)
     if (station.status == StationStatus::ok) box.extend(station.position);
   const double share = static_cast<double>(voxels.size()) / static_cast<double>(simulator.voxel_count());
@@ -82,14 +82,14 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
     // Voxels below a floor that is cut above are drawn from the lowest up, all others in their order.
     std::vector<std::pair<long, const ColouredVoxel*>> shown;
     for (const ColouredVoxel& voxel : voxels) {
-      const double z = simulator.voxel_centre(voxel.rank).z;
+      const double z = simulator.voxel_centre(voxel.index).z;
       if (z < level.low || z > top) continue;
       const double down = level.cut ? std::min(0.0, z - (level.floor - simulator.voxel_size_m())) : 0;
       shown.emplace_back(std::lround(std::floor(down / simulator.voxel_size_m())), &voxel);
     }
     std::ranges::stable_sort(shown, {}, [](const auto& one) { return one.first; });
     for (const auto& [layer, voxel] : shown) {
-      const Vec3 centre = simulator.voxel_centre(voxel->rank);
+      const Vec3 centre = simulator.voxel_centre(voxel->index);
       const std::size_t x0 = pixel(centre.x - half - west, columns), x1 = pixel(centre.x + half - west, columns);
       const std::size_t y0 = pixel(north - centre.y - half, rows), y1 = pixel(north - centre.y + half, rows);
       for (std::size_t y = y0; y <= y1; ++y)
@@ -99,7 +99,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
     canvas.clip(map);
     if (level.cut)
       for (const auto& [a, b] : section_lines(simulator.scene().data(), *level.cut))
-        canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = style::ink, .width = 0.8});
+        canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = style::kInk, .width = 0.8});
     for (const PlacedStation& station : stations) {
       if (station.status != StationStatus::ok || !level.holds(station.ground.z)) continue;
       const Point at = chart.at(station.position.x, station.position.y);
@@ -107,7 +107,7 @@ void draw_voxel_map(const std::filesystem::path& file, Site& site, std::span<con
       canvas.disc(at, 4.5, kHead);
     }
     canvas.unclip();
-    canvas.rectangle(map, {.colour = style::faint, .width = 1});
+    canvas.rectangle(map, {.colour = style::kFaint, .width = 1});
   }
   const Point end = legend(canvas, {last.right() + 24, last.y + 8});
   canvas.disc({end.x + 12, end.y}, 4.5, kHead);

@@ -14,7 +14,7 @@
 namespace vantage {
 
 struct ColouredVoxel {
-  std::uint32_t rank;
+  std::uint32_t index;
   Colour colour;
 };
 

@@ -34,7 +34,7 @@ AttainableCounts::AttainableCounts(const Simulator& simulator, std::uint64_t vox
     point_weights_.push_back(simulator.point_weight(voxel));
   }
   // Either all are 1 or none is.
-  if (!point_weights_.empty() && point_weights_.front() != 1) goal_ *= densest_point_weight;
+  if (!point_weights_.empty() && point_weights_.front() != 1) goal_ *= kDensestPointWeight;
 }
 
 AttainableCounts AttainableCounts::part(const Simulator& simulator, std::uint64_t voxels) const {

@@ -12,7 +12,7 @@
 namespace vantage {
 
 Connectivity connectivity(const PairMatrix& overlap, double min_overlap) {
-  check_number(min_overlap, "the least overlap of connected stations", any_share);
+  check_number(min_overlap, "the least overlap of connected stations", kAnyShare);
   const std::size_t n = overlap.size();
   const auto linked = [&](std::size_t i, std::size_t j) {
     return i != j && overlap(i, j) > 0 && overlap(i, j) >= min_overlap;

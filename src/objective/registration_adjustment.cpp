@@ -11,8 +11,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
-constexpr double least_scale_m = 1;  // least scale of rotations, for tiny surfaces
+constexpr std::size_t kOfPair = RegistrationSums::of_pair, kOfStation = RegistrationSums::of_station;
+constexpr double kLeastScale_m = 1;  // least scale of rotations, for tiny surfaces
 // From this many stations on, most pairs have no common view, and a sparse factor is cheaper.
 constexpr std::size_t kSparseStations = 64;
 
@@ -81,8 +81,8 @@ RegistrationAdjustment::RegistrationAdjustment(const RegistrationSums& sums, dou
   const Vector3d offset = to_eigen(sums.centre - covered.centre) / covered.radius_m;
   for (std::size_t k = 0; k < sums.heads.size(); ++k) {
     const Moments own =
-        Moments(covered.surface.data() + k * of_station).moved(offset, sums.radius_m / covered.radius_m);
-    if (!(own.mass > 0) && !(sums.surface[k * of_station] > 0)) continue;
+        Moments(covered.surface.data() + k * kOfStation).moved(offset, sums.radius_m / covered.radius_m);
+    if (!(own.mass > 0) && !(sums.surface[k * kOfStation] > 0)) continue;
     stations_.push_back(k);
     moments_.push_back(own);
     all.add(own);
@@ -90,7 +90,7 @@ RegistrationAdjustment::RegistrationAdjustment(const RegistrationSums& sums, dou
   if (!(all.mass > 0)) return;
   centre_ = all.first / all.mass;
   const double spread = (all.second.trace() / all.mass - centre_.squaredNorm());
-  scale_ = std::max(std::sqrt(std::max(spread, 0.0)), least_scale_m / sums.radius_m);
+  scale_ = std::max(std::sqrt(std::max(spread, 0.0)), kLeastScale_m / sums.radius_m);
   mass_ = all.mass;
   for (Moments& own : moments_) own = own.moved(centre_, scale_);
 }
@@ -176,12 +176,12 @@ PartialInverse RegistrationAdjustment::inverse_times(const MatrixXd& right) cons
 }
 
 MatrixXd RegistrationAdjustment::instrument() const {
-  constexpr auto errors = static_cast<Eigen::Index>(RegistrationSums::instrument_errors);
+  constexpr auto kErrors = static_cast<Eigen::Index>(RegistrationSums::instrument_errors);
   const Eigen::Index d = unknowns_;
   if (sums_.instrument.empty()) return MatrixXd(static_cast<Eigen::Index>(stations_.size()) * d, 0);
-  using Sums = Eigen::Matrix<double, 6, errors, Eigen::RowMajor>;
+  using Sums = Eigen::Matrix<double, 6, kErrors, Eigen::RowMajor>;
   const Matrix6d moved = from_sums();
-  MatrixXd all(static_cast<Eigen::Index>(stations_.size()) * d, errors);
+  MatrixXd all(static_cast<Eigen::Index>(stations_.size()) * d, kErrors);
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     const Eigen::Map<const Sums> own(sums_.instrument.data() +
                                      stations_[k] * static_cast<std::size_t>(Sums::SizeAtCompileTime));
@@ -216,12 +216,12 @@ Vector3d RegistrationAdjustment::head(std::size_t place) const { return scaled(s
 
 std::size_t RegistrationAdjustment::pair(std::size_t i, std::size_t j) const {
   const std::size_t n = sums_.heads.size();
-  return (i * (2 * n - i - 1) / 2 + (j - i - 1)) * of_pair;
+  return (i * (2 * n - i - 1) / 2 + (j - i - 1)) * kOfPair;
 }
 
 // Returns true if two stations, the first before the second, see a common surface.
 bool RegistrationAdjustment::tied(std::size_t i, std::size_t j) const {
-  const std::span<const double> sums = std::span(sums_.pairs).subspan(pair(i, j), of_pair);
+  const std::span<const double> sums = std::span(sums_.pairs).subspan(pair(i, j), kOfPair);
   return std::ranges::any_of(sums, [](double sum) { return sum != 0; });
 }
 

@@ -5,7 +5,7 @@
 namespace vantage {
 namespace {
 
-constexpr Interval tilts{.low = 0, .high = 180};  // degrees
+constexpr Interval kTilts{.low = 0, .high = 180};  // degrees
 
 }  // namespace
 
@@ -38,10 +38,10 @@ const SettingTable<RegistrationOptions>& registration_settings() {
                           usual.tilt.in_degrees()),
                 [](Options& options, const std::string& text, const std::string& what) {
                   options.tilt_of_scanner = text == "scanner";
-                  if (!options.tilt_of_scanner) options.tilt = Angle::degrees(parse_number(text, what, tilts));
+                  if (!options.tilt_of_scanner) options.tilt = Angle::degrees(parse_number(text, what, kTilts));
                 })
         .checked([](const Options& options, const std::string& what) {
-          check_number(whole_degrees(options.tilt), what, tilts);
+          check_number(whole_degrees(options.tilt), what, kTilts);
         })
         .advanced()
         .custom("registration-surfaces", "surveyed|all",

@@ -13,10 +13,10 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
   if (!(wanted > 0))
     throw Error(Errc::invalid_argument,
                 "the wanted standard error is " + std::to_string(wanted) + ", but must be above 0");
-  constexpr std::uint64_t first_pilot = 5000;  // below this, neither pair overlaps nor their errors are reliable
-  constexpr double reserve = 1.1;              // the pilot's error is an estimate, too
+  constexpr std::uint64_t kFirstPilot = 5000;  // below this, neither pair overlaps nor their errors are reliable
+  constexpr double kReserve = 1.1;             // the pilot's error is an estimate, too
   const std::uint64_t population = simulator.voxel_count();
-  for (std::uint64_t size = std::min(first_pilot, population);;) {
+  for (std::uint64_t size = std::min(kFirstPilot, population);;) {
     if (size >= population) return population;
     double error = 0;
     for (const NetworkCounts& counts :
@@ -29,7 +29,7 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
     // error² = s²·(1/n − 1/N) gives s², and s² gives the n for the wanted error.
     const double n = static_cast<double>(size), all = static_cast<double>(population);
     const double variance = error * error / (1 / n - 1 / all);
-    const double needed = reserve / (wanted * wanted / variance + 1 / all);
+    const double needed = kReserve / (wanted * wanted / variance + 1 / all);
     size = needed >= all ? population : std::max(static_cast<std::uint64_t>(needed), size + size / 8);
   }
 }

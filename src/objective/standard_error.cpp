@@ -21,8 +21,8 @@
 namespace vantage {
 namespace {
 
-constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
-constexpr double least_unbiased = 0.5;  // least share of a sample's registration error after subtracting its bias
+constexpr double kLargestStandardError = 0.5;  // of the scale: the standard deviation of a value in {0, 1}
+constexpr double kLeastUnbiased = 0.5;  // least share of a sample's registration error after subtracting its bias
 
 // Sums that a function reads. With hundreds of stations, those of registration are by far the most; they may come from
 // a sample although every voxel was counted.
@@ -115,12 +115,12 @@ std::vector<Value> replicates(
 }
 
 double jackknife_error(const std::vector<double>& values, double unsampled, double scale = 1) {
-  if (values.empty()) return largest_error * scale;
+  if (values.empty()) return kLargestStandardError * scale;
   const double groups = static_cast<double>(values.size());
   double mean = 0, squares = 0;
   for (const double value : values) mean += value / groups;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error * scale);
+  return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), kLargestStandardError * scale);
 }
 
 // Returns the bias of a function of a sample, by the same replicates (Quenouille 1956): the part that falls as 1/n,
@@ -145,29 +145,29 @@ Estimate jackknifed(double seen, const std::vector<double>& values, double unsam
 // Pseudo-replication: Half samples, 1969).
 constexpr std::size_t kHalvedGroups = 20;
 bool in_half(std::size_t r, std::size_t g) {
-  constexpr std::size_t q = kHalvedGroups - 1;
-  constexpr std::uint32_t squares = [] {
+  constexpr std::size_t kPrime = kHalvedGroups - 1;
+  constexpr std::uint32_t kSquares = [] {
     std::uint32_t bits = 0;
-    for (std::size_t k = 1; k < q; ++k) bits |= 1u << (k * k % q);
+    for (std::size_t k = 1; k < kPrime; ++k) bits |= 1u << (k * k % kPrime);
     return bits;
   }();
-  return g == q || (squares >> ((g + q - r) % q) & 1) == 1;
+  return g == kPrime || (kSquares >> ((g + kPrime - r) % kPrime) & 1) == 1;
 }
 
 // Returns the mean excess of half a sample over the whole, over balanced halves and their complements. Unlike leaving
 // out a twentieth, this shows the loss of links that depend on a few voxels.
 double halving_bias(double estimate, const NetworkCounts& counts, double unsampled,
                     const std::function<double(const NetworkCounts&)>& of) {
-  constexpr std::size_t halvings = kHalvedGroups - 1;
+  constexpr std::size_t kHalvings = kHalvedGroups - 1;
   const NetworkCounts all = without_groups(counts, Sums::none);
-  std::array<double, halvings> excess{};
-  parallel::for_all(std::size_t{0}, halvings, [&](std::size_t r) {
+  std::array<double, kHalvings> excess{};
+  parallel::for_all(std::size_t{0}, kHalvings, [&](std::size_t r) {
     NetworkCounts half = all, other = all;
     for (std::size_t g = 0; g < kHalvedGroups; ++g) take_off(in_half(r, g) ? half : other, counts.groups[g]);
     excess[r] = (of(half) - estimate) + (of(other) - estimate);
   });
   const double sum = std::accumulate(excess.begin(), excess.end(), 0.0);
-  return unsampled * sum / (2.0 * halvings);
+  return unsampled * sum / (2.0 * kHalvings);
 }
 
 // Estimates functions of pairs: links may depend on a few voxels, of which a sample holds one or none. The correction's
@@ -178,7 +178,7 @@ Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, do
   if (values.size() != kHalvedGroups) return jackknifed(seen, values, unsampled, scale);
   const double error = jackknife_error(values, unsampled, scale);
   const double bias = halving_bias(seen, counts, unsampled, of);
-  return {seen - bias, std::min(std::hypot(error, bias), largest_error * scale)};
+  return {seen - bias, std::min(std::hypot(error, bias), kLargestStandardError * scale)};
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0) return estimate;
   if (counts.voxels < 2) {
-    estimate.standard_error = largest_error;
+    estimate.standard_error = kLargestStandardError;
     return estimate;
   }
   if (counts.weight != counts.voxels) {
@@ -198,7 +198,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
   }
   const double n = static_cast<double>(counts.voxels);
   estimate.standard_error =
-      std::min(std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1))), largest_error);
+      std::min(std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1))), kLargestStandardError);
   return estimate;
 }
 
@@ -242,7 +242,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       const std::vector<double> values = replicates<double>(counts, sums, of, whole);
       const Estimate own = jackknifed(estimate.value, values, unsampled, scale);
       // As `registration_estimate`: no registration is without error.
-      estimate.value = registered ? std::max(own.value, least_unbiased * estimate.value) : own.value;
+      estimate.value = registered ? std::max(own.value, kLeastUnbiased * estimate.value) : own.value;
       add(own.standard_error);
     }
   }
@@ -303,7 +303,7 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   }
   // An apparently larger bias means that the weakest link depends on voxels of one group, so that the sample cannot
   // show its size. Still, no registration is without error.
-  estimate.value = std::max(estimate.value, least_unbiased * seen);
+  estimate.value = std::max(estimate.value, kLeastUnbiased * seen);
   return estimate;
 }
 

@@ -25,16 +25,16 @@ LinearColour along(std::span<const Code> stops, double share) {
   return from_code(stops[k] + (stops[k + 1] - stops[k]) * (x - static_cast<double>(k)));
 }
 
-constexpr std::array<Code, 7> range_stops{Code{250, 240, 160}, Code{246, 184, 84}, Code{226, 108, 76},
+constexpr std::array<Code, 7> kRangeStops{Code{250, 240, 160}, Code{246, 184, 84}, Code{226, 108, 76},
                                           Code{180, 56, 116},  Code{116, 42, 142}, Code{60, 40, 126},
                                           Code{20, 24, 74}};
-constexpr std::array<Code, 5> reflectivity_stops{Code{16, 20, 36}, Code{30, 74, 98}, Code{58, 138, 122},
+constexpr std::array<Code, 5> kReflectivityStops{Code{16, 20, 36}, Code{30, 74, 98}, Code{58, 138, 122},
                                                  Code{150, 196, 112}, Code{250, 240, 164}};
 
 }  // namespace
 
-LinearColour range_colour(double share) { return along(range_stops, share); }
-LinearColour reflectivity_colour(double share) { return along(reflectivity_stops, share); }
+LinearColour range_colour(double share) { return along(kRangeStops, share); }
+LinearColour reflectivity_colour(double share) { return along(kReflectivityStops, share); }
 
 LinearColour mesh_colour(std::uint32_t mesh) {
   const double hue = std::fmod(0.08 + mesh * (std::numbers::phi - 1), 1.0) * 6;

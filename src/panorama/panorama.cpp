@@ -12,8 +12,8 @@
 namespace vantage {
 namespace {
 
-constexpr std::array<PanoramaView, 5> views{PanoramaView::colour, PanoramaView::range, PanoramaView::normal,
-                                            PanoramaView::reflectivity, PanoramaView::mesh};
+constexpr std::array<PanoramaView, 5> kViews{PanoramaView::colour, PanoramaView::range, PanoramaView::normal,
+                                             PanoramaView::reflectivity, PanoramaView::mesh};
 
 }  // namespace
 
@@ -27,8 +27,8 @@ Panorama Panorama::load(const std::filesystem::path& file, Angle heading) {
 }
 
 std::uint32_t Panorama::colour(Angle zenith, Angle azimuth) const {
-  constexpr double turn = 2 * std::numbers::pi;
-  const double across = 0.5 - (azimuth.in_radians() - heading_.in_radians()) / turn;
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double across = 0.5 - (azimuth.in_radians() - heading_.in_radians()) / kTurn;
   const double x = (across - std::floor(across)) * image_.width - 0.5;
   const double y = std::clamp(zenith.in_radians() / std::numbers::pi * image_.height - 0.5, 0.0, image_.height - 1.0);
   const double left = std::floor(x), top = std::floor(y);
@@ -64,7 +64,7 @@ std::string to_string(PanoramaView view) {
 PanoramaView panorama_view_from_string(const std::string& name) {
   std::string names;
   std::vector<std::string> all;
-  for (const PanoramaView view : views) {
+  for (const PanoramaView view : kViews) {
     all.push_back(to_string(view));
     if (all.back() == name) return view;
     names += (names.empty() ? "" : ", ") + all.back();
@@ -73,6 +73,6 @@ PanoramaView panorama_view_from_string(const std::string& name) {
               "there is no panorama view \"" + name + "\"; choose one of " + names + did_you_mean(name, all));
 }
 
-std::span<const PanoramaView> panorama_views() noexcept { return views; }
+std::span<const PanoramaView> panorama_views() noexcept { return kViews; }
 
 }  // namespace vantage

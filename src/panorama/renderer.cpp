@@ -16,16 +16,16 @@
 namespace vantage {
 namespace {
 
-constexpr LinearColour backdrop{0.85f, 0.85f, 0.85f, 1};  // background of false colours
+constexpr LinearColour kBackdrop{0.85f, 0.85f, 0.85f, 1};  // background of false colours
 
 // Ranges as 16 bits: 0 for no hit, otherwise log2 of the range from 2^−10 m to 2^15 m, in steps of 0.03 %.
-constexpr double lowest_log = -10, logs = 25, codes = 65534;
+constexpr double kLowestLog = -10, kLogs = 25, kCodes = 65534;
 std::uint16_t range_code(float range) {
   if (!std::isfinite(range)) return 0;
-  const double share = (std::log2(std::max(static_cast<double>(range), 1e-6)) - lowest_log) / logs;
-  return static_cast<std::uint16_t>(1 + std::lround(std::clamp(share, 0.0, 1.0) * codes));
+  const double share = (std::log2(std::max(static_cast<double>(range), 1e-6)) - kLowestLog) / kLogs;
+  return static_cast<std::uint16_t>(1 + std::lround(std::clamp(share, 0.0, 1.0) * kCodes));
 }
-double log_of_code(double code) { return lowest_log + (code - 1) / codes * logs; }
+double log_of_code(double code) { return kLowestLog + (code - 1) / kCodes * kLogs; }
 
 Scanner panorama_scanner(const PanoramaOptions& options) {
   if (options.width < 4 || options.width > 16384 || options.width % 2 != 0)
@@ -111,7 +111,7 @@ struct PanoramaRenderer::Impl {
   LinearColour ray_colour(PanoramaView view, const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
     const PanoramaRow& rays = window[row];
     const float range = rays.range[column];
-    if (!std::isfinite(range)) return view == PanoramaView::colour ? shading.sky(row, column) : backdrop;
+    if (!std::isfinite(range)) return view == PanoramaView::colour ? shading.sky(row, column) : kBackdrop;
     LinearColour colour{0, 0, 0, 1};
     if (view == PanoramaView::reflectivity)
       return reflectivity_colour(
@@ -158,7 +158,7 @@ struct PanoramaRenderer::Impl {
         for (std::uint32_t k = 0; k < side * side; ++k) {
           const std::uint32_t column = record.columns - 1 - (x * side + k % side);
           const std::uint16_t code = record.codes[std::size_t{y * side + k / side} * record.columns + column];
-          const LinearColour& ray = code == 0 ? backdrop : scale[code / 16];
+          const LinearColour& ray = code == 0 ? kBackdrop : scale[code / 16];
           sum += ray / static_cast<float>(side * side);
         }
         set(image.image, x, y, sum);

@@ -8,12 +8,12 @@
 namespace vantage {
 namespace {
 
-constexpr std::array<float, 2> ring_pixels{1.0f, 3.6f};
-constexpr int taps_a_ring = 8;
-constexpr float flat_cosine = 0.06f;  // least rise of a neighbour over the tangent plane, to hide facets of round pipes
-constexpr float obscurance_strength = 1.5f;
-constexpr LinearColour zenith_sky{0.24f, 0.41f, 0.72f, 1}, horizon_sky{0.76f, 0.84f, 0.92f, 1},
-    below{0.42f, 0.44f, 0.46f, 1};
+constexpr std::array<float, 2> kRingPixels{1.0f, 3.6f};
+constexpr int kTapsARing = 8;
+constexpr float kFlatCosine = 0.06f;  // least rise of a neighbour over the tangent plane, to hide facets of round pipes
+constexpr float kObscuranceStrength = 1.5f;
+constexpr LinearColour kZenithSky{0.24f, 0.41f, 0.72f, 1}, kHorizonSky{0.76f, 0.84f, 0.92f, 1},
+    kBelowHorizon{0.42f, 0.44f, 0.46f, 1};
 
 }  // namespace
 
@@ -33,10 +33,10 @@ PanoramaShading::PanoramaShading(std::uint32_t rows, std::uint32_t columns, std:
     sin_azimuth_.push_back(static_cast<float>(std::sin(azimuth)));
     cos_azimuth_.push_back(static_cast<float>(std::cos(azimuth)));
   }
-  for (std::size_t ring = 0; ring < ring_pixels.size(); ++ring) {
-    const float radius = ring_pixels[ring] * static_cast<float>(supersample);
-    for (int k = 0; k < taps_a_ring; ++k) {
-      const double angle = (k + 0.5 * static_cast<double>(ring)) * 2 * std::numbers::pi / taps_a_ring;
+  for (std::size_t ring = 0; ring < kRingPixels.size(); ++ring) {
+    const float radius = kRingPixels[ring] * static_cast<float>(supersample);
+    for (int k = 0; k < kTapsARing; ++k) {
+      const double angle = (k + 0.5 * static_cast<double>(ring)) * 2 * std::numbers::pi / kTapsARing;
       const int down = static_cast<int>(std::lround(static_cast<double>(radius) * std::sin(angle)));
       taps_.push_back({down, radius * static_cast<float>(std::cos(angle)), radius});
       reach_ = std::max(reach_, static_cast<std::uint32_t>(std::abs(down)));
@@ -79,13 +79,13 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
     const glm::vec3 between = direction(there, other_column) * other_range - view * range;
     const float length = glm::length(between);
     if (!(length > 0)) continue;
-    const float rise = dot(between, normal) / length - flat_cosine;
+    const float rise = dot(between, normal) / length - kFlatCosine;
     if (rise <= 0) continue;
     const float near =
         length / (8 * tap.radius * step_ * range);  // an object far in front casts no crease, only a faint outline
     covered += rise / (1 + near * near);
   }
-  const float open = 1 / (1 + obscurance_strength * 4 * covered / static_cast<float>(taps_.size()));
+  const float open = 1 / (1 + kObscuranceStrength * 4 * covered / static_cast<float>(taps_.size()));
   const float facing = std::clamp(-dot(view, normal), 0.0f, 1.0f);
   const float up = 0.5f + 0.5f * normal.z;
   return open * (0.22f + 0.24f * up + 0.62f * facing);
@@ -93,13 +93,13 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
 
 float PanoramaShading::clearness(float range) const { return 1 - 0.45f * (1 - std::exp(-0.4f * range / extent_)); }
 
-LinearColour PanoramaShading::haze() const { return horizon_sky; }
+LinearColour PanoramaShading::haze() const { return kHorizonSky; }
 
 LinearColour PanoramaShading::sky(std::uint32_t row, std::uint32_t column) const {
   const float height = direction(row, column).z;
-  const LinearColour& end = height >= 0 ? zenith_sky : below;
+  const LinearColour& end = height >= 0 ? kZenithSky : kBelowHorizon;
   const float share = height >= 0 ? std::pow(height, 0.6f) : std::min(1.0f, -6 * height);
-  return horizon_sky + (end - horizon_sky) * share;
+  return kHorizonSky + (end - kHorizonSky) * share;
 }
 
 }  // namespace vantage

@@ -56,7 +56,7 @@ class Cutter {
 
  private:
   enum class Side { in, out, both };
-  static constexpr int max_depth = 40;
+  static constexpr int kMaxDepth = 40;
 
   double longest_edge(const std::array<Vertex, 3>& t, int& edge) const {
     double longest = -1;
@@ -72,7 +72,7 @@ class Cutter {
   }
   Side sort(const std::array<Vertex, 3>& t, int depth) const {
     int edge = 0;
-    if (longest_edge(t, edge) <= spacing_ || depth == max_depth) {
+    if (longest_edge(t, edge) <= spacing_ || depth == kMaxDepth) {
       const Vec3 centre = (t[0].position + t[1].position + t[2].position) * (1.0 / 3);
       return limits_.allow_near(centre, spacing_) ? Side::in : Side::out;
     }

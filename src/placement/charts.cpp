@@ -18,7 +18,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t nobody = 0xFFFFFFFFu;
+constexpr std::uint32_t kNobody = 0xFFFFFFFFu;
 
 // Joins points that share a cell of a grid, or of the grid shifted by half a cell, so that near points meet in one of
 // them.
@@ -203,7 +203,7 @@ std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m)
   const Graph overlaps = find_overlaps(pieces, kept, part);
 
   std::vector<GroundChart> charts;
-  std::vector<std::uint32_t> chart_number(count, nobody), looked_at(count, nobody);
+  std::vector<std::uint32_t> chart_number(count, kNobody), looked_at(count, kNobody);
   std::uint32_t number = 0;
   for (std::size_t begin = 0, end = 0; begin < members.size(); begin = end) {
     std::vector<std::uint32_t> own;
@@ -219,12 +219,12 @@ std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m)
     // Grows a chart from one piece over its neighbours, without overlaps; then another from the remaining pieces.
     const Neighbours neighbours(own, welded, pieces.source);
     for (const std::uint32_t seed : own) {
-      if (chart_number[seed] != nobody) continue;
+      if (chart_number[seed] != kNobody) continue;
       std::vector<std::uint32_t> grown{seed};
       chart_number[seed] = looked_at[seed] = number;
       for (std::size_t next = 0; next < grown.size(); ++next)
         neighbours.for_each(welded[grown[next]], pieces.source[grown[next]], [&](std::uint32_t n) {
-          if (chart_number[n] != nobody || looked_at[n] == number) return;
+          if (chart_number[n] != kNobody || looked_at[n] == number) return;
           looked_at[n] = number;
           for (const std::uint32_t other : overlaps.of(n))
             if (chart_number[other] == number) return;
@@ -298,7 +298,7 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& c
   const Packing packing = pack_shelves(sizes, 1e-4 * std::sqrt(total));
 
   SearchMesh mesh;
-  std::vector<std::uint32_t> number(pieces.points.size(), nobody);
+  std::vector<std::uint32_t> number(pieces.points.size(), kNobody);
   for (std::size_t c = 0; c < charts.size(); ++c) {
     const Frame& f = frames[c];
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -307,7 +307,7 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& c
       for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t v = pieces.triangles[piece][corner];
         // An earlier chart may have numbered the point already, for its own copy.
-        if (number[v] == nobody || number[v] < first) {
+        if (number[v] == kNobody || number[v] < first) {
           number[v] = static_cast<std::uint32_t>(mesh.positions.size());
           const glm::dvec3& p = pieces.points[v];
           mesh.positions.push_back(to_vec3(p) + origin);

@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 // Clearance of the mast, as a share of the security volume's radius.
-constexpr double mast_share = 0.1;
+constexpr double kMastShare = 0.1;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ bool ClashChecker::clashes(const Vec3& ground, double height_m) const {
   impl_->local(ground + Vec3{0, 0, height_m});
   if (clashes(ground)) return true;
   if (v.radius_m == 0) return false;
-  const double head_radius = head_share * v.radius_m, mast_radius = mast_share * v.radius_m;
+  const double head_radius = kHeadShare * v.radius_m, mast_radius = kMastShare * v.radius_m;
   const glm::dvec3 local = impl_->local(ground);
   const auto up = [&](double height) { return local + glm::dvec3{0, 0, height}; };
   if (impl_->tree.within(up(height_m), head_radius)) return true;

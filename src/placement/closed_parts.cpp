@@ -29,7 +29,7 @@ glm::dvec3 direction(int k, int of = kDirections) {
 
 }  // namespace
 
-bool GroundField::has_room(std::uint32_t sample) const { return part_[sample] != nowhere; }
+bool GroundField::has_room(std::uint32_t sample) const { return part_[sample] != kNowhere; }
 
 double GroundField::reached_area() const {
   double area = 0;
@@ -124,7 +124,7 @@ const GroundField::Ways& GroundField::ways_from_reached() {
 }
 
 GroundField::Ways GroundField::find_ways() const {
-  Ways ways{std::vector<std::uint8_t>(z_.size(), kEfforts), std::vector<std::uint32_t>(z_.size(), nowhere)};
+  Ways ways{std::vector<std::uint8_t>(z_.size(), kEfforts), std::vector<std::uint32_t>(z_.size(), kNowhere)};
   std::array<std::vector<std::uint32_t>, kEfforts> open;
   std::vector<std::uint8_t> done(z_.size(), 0);
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
@@ -184,22 +184,22 @@ GroundField::Ways GroundField::find_ways() const {
 }
 
 std::vector<std::uint32_t> GroundField::easiest_samples(const Ways& ways) const {
-  std::vector<std::uint32_t> easiest(parts_.size(), nowhere);
+  std::vector<std::uint32_t> easiest(parts_.size(), kNowhere);
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (!has_room(s) || ways.effort[s] == kEfforts) continue;
     std::uint32_t& best = easiest[part_[s]];
-    if (best == nowhere || ways.effort[s] < ways.effort[best]) best = s;
+    if (best == kNowhere || ways.effort[s] < ways.effort[best]) best = s;
   }
   return easiest;
 }
 
 std::vector<std::uint32_t> GroundField::first_closed(const Ways& ways) const {
-  std::vector<std::uint32_t> first(parts_.size(), nowhere);
+  std::vector<std::uint32_t> first(parts_.size(), kNowhere);
   const std::vector<std::uint32_t> easiest = easiest_samples(ways);
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
     first[i] = i;
-    if (easiest[i] == nowhere) continue;
-    for (std::uint32_t s = ways.from[easiest[i]]; s != nowhere; s = ways.from[s])
+    if (easiest[i] == kNowhere) continue;
+    for (std::uint32_t s = ways.from[easiest[i]]; s != kNowhere; s = ways.from[s])
       if (has_room(s) && access_[part_[s]] != Access::reached && parts_[part_[s]].area(cell_) >= room())
         first[i] = part_[s];
   }
@@ -331,10 +331,10 @@ bool GroundField::is_gallery(const MeshTree& tree, std::uint32_t part) const {
     if (stands_beyond(tree, rim, kHeadHeight)) return;
     const auto column = column_beyond(rim);
     if (!column) return;
-    std::uint32_t below = nowhere;  // the highest surface below
+    std::uint32_t below = kNowhere;  // the highest surface below
     for (std::uint32_t n = first_[*column]; n < first_[*column + 1]; ++n)
-      if (z_[n] < z_[rim.sample] && (below == nowhere || z_[n] > z_[below])) below = n;
-    if (below != nowhere && has_room(below) && access_[part_[below]] == Access::reached) ++over;
+      if (z_[n] < z_[rim.sample] && (below == kNowhere || z_[n] > z_[below])) below = n;
+    if (below != kNowhere && has_room(below) && access_[part_[below]] == Access::reached) ++over;
   });
   const auto all = static_cast<double>(rims.size());
   return static_cast<double>(guarded.load()) > kLeastGuarded * all &&
@@ -445,9 +445,9 @@ bool GroundField::may_be_told(std::uint32_t part) const {
 GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Ways& ways, std::uint32_t number) const {
   const Part& part = parts_[number];
   ClosedPart closed{.area_m2 = part.area(cell_), .middle = middle_of(number)};
-  std::uint32_t at = nowhere;
+  std::uint32_t at = kNowhere;
   for (const std::uint32_t s : members(number))
-    if (at == nowhere || ways.effort[s] < ways.effort[at]) at = s;
+    if (at == kNowhere || ways.effort[s] < ways.effort[at]) at = s;
   const std::uint8_t effort = ways.effort[at];
   const bool sky = part.under_the_sky(), above = 2 * part.above_others > part.samples;
   if (effort == through_door) closed.bar = Bar::door;
@@ -455,7 +455,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
   if (effort == climb) closed.bar = Bar::climb;
   const bool by_step = effort >= high_step && effort < kEfforts;
   if (by_step || effort == step_over) closed.bar = Bar::step;
-  for (std::uint32_t s = at, before = nowhere; s != nowhere && effort != kEfforts; before = s, s = ways.from[s]) {
+  for (std::uint32_t s = at, before = kNowhere; s != kNowhere && effort != kEfforts; before = s, s = ways.from[s]) {
     if (!has_room(s) && (taken_[s] & kLeaf) && !(taken_[s] & (kBeside | kOverhead))) {
       const auto mesh = std::lower_bound(leaves_.begin(), leaves_.end(), std::pair{s, 0U});
       if (mesh != leaves_.end() && mesh->first == s &&
@@ -468,7 +468,7 @@ GroundField::ClosedPart GroundField::closed_part(const MeshTree& tree, const Way
       if (const auto over = tree.first({p.x, p.y, z_[s] + skin}, {0, 0, 1}))
         closed.height_m = std::min(closed.height_m, over->distance + skin);
     }
-    if (before != nowhere && (by_step || effort == climb))
+    if (before != kNowhere && (by_step || effort == climb))
       closed.height_m = std::max(closed.height_m, std::abs(double{z_[before]} - z_[s]));
   }
   if (sky) {

@@ -25,17 +25,14 @@
 namespace vantage {
 namespace {
 
-constexpr double columns_per_passage = 12;
-constexpr double most_columns = 6e6;  // some 300 MB at three storeys
+constexpr double kColumnsPerPassage = 12;
+constexpr double kMostColumns = 6e6;  // some 300 MB at three storeys
 // People walk on slopes too steep for a scanner. Models often draw stairs as a slope, seldom steeper than this.
-constexpr double walking_slope_degrees = 40;
+constexpr double kWalkingSlope_deg = 40;
 // No wall passes between two diagonal columns' middles if both have half this distance clear.
-constexpr double half_diagonal = 0.7072;
-constexpr int cylinders = 3;
-constexpr double tolerance_share = 1e-3;  // of climb, height and width: rounding of the vertices
-
-// Obstacles, as bits.
-constexpr std::uint8_t beside = 1, overhead = 2, at_door = 4;
+constexpr double kHalfDiagonal = 0.7072;
+constexpr int kCylinders = 3;
+constexpr double kToleranceShare = 1e-3;  // of climb, height and width: rounding of the vertices
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -197,9 +194,9 @@ std::vector<Water> waters_of(const SceneData& scene) {
 GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::span<const std::uint32_t> turned,
                          std::optional<Plane> plane)
     : radius_(0.5 * options.passage_width_m),
-      climb_(options.climb_m * (1 + tolerance_share)),
-      height_(options.passage_height_m * (1 - tolerance_share)),
-      slope_(std::max(options.max_slope.in_radians(), Angle::degrees(walking_slope_degrees).in_radians())),
+      climb_(options.climb_m * (1 + kToleranceShare)),
+      height_(options.passage_height_m * (1 - kToleranceShare)),
+      slope_(std::max(options.max_slope.in_radians(), Angle::degrees(kWalkingSlope_deg).in_radians())),
       opaque_(scene.opaque_count()),
       border_(plane.has_value()) {
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
@@ -214,8 +211,8 @@ void GroundField::lay_grid(const SceneData& scene, std::optional<Plane> plane) {
   const Box& b = scene.local_bounds;
   const double margin = plane ? plane->reach : 0;
   const double width = b.size().x + 2 * margin, depth = b.size().y + 2 * margin;
-  cell_ = 2 * radius_ / columns_per_passage;
-  cell_ = std::max({cell_, std::sqrt(width * depth / most_columns), std::max(width, depth) / most_columns});
+  cell_ = 2 * radius_ / kColumnsPerPassage;
+  cell_ = std::max({cell_, std::sqrt(width * depth / kMostColumns), std::max(width, depth) / kMostColumns});
   corner_ = {b.min.x - margin, b.min.y - margin};
   columns_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(width / cell_)));
   rows_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(depth / cell_)));
@@ -288,7 +285,7 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
   parallel::sort(all.begin(), all.end());
 
   // Triangles that meet over a middle, and surfaces that nearly touch, count as one sample.
-  const auto apart = static_cast<float>(tolerance_share * height_);
+  const auto apart = static_cast<float>(kToleranceShare * height_);
   first_.assign(count + 1, 0);
   const auto is_next = [&](const std::vector<std::uint64_t>& keys, std::size_t& at, std::uint64_t key) {
     while (at < keys.size() && keys[at] < key) ++at;
@@ -346,10 +343,10 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
 
 void GroundField::find_room(const SceneData& scene) {
   const Grid grid{corner_, cell_, columns_, rows_};
-  std::array<double, cylinders> radius;
-  for (int i = 0; i < cylinders; ++i)
-    radius[i] = std::max((1 - tolerance_share) * (i + 1) * radius_ / cylinders - cell_ / 2, half_diagonal * cell_);
-  const double widest = radius[cylinders - 1], shorter = radius_ / cylinders;
+  std::array<double, kCylinders> radius;
+  for (int i = 0; i < kCylinders; ++i)
+    radius[i] = std::max((1 - kToleranceShare) * (i + 1) * radius_ / kCylinders - cell_ / 2, kHalfDiagonal * cell_);
+  const double widest = radius[kCylinders - 1], shorter = radius_ / kCylinders;
   const auto mark = [&](std::uint32_t sample, std::uint8_t what) {
     std::atomic_ref<std::uint8_t>(taken_[sample]).fetch_or(what, std::memory_order_relaxed);
   };
@@ -386,7 +383,7 @@ void GroundField::find_room(const SceneData& scene) {
           }
           // Returns the squared distance to obstacles in the outline of a person of this height; nothing without any.
           const auto distance_within = [&](double height) -> std::optional<double> {
-            for (int k = cylinders - 1; k >= 0; --k) {
+            for (int k = kCylinders - 1; k >= 0; --k) {
               const double bottom = low + k * shorter, top = height - k * shorter;
               if (whole >= radius[k] * radius[k]) break;
               if (box.max.z <= bottom || box.min.z >= top) continue;
@@ -410,8 +407,8 @@ void GroundField::find_room(const SceneData& scene) {
   };
   // Small triangles mark hardly anything that others have not marked. A block of them is compared with nearby samples,
   // and only triangles that can still change one are examined.
-  constexpr std::uint32_t block = 64;
-  constexpr std::size_t most_compared = 64 * block;  // columns, for which examining each triangle takes equally long
+  constexpr std::uint32_t kBlock = 64;
+  constexpr std::size_t kMostCompared = 64 * kBlock;  // columns, for which examining each triangle takes equally long
   struct Open {
     glm::dvec2 p;
     double low, high;
@@ -421,15 +418,15 @@ void GroundField::find_room(const SceneData& scene) {
     const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),
                  dy = std::max({0.0, box.min.y - o.p.y, o.p.y - box.max.y});
     if (o.is_beside) return std::max(dx, dy) <= rounding && box.max.z > o.low && box.min.z < o.high;
-    for (int k = 0; k < cylinders; ++k)
+    for (int k = 0; k < kCylinders; ++k)
       if (dx * dx + dy * dy < (radius[k] + rounding) * (radius[k] + rounding) && box.max.z > o.low + k * shorter &&
           box.min.z < o.high - k * shorter)
         return true;
     return false;
   };
   const auto look_at_block = [&](std::uint32_t first, std::uint32_t end, std::vector<Open>& open) {
-    std::array<Corners, block> corners;
-    std::array<std::uint32_t, block> meshes{};
+    std::array<Corners, kBlock> corners;
+    std::array<std::uint32_t, kBlock> meshes{};
     bool doors = false;
     Box all;
     std::size_t mesh = scene.mesh_of(first);
@@ -442,7 +439,7 @@ void GroundField::find_room(const SceneData& scene) {
     }
     const auto rows = grid.rows_within(all.min.y - widest - rounding, all.max.y + widest + rounding),
                columns = grid.columns_within(all.min.x - widest - rounding, all.max.x + widest + rounding);
-    const bool compared = !doors && std::size_t{rows.count()} * columns.count() <= most_compared;
+    const bool compared = !doors && std::size_t{rows.count()} * columns.count() <= kMostCompared;
     open.clear();
     for (std::uint32_t row = rows.first; compared && row < rows.end; ++row)
       for (std::uint32_t column = row * columns_ + columns.first; column < row * columns_ + columns.end; ++column)
@@ -459,11 +456,11 @@ void GroundField::find_room(const SceneData& scene) {
         look(corners[i], meshes[i]);
     }
   };
-  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + block - 1) / block),
+  parallel::for_all(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + kBlock - 1) / kBlock),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
                       std::vector<Open> open;
                       for (std::uint32_t k = range.begin(); k != range.end(); ++k)
-                        look_at_block(k * block, std::min(scene.triangle_count(), (k + 1) * block), open);
+                        look_at_block(k * kBlock, std::min(scene.triangle_count(), (k + 1) * kBlock), open);
                     });
   for (const auto& some : at_leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
   parallel::sort(leaves_.begin(), leaves_.end(), std::less<>{});
@@ -521,7 +518,7 @@ std::vector<std::uint32_t> GroundField::first_of_connected(std::uint8_t taken) c
 
 void GroundField::find_parts() {
   const std::vector<std::uint32_t> first = first_of_connected(kObstacles);
-  part_.assign(z_.size(), nowhere);
+  part_.assign(z_.size(), kNowhere);
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (taken_[s] & kObstacles) continue;
     if (first[s] == s) {
@@ -534,14 +531,14 @@ void GroundField::find_parts() {
   }
   begin_.assign(parts_.size() + 1, 0);
   for (const std::uint32_t part : part_)
-    if (part != nowhere) ++begin_[part + 1];
+    if (part != kNowhere) ++begin_[part + 1];
   for (std::size_t i = 0; i < parts_.size(); ++i) begin_[i + 1] += begin_[i];
   members_.resize(begin_.back());
   std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
   for (std::uint32_t s = 0; s < z_.size(); ++s)
-    if (part_[s] != nowhere) members_[at[part_[s]]++] = s;
+    if (part_[s] != kNowhere) members_[at[part_[s]]++] = s;
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (part_[s] == nowhere || is_layer(s)) continue;
+    if (part_[s] == kNowhere || is_layer(s)) continue;
     Part& part = parts_[part_[s]];
     ++part.samples;
     part.mean_z += z_[s];
@@ -550,11 +547,11 @@ void GroundField::find_parts() {
   for (Part& part : parts_) part.mean_z /= static_cast<double>(part.samples);  // the topmost of a column counts
   // Counts samples above a room of another part, such as a roof above its house.
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
-    if (part_[s] == nowhere || is_layer(s)) continue;
+    if (part_[s] == kNowhere || is_layer(s)) continue;
     const std::uint32_t lowest = first_[column_[s]];
     parts_[part_[s]].above_surfaces += lowest < s && z_[lowest] <= z_[s] - height_ * 0.8;
     for (std::uint32_t below = lowest; below < s; ++below)
-      if (part_[below] != nowhere && part_[below] != part_[s] && z_[below] <= z_[s] - height_ * 0.8 &&
+      if (part_[below] != kNowhere && part_[below] != part_[s] && z_[below] <= z_[s] - height_ * 0.8 &&
           parts_[part_[below]].area(cell_) >= room()) {
         ++parts_[part_[s]].above_others;
         break;
@@ -563,8 +560,8 @@ void GroundField::find_parts() {
 }
 
 GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, std::uint32_t number) const {
-  constexpr std::size_t most = 2000;
-  constexpr int ways = 16;
+  constexpr std::size_t kMostTried = 2000;
+  constexpr int kWays = 16;
   std::vector<std::uint32_t> edge;
   for (const std::uint32_t s : members(number)) {
     int neighbours = 0;
@@ -572,12 +569,12 @@ GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, std::uint32_t n
     if (neighbours < 8) edge.push_back(s);
   }
   const double far = cell_ * (columns_ + rows_);
-  const std::size_t stride = std::max<std::size_t>(1, edge.size() / most);
+  const std::size_t stride = std::max<std::size_t>(1, edge.size() / kMostTried);
   std::size_t looked = 0, out = 0;
   for (std::size_t i = 0; i < edge.size(); i += stride) {
     const glm::dvec2 p = middle(column_[edge[i]]);
-    for (int k = 0; k < ways; ++k) {
-      const double angle = 2 * 3.14159265358979323846 * k / ways;
+    for (int k = 0; k < kWays; ++k) {
+      const double angle = 2 * 3.14159265358979323846 * k / kWays;
       const glm::dvec3 way{far * std::cos(angle), far * std::sin(angle), 0};
       const auto free = [&](double share) {
         const glm::dvec3 from{p.x, p.y, z_[edge[i]] + share * height_};
@@ -592,9 +589,9 @@ GroundField::WaysOut GroundField::ways_out(const MeshTree& tree, std::uint32_t n
 std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const {
   // Least shares of the largest part. An entrance may be small compared to its hall; closed parts must be of similar
   // size.
-  constexpr double large_open = 0.2, large_closed = 0.5;
+  constexpr double kLargeOpen = 0.2, kLargeClosed = 0.5;
   // A room with walls and a door sees less of the outside; a porch or a niche sees more.
-  constexpr double most_open = 0.15;
+  constexpr double kMostOpen = 0.15;
   const double storey = 0.8 * height_;  // parts nearer in height than this are on one level
   struct Candidate {
     std::uint32_t part;
@@ -628,14 +625,14 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
     std::erase_if(some, [&](const Candidate& c) { return c.z > lowest + storey; });
   };
   const double largest = std::max(largest_of(open), largest_of(closed));
-  only_above(open, large_open * largest);
+  only_above(open, kLargeOpen * largest);
   // A block of terrain ends like the top of an object, so tops are dropped only if other ground lies under the sky.
   std::vector<Candidate> ground;
   for (const Candidate& c : open)
     if (c.sky && !is_top(tree, c.part)) ground.push_back(c);
   std::vector<Candidate> small = closed;
-  std::erase_if(small, [&](const Candidate& c) { return c.area >= large_open * largest || c.area < 10 * room(); });
-  only_above(closed, large_open * largest);
+  std::erase_if(small, [&](const Candidate& c) { return c.area >= kLargeOpen * largest || c.area < 10 * room(); });
+  only_above(closed, kLargeOpen * largest);
   const auto move_to_open = [&](std::vector<Candidate>& some, double most) {
     std::erase_if(some, [&](const Candidate& c) {
       const WaysOut ways = ways_out(tree, c.part);
@@ -646,16 +643,16 @@ std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const
   };
   move_to_open(closed, 1);
   if (open.empty()) {
-    move_to_open(small, most_open);
+    move_to_open(small, kMostOpen);
     only_lowest(open);
     // A closet of a closed level is no entrance: the parts left closed must not dwarf those that are entered.
-    constexpr double least_entered = 0.1;
+    constexpr double kLeastEntered = 0.1;
     double entered = 0;
     for (const Candidate& c : open) entered += c.area;
-    if (entered < least_entered * largest) open.clear();
+    if (entered < kLeastEntered * largest) open.clear();
   }
   if (open.empty() && closed.empty()) closed = roofs;
-  only_above(closed, large_closed * largest_of(closed));
+  only_above(closed, kLargeClosed * largest_of(closed));
   auto& choice = open.empty() ? closed : open;
   // People enter from the largest ground under the sky at any height, but a building from its lowest storey.
   if (!ground.empty() && largest_of(ground) >= largest_of(open))
@@ -698,7 +695,7 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
     double best = within * within;
     std::optional<std::uint32_t> start;
     for (std::uint32_t s = 0; s < z_.size(); ++s) {
-      if (part_[s] == nowhere) continue;
+      if (part_[s] == kNowhere) continue;
       const glm::dvec3 d = place(s) - wanted;
       if (dot(d, d) < best) best = dot(d, d), start = s;
     }
@@ -716,7 +713,7 @@ void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter)
       return x == 0 || y == 0 || x + 1 == columns_ || y + 1 == rows_;
     };
     for (std::uint32_t s = 0; s < z_.size(); ++s)
-      if (part_[s] != nowhere && at_border(column_[s])) {
+      if (part_[s] != kNowhere && at_border(column_[s])) {
         if (entries_.empty()) entries_.push_back(place(s));
         access_[part_[s]] = Access::reached;
       }
@@ -750,11 +747,11 @@ void GroundField::tell_apart() {
   const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));
   std::vector<std::int64_t> level(parts_.size(), 0);  // votes for minus votes against
   parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
-    if (part_[s] == nowhere || access_[part_[s]] == Access::reached) return;
+    if (part_[s] == kNowhere || access_[part_[s]] == Access::reached) return;
     std::int64_t votes = 0;
     for_columns_beside(column_[s], far, [&](std::uint32_t other) {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
-        if (part_[n] == nowhere || access_[part_[n]] != Access::reached) continue;
+        if (part_[n] == kNowhere || access_[part_[n]] != Access::reached) continue;
         const double step = std::abs(double{z_[n]} - z_[s]);
         votes += step <= climb_ ? 1 : step <= height_ ? -1 : 0;
       }
@@ -782,10 +779,10 @@ std::vector<GroundField::Step> GroundField::steps_between_parts() const {
   const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
   tbb::enumerable_thread_specific<std::vector<Step>> found;
   parallel::for_all(std::uint32_t{0}, static_cast<std::uint32_t>(z_.size()), [&](std::uint32_t s) {
-    if (part_[s] == nowhere) return;
+    if (part_[s] == kNowhere) return;
     for_columns_beside(column_[s], across, [&](std::uint32_t other) {
       for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
-        if (part_[n] == nowhere || part_[n] == part_[s]) continue;
+        if (part_[n] == kNowhere || part_[n] == part_[s]) continue;
         const double rise = std::abs(double{z_[n]} - z_[s]);
         if (rise > 2 * climb_ || (rise <= climb_ && !is_gap(s, other, across))) continue;
         found.local().push_back({part_[s], part_[n], rise});
@@ -931,7 +928,7 @@ Access GroundField::at(const glm::dvec3& place) const {
       }
   }
   if (!sample) return Access::narrow;
-  if (part_[*sample] != nowhere) return access_[part_[*sample]];
+  if (part_[*sample] != kNowhere) return access_[part_[*sample]];
   return taken_[*sample] & kOverhead ? Access::headroom : Access::narrow;
 }
 
@@ -939,9 +936,9 @@ double GroundField::ground_area(double highest_z) const {
   const std::vector<std::uint32_t> first = first_of_connected(0);
   std::vector<char> reached(z_.size(), 0);  // by the first of those connected
   for (std::uint32_t s = 0; s < z_.size(); ++s)
-    if (part_[s] != nowhere && access_[part_[s]] == Access::reached) reached[first[s]] = 1;
+    if (part_[s] != kNowhere && access_[part_[s]] == Access::reached) reached[first[s]] = 1;
   std::uint64_t columns = 0;
-  std::uint32_t last = nowhere;
+  std::uint32_t last = kNowhere;
   for (std::uint32_t s = 0; s < z_.size(); ++s)
     if (reached[first[s]] && z_[s] <= highest_z && column_[s] != last) ++columns, last = column_[s];
   return static_cast<double>(columns) * cell_ * cell_;

@@ -118,7 +118,7 @@ class GroundField {
     double area(double cell) const { return static_cast<double>(samples) * cell * cell; }
     bool under_the_sky() const { return 2 * in_the_sky > samples; }
   };
-  static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kNowhere = 0xFFFFFFFFu;
   // Facts about a sample, as bits.
   static constexpr std::uint8_t kBeside = 1;    // something stands beside a person there
   static constexpr std::uint8_t kOverhead = 2;  // something hangs above

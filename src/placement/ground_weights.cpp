@@ -14,14 +14,14 @@
 namespace vantage {
 namespace {
 
-constexpr double upward = 0.7071067811865476;  // cosine of 45°
-constexpr double quarter = 0.25;
-constexpr std::uint32_t heaviest = 255;
+constexpr double kUpwardCosine = 0.7071067811865476;  // cosine of 45°
+constexpr double kLeastStoodOn = 0.25;
+constexpr std::uint32_t kHeaviestWeight = 255;
 // Largest distance from a search area to the surfaces it was made of, for thin covers such as a carpet or a kerb.
-constexpr double same_surface_m = 0.15;
+constexpr double kSameSurface_m = 0.15;
 // Number of points tested over all upward surfaces.
-constexpr double samples = 20'000;
-constexpr int most_samples = 4096;  // per triangle
+constexpr double kSamples = 20'000;
+constexpr int kMostSamples = 4096;  // per triangle
 
 struct Area {
   double all = 0, up = 0, stood_on = 0;
@@ -51,7 +51,7 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
         const Vec3 a = widen(p[0]), b = widen(p[1]), c = widen(p[2]), normal = cross(b - a, c - a);
         const double twice = std::sqrt(dot(normal, normal));
         // Models are wound either way, so a ceiling may count as upward, too; nobody stands on it.
-        if (twice > 0) with(areas[m], a, b, c, twice / 2, std::abs(normal.z) >= upward * twice);
+        if (twice > 0) with(areas[m], a, b, c, twice / 2, std::abs(normal.z) >= kUpwardCosine * twice);
       }
     });
   };
@@ -67,28 +67,28 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
   // Points of each triangle by a low-discrepancy walk, in proportion to its share of the upward surface.
   for_each_surveyed([&](Area& of, const Vec3& a, const Vec3& b, const Vec3& c, double size, bool is_up) {
     if (!is_up) return;
-    const int n = std::clamp(static_cast<int>(std::ceil(samples * size / up)), 1, most_samples);
+    const int n = std::clamp(static_cast<int>(std::ceil(kSamples * size / up)), 1, kMostSamples);
     int on = 0;
     for (int k = 0; k < n; ++k) {
-      constexpr double g = 1.32471795724474602596;  // g³ = g + 1
-      const double s = 0.5 + (k + 1) / g, t = 0.5 + (k + 1) / (g * g);
+      constexpr double kPlastic = 1.32471795724474602596;  // g³ = g + 1
+      const double s = 0.5 + (k + 1) / kPlastic, t = 0.5 + (k + 1) / (kPlastic * kPlastic);
       const double root = std::sqrt(s - std::floor(s)), along = t - std::floor(t);
       const Vec3 p = data.origin + a * (1 - root) + b * (root * (1 - along)) + c * (root * along);
       const auto uv = area.project(p);
       const auto ground = uv ? area.locate(*uv) : std::nullopt;
-      if (ground && std::abs(ground->z - p.z) <= same_surface_m) ++on;
+      if (ground && std::abs(ground->z - p.z) <= kSameSurface_m) ++on;
     }
     of.stood_on += size * on / n;
   });
   double ground = 0;
   for (std::size_t m = 0; m < areas.size(); ++m) {
-    if (!(areas[m].up > 0 && areas[m].stood_on >= quarter * areas[m].up)) continue;
+    if (!(areas[m].up > 0 && areas[m].stood_on >= kLeastStoodOn * areas[m].up)) continue;
     found.ground.push_back(m);
     ground += areas[m].all;
   }
   const double others = all - ground;
   found.share = found.weighted_share = ground / all;
-  if (found.share <= most_ground_share) return found;
+  if (found.share <= kMostGroundShare) return found;
   std::string names;
   for (std::size_t k = 0; k < std::min<std::size_t>(found.ground.size(), 3); ++k)
     names += (k > 0 ? ", " : "") + data.meshes[found.ground[k]].name;
@@ -102,8 +102,8 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
     return found;
   }
   // ground / (ground + w · others) <= 1/3
-  const double wanted = ground * (1 - most_ground_share) / (most_ground_share * others);
-  const auto weight = static_cast<std::uint32_t>(std::clamp(std::ceil(wanted - 1e-9), 1.0, double{heaviest}));
+  const double wanted = ground * (1 - kMostGroundShare) / (kMostGroundShare * others);
+  const auto weight = static_cast<std::uint32_t>(std::clamp(std::ceil(wanted - 1e-9), 1.0, double{kHeaviestWeight}));
   for (std::size_t m = 0; m < found.weights.size(); ++m)
     if (!std::ranges::binary_search(found.ground, m)) found.weights[m] = weight;
   found.changes = weight > 1;
@@ -117,7 +117,7 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
 Scene with_weights(const Scene& scene, const std::vector<std::uint32_t>& weights) {
   auto data = std::make_shared<SceneData>(scene.data());
   if (weights.size() != data->meshes.size() ||
-      std::ranges::any_of(weights, [](std::uint32_t w) { return w < 1 || w > heaviest; }))
+      std::ranges::any_of(weights, [](std::uint32_t w) { return w < 1 || w > kHeaviestWeight; }))
     throw Error(Errc::invalid_argument,
                 "weights: one of 1 to 255 is wanted for each of " + std::to_string(data->meshes.size()) + " meshes");
   for (std::size_t m = 0; m < weights.size(); ++m) data->meshes[m].weight = weights[m];

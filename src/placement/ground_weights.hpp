@@ -25,7 +25,7 @@ struct GroundWeights {
 };
 
 // Largest share that ground keeps.
-inline constexpr double most_ground_share = 1.0 / 3;
+inline constexpr double kMostGroundShare = 1.0 / 3;
 
 // Finds ground and its weights. A surveyed mesh is ground if at least a quarter of its upward surface (within 45° of
 // level) lies in the search area. Weights are per mesh: anything that is one mesh with the ground weighs as little;

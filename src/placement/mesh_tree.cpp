@@ -146,7 +146,7 @@ struct Nearest {
 };
 
 void keep_nearest(const RTCFilterFunctionNArguments* arguments) {
-  constexpr float beyond = 1 + 0x1p-8f;  // how far beyond the hit Embree continues
+  constexpr float kBeyond = 1 + 0x1p-8f;  // how far beyond the hit Embree continues
   Nearest& nearest = *reinterpret_cast<Nearest*>(arguments->context);
   const std::uint32_t proposed = nearest.triangles.number(RTCHitN_instID(arguments->hit, arguments->N, 0, 0),
                                                           RTCHitN_primID(arguments->hit, arguments->N, 0));
@@ -157,7 +157,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* arguments) {
       (nearest.triangle && distance == nearest.distance && proposed < *nearest.triangle)) {
     nearest.distance = distance;
     nearest.triangle = proposed;
-    RTCRayN_tfar(arguments->ray, arguments->N, 0) = static_cast<float>(distance) * beyond;
+    RTCRayN_tfar(arguments->ray, arguments->N, 0) = static_cast<float>(distance) * kBeyond;
   } else {
     arguments->valid[0] = 0;
   }

@@ -68,7 +68,7 @@ double intrusion(const ClashChecker& clash, const Vec3& ground, double height_m)
   const SecurityVolume& v = clash.volume();
   double most = 0;
   for (const auto& [height, radius] :
-       {std::pair{v.lower_m, v.radius_m}, {v.upper_m, v.radius_m}, {height_m, head_share * v.radius_m}})
+       {std::pair{v.lower_m, v.radius_m}, {v.upper_m, v.radius_m}, {height_m, kHeadShare * v.radius_m}})
     most = std::max(most, radius - clash.distance(ground + Vec3{0, 0, height}, radius));
   return most;
 }

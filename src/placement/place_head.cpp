@@ -7,12 +7,12 @@ namespace vantage {
 namespace {
 
 // Tripods may be set higher or lower than planned by up to this share of the planned height.
-constexpr double height_tolerance = 0.5;
+constexpr double kHeightTolerance = 0.5;
 // Largest distance in plan between a head and the ground of its (u, v).
-constexpr double same_place_m = 1e-3;
+constexpr double kSamePlace_m = 1e-3;
 
 bool straight_below(const Vec3& ground, const Vec3& head) {
-  return std::hypot(ground.x - head.x, ground.y - head.y) < same_place_m && ground.z <= head.z;
+  return std::hypot(ground.x - head.x, ground.y - head.y) < kSamePlace_m && ground.z <= head.z;
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ bool straight_below(const Vec3& ground, const Vec3& head) {
 PlacedHead place_head(const SearchArea* area, const ClashChecker& clash, double height_m, const Vec3& head,
                       std::optional<Uv> uv) {
   const Vec3 foot = head - Vec3{0, 0, height_m};
-  const double tolerance = height_tolerance * height_m;
+  const double tolerance = kHeightTolerance * height_m;
   const auto within_reach = [&](const Vec3& ground) { return std::abs(ground.z - foot.z) <= tolerance; };
   std::optional<Vec3> ground;
   StationStatus footing = StationStatus::off_ground;

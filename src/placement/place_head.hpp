@@ -8,7 +8,7 @@
 namespace vantage {
 
 // Share of the security volume's radius that a station's head keeps from all surfaces.
-inline constexpr double head_share = 0.2;
+inline constexpr double kHeadShare = 0.2;
 
 // Places a station by its head (survey frame) and checks it as a search checks its stations. `area` may be null. The
 // ground is the search area at `uv` if that is given and lies below the head. Otherwise it is the search area, or any

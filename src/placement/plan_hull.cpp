@@ -16,10 +16,10 @@ double turn(Uv a, Uv b, Uv c) { return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) *
 // (Akl and Toussaint, A Fast Convex Hull Algorithm, 1978).
 void drop_inside(std::vector<Uv>& points) {
   if (points.size() < 100) return;
-  constexpr std::array<Uv, 8> ways{{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  constexpr std::array<Uv, 8> kWays{{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
   std::array<Uv, 8> corner;
-  for (std::size_t w = 0; w < ways.size(); ++w)
-    corner[w] = *std::max_element(points.begin(), points.end(), [way = ways[w]](Uv a, Uv b) {
+  for (std::size_t w = 0; w < kWays.size(); ++w)
+    corner[w] = *std::max_element(points.begin(), points.end(), [way = kWays[w]](Uv a, Uv b) {
       return way.u * a.u + way.v * a.v < way.u * b.u + way.v * b.v;
     });
   std::erase_if(points, [&](Uv p) {
@@ -32,8 +32,8 @@ void drop_inside(std::vector<Uv>& points) {
 }
 
 Rectangle rectangle_along(const std::vector<Uv>& hull, double cosine, double sine) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Rectangle r{cosine, sine, {inf, inf}, {-inf, -inf}};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Rectangle r{cosine, sine, {kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
   for (const Uv p : hull) {
     const Uv q = r.along(p);
     r.min = {std::min(r.min.u, q.u), std::min(r.min.v, q.v)};

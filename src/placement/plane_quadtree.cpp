@@ -11,11 +11,11 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t leaf_size = 8;
-constexpr int patience = 4;  // levels of subdivision in a row that separate nothing before it gives up
-constexpr double slack_share =
+constexpr std::size_t kLeafSize = 8;
+constexpr int kMostIdleLevels = 4;  // levels of subdivision in a row that separate nothing before it gives up
+constexpr double kSlackShare =
     1e-9;  // share of the larger side of the bounds: well above rounding, well below any relevant distance
-constexpr double no_area =
+constexpr double kNoArea =
     0x1p-48;  // height over length below which (u, v) in double do not define a triangle's inside
 
 Uv operator-(Uv a, Uv b) { return {a.u - b.u, a.v - b.v}; }
@@ -35,7 +35,7 @@ bool finite(Uv p) { return std::isfinite(p.u) && std::isfinite(p.v); }
 bool is_candidate(Uv a, Uv b, Uv c) {
   if (!finite(a) || !finite(b) || !finite(c)) return false;
   const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-  return std::abs(cross(b - a, c - a)) > no_area * longest;
+  return std::abs(cross(b - a, c - a)) > kNoArea * longest;
 }
 
 // A triangle with its box relative to the tree's corner, rounded outwards.
@@ -69,13 +69,13 @@ class PlaneQuadtree::Builder {
   }
 
  private:
-  static constexpr int threaded_levels = 3;
-  static constexpr std::size_t worth_a_thread = 20000;
+  static constexpr int kThreadedLevels = 3;
+  static constexpr std::size_t kWorthAThread = 20000;
 
   void subdivide(Subtree& out, std::uint32_t node, const Cell& cell, std::vector<Item> items, int depth,
                  int idle) const {
     const std::size_t crowd = partial(items, cell);
-    if (crowd <= leaf_size || depth >= max_depth_ || idle >= patience) {
+    if (crowd <= kLeafSize || depth >= max_depth_ || idle >= kMostIdleLevels) {
       out.nodes[node] = {0, static_cast<std::uint32_t>(out.items.size()), static_cast<std::uint32_t>(items.size())};
       for (const Item& item : items) out.items.push_back(item.triangle);
       return;
@@ -104,7 +104,7 @@ class PlaneQuadtree::Builder {
     // not yet such a case.
     const bool parted = 4 * most <= 3 * crowd, cornered = 5 * copies <= 6 * items.size();
     idle = parted ? 0 : cornered ? idle : idle + 1;
-    const bool threaded = depth < threaded_levels && items.size() >= worth_a_thread;
+    const bool threaded = depth < kThreadedLevels && items.size() >= kWorthAThread;
     items = {};
     const auto child = static_cast<std::uint32_t>(out.nodes.size());
     out.nodes[node].child = child;
@@ -121,7 +121,7 @@ class PlaneQuadtree::Builder {
   // Returns the number of triangles that do not cover the whole cell; those that do would cover all its children, too.
   // Skipped if the cell is a leaf anyway.
   std::size_t partial(const std::vector<Item>& items, const Cell& cell) const {
-    if (items.size() <= leaf_size) return 0;
+    if (items.size() <= kLeafSize) return 0;
     const double u_min = cell.min.u - tree_.min_.u, u_max = cell.max.u - tree_.min_.u;
     const double v_min = cell.min.v - tree_.min_.v, v_max = cell.max.v - tree_.min_.v;
     std::size_t count = 0;
@@ -152,9 +152,9 @@ class PlaneQuadtree::Builder {
 
 PlaneQuadtree::PlaneQuadtree(std::span<const Uv> points, std::span<const Triangle> triangles)
     : points_(points), triangles_(triangles) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  min_ = {inf, inf};
-  max_ = {-inf, -inf};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  min_ = {kInfinity, kInfinity};
+  max_ = {-kInfinity, -kInfinity};
   std::vector<std::uint32_t> candidates;
   candidates.reserve(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -170,7 +170,7 @@ PlaneQuadtree::PlaneQuadtree(std::span<const Uv> points, std::span<const Triangl
     return;
   }
   const double magnitude = std::max({std::abs(min_.u), std::abs(min_.v), std::abs(max_.u), std::abs(max_.v)});
-  slack_ = slack_share * std::max(max_.u - min_.u, max_.v - min_.v) + 0x1p-48 * magnitude;
+  slack_ = kSlackShare * std::max(max_.u - min_.u, max_.v - min_.v) + 0x1p-48 * magnitude;
 
   std::vector<Item> items;
   items.reserve(candidates.size());

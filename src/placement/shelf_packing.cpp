@@ -40,9 +40,9 @@ Packing pack_shelves(const std::vector<Uv>& sizes, double gap) {
   }
   Packing best;
   double least = std::numeric_limits<double>::infinity();
-  constexpr int widths = 24;
-  for (int i = 0; i < widths; ++i) {
-    const double width = std::max(widest, std::sqrt(area) * (0.7 + 1.8 * i / widths));
+  constexpr int kWidths = 24;
+  for (int i = 0; i < kWidths; ++i) {
+    const double width = std::max(widest, std::sqrt(area) * (0.7 + 1.8 * i / kWidths));
     Packing packing = pack(sizes, order, width, gap);
     const double aspect =
         packing.size.u > packing.size.v ? packing.size.u / packing.size.v : packing.size.v / packing.size.u;

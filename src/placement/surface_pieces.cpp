@@ -16,7 +16,7 @@ namespace {
 using Corners = std::array<glm::dvec3, 3>;
 
 using Kind = std::uint8_t;
-constexpr Kind dropped = 0, mixed = 255;
+constexpr Kind kDropped = 0, kMixed = 255;
 
 struct Part {
   std::uint32_t source;
@@ -37,18 +37,18 @@ class Splitter {
       length[e] = dot(edge, edge);
     }
     const int e = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
-    if (length[e] <= longest_ || depth == max_depth) return kind_of_((p[0] + p[1] + p[2]) * (1.0 / 3));
+    if (length[e] <= longest_ || depth == kMaxDepth) return kind_of_((p[0] + p[1] + p[2]) * (1.0 / 3));
     const glm::dvec3 a = p[e], b = p[(e + 1) % 3], c = p[(e + 2) % 3], middle = (a + b) * 0.5;
     const Corners first{a, middle, c}, second{middle, b, c};
     const Kind left = split(first, source, parts, depth + 1), right = split(second, source, parts, depth + 1);
-    if (left == right && left != mixed) return left;
-    if (left != dropped && left != mixed) parts.push_back({source, left, first});
-    if (right != dropped && right != mixed) parts.push_back({source, right, second});
-    return mixed;
+    if (left == right && left != kMixed) return left;
+    if (left != kDropped && left != kMixed) parts.push_back({source, left, first});
+    if (right != kDropped && right != kMixed) parts.push_back({source, right, second});
+    return kMixed;
   }
 
  private:
-  static constexpr int max_depth = 40;  // halving the area 40 times reaches any spacing that callers choose
+  static constexpr int kMaxDepth = 40;  // halving the area 40 times reaches any spacing that callers choose
   double longest_;
   const std::function<Kind(const glm::dvec3&)>& kind_of_;
 };
@@ -81,7 +81,7 @@ SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triang
   result.points = std::move(points);
   auto part = parts.begin();
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (whole[t] != dropped && whole[t] != mixed) {
+    if (whole[t] != kDropped && whole[t] != kMixed) {
       result.triangles.push_back(triangles[t]);
       result.source.push_back(t);
       result.kind.push_back(whole[t]);
@@ -111,7 +111,7 @@ SurfacePieces pieces_of_kind(const SurfacePieces& pieces, std::uint8_t kind) {
 SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
                            const std::function<bool(const glm::dvec3&)>& clear) {
   return sort_pieces(std::move(points), triangles, spacing_m,
-                     [&](const glm::dvec3& p) { return static_cast<Kind>(clear(p) ? 1 : dropped); });
+                     [&](const glm::dvec3& p) { return static_cast<Kind>(clear(p) ? 1 : kDropped); });
 }
 
 double piece_area(const SurfacePieces& pieces, std::uint32_t piece) {

@@ -32,17 +32,17 @@ namespace vantage {
 namespace {
 
 // Parts nearer than this share of the model's largest extent are connected.
-constexpr double weld_share = 1e-5;
+constexpr double kWeldShare = 1e-5;
 // Walkable surfaces form a ground if, in the lower half of the model, the reached ones and their continuations cover
 // this share of the model's outline seen from above. Flat parts of a machine are clear as well, but scattered or on its
 // top, where nobody stands to scan it. Surfaces also form a ground if as much area, reached or not, lies under a cover,
 // as in a building, or if floors with walls around them, reached or not, are this share of what is built.
-constexpr double ground_share = 0.3, floor_share = 0.5;
-constexpr double lower_half = 0.5;
+constexpr double kGroundShare = 0.3, kFloorShare = 0.5;
+constexpr double kLowerHalf = 0.5;
 // A part without room for a disc of this radius, in sides of the smallest square part, is the top of a pipe or a rail.
-// Parts of `surely_wide` times the smallest area are not tested.
-constexpr double disc_share = 0.25;
-constexpr double surely_wide = 100;
+// Parts of `kSurelyWide` times the smallest area are not tested.
+constexpr double kDiscShare = 0.25;
+constexpr double kSurelyWide = 100;
 
 glm::dvec3 unit_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 n = cross(b - a, c - a);
@@ -100,7 +100,7 @@ WalkableSurface unfold_marked(const SceneData& scene, const WalkableOptions& opt
   if (triangles.empty()) return surface;
   SurfacePieces pieces{std::move(points), std::move(triangles), {}};
   for (std::uint32_t i = 0; i < pieces.triangles.size(); ++i) pieces.source.push_back(i);
-  const auto charts = make_charts(pieces, weld_share * extent_of(bounds));
+  const auto charts = make_charts(pieces, kWeldShare * extent_of(bounds));
   surface.mesh = unfold(pieces, charts, scene.origin);
   surface.description = "as the scene marks it, (u, v) generated: " + charts_text(charts.size(), total_area(charts));
   return surface;
@@ -161,8 +161,8 @@ std::vector<GroundChart> wide_charts(const SurfacePieces& pieces, std::vector<Gr
   parallel::for_all(std::size_t{0}, charts.size(), [&](std::size_t i) {
     const GroundChart& c = charts[i];
     fit[i] = c.plan_area > 0 && c.area >= options.min_area_m2 &&
-             (c.area >= surely_wide * options.min_area_m2 ||
-              holds_disc(pieces, c, disc_share * std::sqrt(options.min_area_m2)));
+             (c.area >= kSurelyWide * options.min_area_m2 ||
+              holds_disc(pieces, c, kDiscShare * std::sqrt(options.min_area_m2)));
   });
   std::vector<GroundChart> wide;
   for (std::size_t i = 0; i < charts.size(); ++i) (fit[i] ? wide : small).push_back(std::move(charts[i]));
@@ -203,7 +203,7 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
   });
   const SurfacePieces clear = pieces_of_kind(pieces, kept);
   std::vector<GroundChart> small;
-  const std::vector<GroundChart> charts = wide_charts(clear, make_charts(clear, weld_share * extent), options, small);
+  const std::vector<GroundChart> charts = wide_charts(clear, make_charts(clear, kWeldShare * extent), options, small);
   WalkableSurface surface;
   surface.left_out = gather_left_out(pieces, clear, small, scene.origin);
   if (charts.empty()) {
@@ -405,12 +405,12 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   GroundField field(scene, options, turned);
   field.reach(tree, local_entries(scene, options));
   const Box& bounds = scene.local_bounds;
-  const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
+  const double lower_half_z = bounds.min.z + kLowerHalf * bounds.size().z;
   // Inside, floor is compared with the built area, as a bent tunnel fills little of its hull.
-  const auto inside = [&] { return field.covered_area() >= ground_share * field.outline(); };
-  const auto around = [&] { return field.ground_area(lower_half_z) >= ground_share * outline_area(scene); };
-  const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= floor_share * field.outline(); };
-  const auto under_the_sky = [&] { return field.open_ground_area(tree) >= ground_share * field.outline(); };
+  const auto inside = [&] { return field.covered_area() >= kGroundShare * field.outline(); };
+  const auto around = [&] { return field.ground_area(lower_half_z) >= kGroundShare * outline_area(scene); };
+  const auto floors = [&] { return field.walled_area(tree, lower_half_z) >= kFloorShare * field.outline(); };
+  const auto under_the_sky = [&] { return field.open_ground_area(tree) >= kGroundShare * field.outline(); };
   if (field.entries().empty()) return {};
   if (options.enter.empty() && !inside() && !around() && !floors() && !under_the_sky()) return {};
   if (options.enter.empty() && options.enter_closed) field.enter_closed(tree);
@@ -458,7 +458,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
         return kept;
       });
   const SurfacePieces clear = pieces_of_kind(pieces, kept);
-  const auto charts = make_charts(clear, weld_share * reach);
+  const auto charts = make_charts(clear, kWeldShare * reach);
   WalkableSurface surface;
   surface.left_out = gather_left_out(pieces, clear, {}, scene.origin);
   if (charts.empty()) {
@@ -483,14 +483,14 @@ double piece_spacing(const WalkableOptions& options, const Box& bounds) {
 
 void check(const WalkableOptions& options) {
   // Lengths are limited to the reach of positions; beyond, floats of rays overflow.
-  constexpr Interval length{.low = 0, .high = kSiteReach_m};
+  constexpr Interval kLengths{.low = 0, .high = kSiteReach_m};
   check_number(whole_degrees(options.max_slope), "the largest slope of a walkable surface",
                {.low = 0, .high = 90, .high_included = false});
-  check_number(options.headroom_m, "the headroom above a walkable surface, in metres,", length);
-  check_number(options.min_area_m2, "the smallest area of a walkable part, in m²,", not_negative);
+  check_number(options.headroom_m, "the headroom above a walkable surface, in metres,", kLengths);
+  check_number(options.min_area_m2, "the smallest area of a walkable part, in m²,", kNotNegative);
   check_number(options.passage_width_m, "the width of the narrowest passage, in metres,",
                {.low = 0, .high = kSiteReach_m, .low_included = false});
-  check_number(options.climb_m, "the highest step, in metres,", length);
+  check_number(options.climb_m, "the highest step, in metres,", kLengths);
   check_number(options.passage_height_m, "the height of the lowest passage, in metres,",
                {.low = options.climb_m, .high = kSiteReach_m, .low_included = false});
   AreaLimits{options};

@@ -24,10 +24,10 @@ void check_problem(const Site& site, const SurveyProblem& problem) {
   check_rooms(problem.on_site.windows, site.scene().rooms());
   check_settings(registration_settings(), problem.registration);
   check_settings(target_settings(), problem.target);
-  check_number(problem.link_overlap, "link-overlap", any_share);
+  check_number(problem.link_overlap, "link-overlap", kAnyShare);
   if (problem.pays_m2) {
-    check_number(*problem.pays_m2, "pays", positive);
-    check_number(problem.pays_share, "pays_share", any_share);
+    check_number(*problem.pays_m2, "pays", kPositive);
+    check_number(problem.pays_share, "pays_share", kAnyShare);
     if (!problem.fewest || std::ranges::none_of(problem.requirements, requires_capture))
       throw Error(Errc::invalid_argument,
                   "pays: decides what the fewest stations have to capture; require some capture");

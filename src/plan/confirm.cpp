@@ -187,9 +187,9 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     return evaluator.confirm(std::span(networks).subspan(first, many),
                              {.report =
                                   [&, first, many](double share) {
-                                    constexpr double rounding = 1e-9;
+                                    constexpr double kRounding = 1e-9;
                                     const double done = static_cast<double>(first) + share * static_cast<double>(many);
-                                    const auto whole = static_cast<std::size_t>(done + rounding);
+                                    const auto whole = static_cast<std::size_t>(done + kRounding);
                                     report(whole, std::max(0.0, done - static_cast<double>(whole)));
                                   },
                               .stop = watch.abort});

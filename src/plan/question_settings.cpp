@@ -33,18 +33,18 @@ const SettingTable<SurveyQuestion>& question_settings() {
                 &Question::problem)
           .number("capture", "SHARE",
                   "Least share of what is attainable that the survey captures, whatever it takes: instead of --pays",
-                  &Question::capture, any_share)
+                  &Question::capture, kAnyShare)
           .number("pays", "M2",
                   otherwise("Surface that the others do not capture, in square metres, which a station has to add: the "
                             "survey has as many stations as do, and one in every room and part of the floor",
                             default_pays_m2) +
                       ", or a tenth of what a station captures on average if that is more",
-                  &Question::pays_m2, positive)
+                  &Question::pays_m2, kPositive)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "
                             "that the other sees too, over all surfaces",
                             default_link),
-                  &Question::link, any_share)
+                  &Question::link, kAnyShare)
           .number(
               "apart", "M",
               otherwise("Least distance between two stations, in metres; none for problems by name", default_apart_m),
@@ -53,7 +53,7 @@ const SettingTable<SurveyQuestion>& question_settings() {
                     &Question::minutes_on_site,
                     [](const std::string& text, const std::string& what) { return parse_duration(text, what) / 60; })
           .checked([](const Question& q, const std::string& what) {
-            if (q.minutes_on_site) check_number(*q.minutes_on_site, what, positive);
+            if (q.minutes_on_site) check_number(*q.minutes_on_site, what, kPositive);
           })
           .include(on_site_settings(), &Question::on_site)
           .custom(
@@ -88,28 +88,28 @@ const SettingTable<SurveyQuestion>& question_settings() {
               [](Question& q, const std::string& text, const std::string&) { q.search_steps = names_in(text); },
               [](const Question& q) { return !q.search_steps.empty(); })
           .numbers("heights", "LOW,HIGH", "Range of heights to search for each station, in metres",
-                   &Question::heights_m, 2, not_negative)
+                   &Question::heights_m, 2, kNotNegative)
           .number("link-overlap", "W", otherwise("Least overlap of a link, 0 to 1", default_link_overlap),
-                  &Question::link_overlap, any_share)
+                  &Question::link_overlap, kAnyShare)
           .advanced()
           .number("min-overlap", "W",
                   "Least overlap of the links that connect all stations: sets link-overlap to W and requires "
                   "parts<=1",
-                  &Question::min_overlap, any_share)
+                  &Question::min_overlap, kAnyShare)
           .advanced()
           .optional("fitness", "L1,L2,L3",
                     "Search one network of the largest fitness: weights of coverage, number and visibility, such as "
                     "0.4,0.4,0.2",
                     &Question::fitness,
                     [](const std::string& text, const std::string& what) {
-                      const auto weights = parse_numbers(text, what, 3, 3, not_negative);
+                      const auto weights = parse_numbers(text, what, 3, 3, kNotNegative);
                       return FitnessWeights{weights[0], weights[1], weights[2]};
                     })
           .advanced()
           .checked([](const Question& q, const std::string& what) {
             if (q.fitness)
               for (const double weight : {q.fitness->coverage, q.fitness->station_count, q.fitness->visibility})
-                check_number(weight, what, not_negative);
+                check_number(weight, what, kNotNegative);
           })
           .include(registration_settings(), &Question::registration)
           .group("Targets")
@@ -168,14 +168,14 @@ const SettingTable<PlanConfig>& plan_settings() {
                   [](Config& c, const std::string& text, const std::string& what) {
                     c.max_seconds = parse_duration(text, what);
                   })
-          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, any_seconds); })
+          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, kAnySeconds); })
           .optional(
               "target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
               &Config::target_hypervolume,
-              [](const std::string& text, const std::string& what) { return parse_number(text, what, any_share); })
+              [](const std::string& text, const std::string& what) { return parse_number(text, what, kAnyShare); })
           .advanced()
           .checked([](const Config& c, const std::string& what) {
-            if (c.target_hypervolume) check_number(*c.target_hypervolume, what, any_share);
+            if (c.target_hypervolume) check_number(*c.target_hypervolume, what, kAnyShare);
           })
           .flag("exact", "Search with every ray instead of a sample of voxels", &Config::exact)
           .custom(
@@ -209,7 +209,7 @@ const SettingTable<PlanConfig>& plan_settings() {
                   })
           .advanced()
           .checked(
-              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, any_seconds); })
+              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, kAnySeconds); })
           .flag("resume", "Continue from the folder's checkpoint", &Config::resume)
           .take();
   return table;

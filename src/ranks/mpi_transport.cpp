@@ -23,10 +23,10 @@ namespace vantage::ranks {
 namespace {
 
 // MPI counts bytes in an int, so a long message travels in parts; the tag marks the last one.
-constexpr std::size_t largest_part = std::size_t{1} << 30;
-constexpr int tag_last = 0, tag_more = 1;
+constexpr std::size_t kLargestPart = std::size_t{1} << 30;
+constexpr int kTagLast = 0, kTagMore = 1;
 
-constexpr std::chrono::microseconds shortest_pause{10}, longest_pause{200};
+constexpr std::chrono::microseconds kShortestPause{10}, kLongestPause{200};
 
 class Joined final : public MpiTransport {
  public:
@@ -80,18 +80,18 @@ class Joined final : public MpiTransport {
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     partial_.resize(static_cast<std::size_t>(size));
     joined_.set_value({rank, size});
-    for (auto pause = shortest_pause;;) {
+    for (auto pause = kShortestPause;;) {
       const bool sent = send_waiting();
       const bool received = receive_one();
       deliver_all();
       std::unique_lock lock(mutex_);
       if (leaving_ && outgoing_.empty() && sending_.empty()) break;
       if (sent || received) {
-        pause = shortest_pause;
+        pause = kShortestPause;
         continue;
       }
       wake_.wait_for(lock, pause, [&] { return !outgoing_.empty() || (receive_ && !arrived_.empty()); });
-      pause = std::min(2 * pause, longest_pause);
+      pause = std::min(2 * pause, kLongestPause);
     }
     MPI_Finalize();
     // The rest of the process may have work under way, but nobody waits for it.
@@ -110,9 +110,9 @@ class Joined final : public MpiTransport {
       const std::size_t bytes = sending.message.size();
       std::size_t at = 0;
       do {
-        const std::size_t part = std::min(largest_part, bytes - at);
+        const std::size_t part = std::min(kLargestPart, bytes - at);
         MPI_Isend(sending.message.data() + at, static_cast<int>(part), MPI_BYTE, to,
-                  at + part < bytes ? tag_more : tag_last, MPI_COMM_WORLD, &sending.parts.emplace_back());
+                  at + part < bytes ? kTagMore : kTagLast, MPI_COMM_WORLD, &sending.parts.emplace_back());
         at += part;
       } while (at < bytes);
     }
@@ -136,7 +136,7 @@ class Joined final : public MpiTransport {
     const std::size_t before = message.size();
     message.resize(before + static_cast<std::size_t>(bytes));
     MPI_Mrecv(message.data() + before, bytes, MPI_BYTE, &probed, MPI_STATUS_IGNORE);
-    if (status.MPI_TAG == tag_last) arrived_.emplace_back(status.MPI_SOURCE, std::exchange(message, {}));
+    if (status.MPI_TAG == kTagLast) arrived_.emplace_back(status.MPI_SOURCE, std::exchange(message, {}));
     return true;
   }
 

@@ -182,8 +182,8 @@ void Server::handle(const Head& head, Reader& reader, const More& more) {
   Clock::time_point told = Clock::now();
   const Progress progress{.report =
                               [&](double share) {
-                                constexpr std::chrono::milliseconds often{100};
-                                if (Clock::now() - told < often) return;
+                                constexpr std::chrono::milliseconds kOften{100};
+                                if (Clock::now() - told < kOften) return;
                                 told = Clock::now();
                                 send(Kind::progress, head.serial, [&](Writer& writer) { writer.raw(share); });
                               },

@@ -23,13 +23,13 @@ struct Sums {
 std::optional<Accuracy> accuracy_of(const Evaluation& network, const VoxelField* field, const Simulator& simulator) {
   const std::uint64_t voxels = simulator.voxel_count();
   if (!network.registration || !field || field->stations.empty() || voxels == 0) return std::nullopt;
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kJudged, voxels));
-  const std::vector<float> errors = voxel_errors_mm(simulator, *field, *network.registration, ranks);
-  const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(std::min(kJudged, voxels));
+  const std::vector<float> errors = voxel_errors_mm(simulator, *field, *network.registration, sample);
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(sample);
   const PlaceNames names(simulator.scene());
   const double allowed_mm = 1000 * largest_error_m(network.accuracy_class);
   std::map<std::string, Sums> sums;
-  for (std::size_t k = 0; k < ranks.size(); ++k) {
+  for (std::size_t k = 0; k < sample.size(); ++k) {
     if (errors[k] < 0) continue;
     Sums& sum = sums[names.of(patches[k])];
     const double error_mm = error_at_95_percent(errors[k]);

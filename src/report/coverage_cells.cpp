@@ -37,20 +37,20 @@ std::uint32_t fitting_side(const std::vector<Place>& places, std::size_t most) {
 
 }  // namespace
 
-std::size_t CoverageCells::place_of(std::uint32_t rank) const {
-  return static_cast<std::size_t>(std::ranges::lower_bound(ranks, rank) - ranks.begin());
+std::size_t CoverageCells::place_of(std::uint32_t voxel) const {
+  return static_cast<std::size_t>(std::ranges::lower_bound(voxels, voxel) - voxels.begin());
 }
 
 CoverageCells coverage_cells(const Simulator& simulator, std::uint64_t voxels, std::size_t cells) {
   CoverageCells result;
   if (simulator.voxel_count() == 0) return result;
-  result.ranks = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
+  result.voxels = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
   Box box;
-  for (const std::uint32_t rank : result.ranks) box.extend(simulator.voxel_centre(rank));
+  for (const std::uint32_t index : result.voxels) box.extend(simulator.voxel_centre(index));
   const double voxel = simulator.voxel_size_m();
   std::vector<Place> places;
-  for (const std::uint32_t rank : result.ranks) {
-    const Vec3 from = simulator.voxel_centre(rank) - box.min;
+  for (const std::uint32_t index : result.voxels) {
+    const Vec3 from = simulator.voxel_centre(index) - box.min;
     const auto step = [&](double metres) { return static_cast<std::uint32_t>(std::lround(metres / voxel)); };
     places.push_back({step(from.x), step(from.y), step(from.z)});
   }
@@ -101,22 +101,22 @@ void spread(const CoverageCells& cells, std::vector<bool> known, Give&& give) {
 
 }  // namespace
 
-Seer seer_of(const VoxelField& field, std::uint32_t rank) {
+Seer seer_of(const VoxelField& field, std::uint32_t voxel) {
   Seer seer = 0;
-  field.stations.for_each_station(rank,
+  field.stations.for_each_station(voxel,
                                   [&](std::size_t station) { seer = together(seer, static_cast<Seer>(station + 1)); });
   return seer;
 }
 
-CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
+CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> voxel_indices,
                          std::span<const std::uint32_t> counts, std::span<const Seer> seen_by,
                          const Simulator& simulator) {
   std::vector<double> sum(cells.keys.size(), 0.0);
   std::vector<std::uint32_t> voxels(cells.keys.size(), 0);
   std::vector<Seer> seen(cells.keys.size(), 0);
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    const std::uint32_t cell = cells.cell_of[cells.place_of(ranks[i])];
-    sum[cell] += captured_share(simulator, ranks[i], counts[i]);
+  for (std::size_t i = 0; i < voxel_indices.size(); ++i) {
+    const std::uint32_t cell = cells.cell_of[cells.place_of(voxel_indices[i])];
+    sum[cell] += captured_share(simulator, voxel_indices[i], counts[i]);
     seen[cell] = together(seen[cell], seen_by[i]);
     ++voxels[cell];
   }
@@ -134,11 +134,11 @@ CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32
   return colours;
 }
 
-std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
+std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> voxel_indices,
                                        std::span<const VoxelStatus> status) {
   std::vector<std::array<std::uint32_t, why_missed_count>> count(cells.keys.size());
-  for (std::size_t i = 0; i < ranks.size(); ++i)
-    ++count[cells.cell_of[cells.place_of(ranks[i])]][static_cast<std::size_t>(status[i].why)];
+  for (std::size_t i = 0; i < voxel_indices.size(); ++i)
+    ++count[cells.cell_of[cells.place_of(voxel_indices[i])]][static_cast<std::size_t>(status[i].why)];
   std::vector<std::uint8_t> reasons;
   std::vector<bool> known;
   for (std::uint32_t cell = 0; cell < count.size(); ++cell) {

@@ -105,7 +105,7 @@ class MapOnSheet {
     for (const auto& [a, b] : section_lines(scene, level_.floor + kWall_m))
       if (holds(a) || holds(b)) lines.push_back({at(a), at(b)});
     if (lines.size() > kMost) return;
-    for (const auto& [a, b] : lines) sheet_.canvas->line(a, b, {.colour = style::ink, .width = 0.5, .opacity = 0.7});
+    for (const auto& [a, b] : lines) sheet_.canvas->line(a, b, {.colour = style::kInk, .width = 0.5, .opacity = 0.7});
   }
 
   // Draws crosses at round coordinates, with their values at the frame.
@@ -130,7 +130,7 @@ class MapOnSheet {
     upright.turn = -1.5707963267948966;
     for (std::size_t k = 0; k < ys.size(); ++k)
       sheet_.canvas->text({map.x - 7, at(0, ys[k]).y}, "y " + y_labels[k], upright);
-    sheet_.canvas->rectangle(map, {.colour = style::ink, .width = 0.8});
+    sheet_.canvas->rectangle(map, {.colour = style::kInk, .width = 0.8});
   }
 
   void route(const Round& visit) {
@@ -193,9 +193,9 @@ class MapOnSheet {
       }
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const bool moved = std::hypot(discs[i].x - spots[i].x, discs[i].y - spots[i].y) > 0.5;
-      if (moved) sheet_.canvas->line(spots[i], discs[i], {.colour = style::ink, .width = 1});
+      if (moved) sheet_.canvas->line(spots[i], discs[i], {.colour = style::kInk, .width = 1});
       draw_station(*sheet_.canvas, discs[i], facts[shown[i]].name, stations[shown[i]], kMark);
-      if (moved) sheet_.canvas->disc(spots[i], 2.4, style::ink);
+      if (moved) sheet_.canvas->disc(spots[i], 2.4, style::kInk);
     }
     for (std::size_t i = 0; i < shown.size(); ++i)
       if (const std::string& name = facts[shown[i]].name; !fits_disc(name))
@@ -246,7 +246,7 @@ class MapOnSheet {
 
   void dots(std::span<const PlacedStation> stations, const std::vector<bool>& which) {
     for (std::size_t k = 0; k < stations.size(); ++k)
-      if (which[k] && stands_on(stations[k], level_)) sheet_.canvas->disc(at(stations[k].ground), 1.8, style::ink);
+      if (which[k] && stands_on(stations[k], level_)) sheet_.canvas->disc(at(stations[k].ground), 1.8, style::kInk);
   }
 
   void name(const std::string& words) {
@@ -344,8 +344,8 @@ class SheetPanel {
     const double width = length * metre, y = y_ + 16;
     for (int k = 0; k < 4; ++k) {
       const Rect part{x_ + k * width / 4, y, width / 4, 5};
-      if (k % 2 == 0) canvas.fill(part, style::ink);
-      canvas.rectangle(part, {.colour = style::ink, .width = 0.6});
+      if (k % 2 == 0) canvas.fill(part, style::kInk);
+      canvas.rectangle(part, {.colour = style::kInk, .width = 0.6});
     }
     canvas.text({x_, y - 6}, "0", {.size = 7.5, .across = Align::middle});
     canvas.text({x_ + width, y - 6}, number(length) + " m", {.size = 7.5, .across = Align::middle});
@@ -353,11 +353,11 @@ class SheetPanel {
     const double right = x_ + kPanelWidth - 30;
     if (!crs.empty()) {
       const Point arrow[] = {{right, y_}, {right + 6, y_ + 22}, {right, y_ + 17}, {right - 6, y_ + 22}};
-      canvas.polygon(arrow, style::ink);
+      canvas.polygon(arrow, style::kInk);
       canvas.text({right, y_ + 30}, "N", {.size = 10, .bold = true, .across = Align::middle});
     } else {
-      canvas.line({right - 8, y_ + 24}, {right - 8, y_ + 4}, {.colour = style::ink, .width = 1});
-      canvas.line({right - 8, y_ + 24}, {right + 12, y_ + 24}, {.colour = style::ink, .width = 1});
+      canvas.line({right - 8, y_ + 24}, {right - 8, y_ + 4}, {.colour = style::kInk, .width = 1});
+      canvas.line({right - 8, y_ + 24}, {right + 12, y_ + 24}, {.colour = style::kInk, .width = 1});
       canvas.text({right - 8, y_ - 2}, "y", {.size = 8, .across = Align::middle});
       canvas.text({right + 17, y_ + 24}, "x", {.size = 8, .across = Align::middle});
     }
@@ -368,9 +368,9 @@ class SheetPanel {
 
   void legend(bool cut, bool route, bool tape, bool kept, bool left_out, bool targets, bool control) {
     Canvas& canvas = *sheet_.canvas;
-    constexpr TextStyle text{.size = 8};
+    constexpr TextStyle kText{.size = 8};
     const auto words = [&](const std::string& what) {
-      canvas.text({x_ + 26, y_}, what, text);
+      canvas.text({x_ + 26, y_}, what, kText);
       y_ += 15;
     };
     PlacedStation example;

@@ -102,7 +102,7 @@ Sheet front_sheet(const Report& report, Site& site, const std::stop_token& stop)
   sheet.y = std::max(sheet.y, 92.0) + 8;
   const auto line = [&](const std::string& heading, const std::string& text, bool alert) {
     sheet.canvas->text({margin, sheet.y}, heading,
-                       {.size = 9.5, .bold = true, .colour = alert ? kAlertInk : style::ink});
+                       {.size = 9.5, .bold = true, .colour = alert ? kAlertInk : style::kInk});
     sheet.words(margin + 72, text, {.size = 9.5});
     sheet.y += 1;
   };

@@ -95,12 +95,12 @@ void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation
 
 void add_alone(std::vector<StationFacts>& facts, const VoxelField* field, const Simulator& simulator) {
   if (!field || field->stations.empty() || simulator.voxel_count() == 0) return;
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kSeen, simulator.voxel_count()));
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(std::min(kSeen, simulator.voxel_count()));
   std::vector<std::uint32_t> alone, seer;
-  for (const std::uint32_t rank : ranks) {
-    const Seer by = seer_of(*field, rank);
-    if (by == 0 || by == several_stations || by > facts.size()) continue;
-    alone.push_back(rank), seer.push_back(by - 1u);
+  for (const std::uint32_t voxel : sample) {
+    const Seer by = seer_of(*field, voxel);
+    if (by == 0 || by == kSeveralStations || by > facts.size()) continue;
+    alone.push_back(voxel), seer.push_back(by - 1u);
   }
   const PlaceNames names(simulator.scene());
   const std::vector<VoxelPatch> patches = simulator.voxel_patches(alone);
@@ -111,7 +111,7 @@ void add_alone(std::vector<StationFacts>& facts, const VoxelField* field, const 
     std::size_t all = 0;
     for (const auto& [name, count] : where[k]) places.emplace_back(count, name), all += count;
     std::ranges::stable_sort(places, std::ranges::greater{}, [](const auto& place) { return place.first; });
-    facts[k].alone = static_cast<double>(all) / static_cast<double>(ranks.size());
+    facts[k].alone = static_cast<double>(all) / static_cast<double>(sample.size());
     constexpr std::size_t kNamed = 2;
     for (std::size_t p = 0; p < std::min(kNamed, places.size()); ++p)
       facts[k].alone_where += (p > 0 ? ", " : "") + places[p].second;

@@ -41,7 +41,7 @@ std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulat
   if (stations.empty()) return {};
   const Box bounds = simulator.scene().bounds();
   const Vec3 middle = (bounds.min + bounds.max) * 0.5;
-  constexpr PanoramaView view[] = {PanoramaView::colour};
+  constexpr PanoramaView kView[] = {PanoramaView::colour};
   std::vector<Image> images;
   try {
     PanoramaRenderer renderer(simulator.scene(),
@@ -53,7 +53,7 @@ std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulat
       images.emplace_back();
       if (station.status == StationStatus::hole) continue;
       const Vec3 towards = middle - station.position;
-      auto drawn = renderer.render(station.position, view, {.report = {}, .stop = stop},
+      auto drawn = renderer.render(station.position, kView, {.report = {}, .stop = stop},
                                    {.heading = Angle::radians(std::atan2(towards.y, towards.x))});
       if (drawn.empty()) return {};
       images.back() = std::move(drawn.front().image);

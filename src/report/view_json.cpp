@@ -50,7 +50,7 @@ ordered_json mesh_json(const SurfaceMesh& mesh) {
 
 // Traces each station alone on a sample of the voxels; the sum is the network's.
 CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedStation> stations,
-                            std::span<const std::uint32_t> ranks, Simulator& simulator, std::stop_token stop,
+                            std::span<const std::uint32_t> voxel_indices, Simulator& simulator, std::stop_token stop,
                             bool& cancelled) {
   std::vector<Network> alone;
   std::vector<std::size_t> number;
@@ -59,8 +59,8 @@ CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedSt
     alone.push_back({{.position = stations[k].position, .setup = stations[k].setup}});
     number.push_back(k);
   }
-  std::vector<std::uint32_t> counts(ranks.size(), 0);
-  std::vector<Seer> seen_by(ranks.size(), 0);
+  std::vector<std::uint32_t> counts(voxel_indices.size(), 0);
+  std::vector<Seer> seen_by(voxel_indices.size(), 0);
   const auto add = [&](std::size_t network, std::span<const std::uint32_t> points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       counts[i] += points[i];
@@ -68,20 +68,21 @@ CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedSt
     }
   };
   if (!alone.empty())
-    for (const NetworkCounts& done : simulator.evaluate_sampled(
-             alone, {.voxels = ranks.size(), .overlap = false, .points = add}, {.report = {}, .stop = std::move(stop)}))
+    for (const NetworkCounts& done :
+         simulator.evaluate_sampled(alone, {.voxels = voxel_indices.size(), .overlap = false, .points = add},
+                                    {.report = {}, .stop = std::move(stop)}))
       cancelled = cancelled || done.cancelled;
-  return cell_colours(cells, ranks, counts, seen_by, simulator);
+  return cell_colours(cells, voxel_indices, counts, seen_by, simulator);
 }
 
 CellColours exact_colours(const CoverageCells& cells, const VoxelField& field, const Simulator& simulator) {
   std::vector<std::uint32_t> counts;
   std::vector<Seer> seen_by;
-  for (const std::uint32_t rank : cells.ranks) {
-    counts.push_back(field.count[rank]);
-    seen_by.push_back(seer_of(field, rank));
+  for (const std::uint32_t voxel : cells.voxels) {
+    counts.push_back(field.count[voxel]);
+    seen_by.push_back(seer_of(field, voxel));
   }
-  return cell_colours(cells, cells.ranks, counts, seen_by, simulator);
+  return cell_colours(cells, cells.voxels, counts, seen_by, simulator);
 }
 
 // The answer, and others spread evenly over the front.
@@ -101,15 +102,15 @@ ordered_json colours_json(const Report& report, Simulator& simulator, const Cove
   for (std::size_t k = 0; k < report.networks.size(); ++k) colours.push_back(nullptr);
   const std::vector<std::size_t> chosen = coloured_networks(report);
   const std::uint64_t voxels = std::min<std::uint64_t>(
-      cells.ranks.size(), std::max(kLeastSampled, kSampled / static_cast<std::uint64_t>(chosen.size())));
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(voxels);
+      cells.voxels.size(), std::max(kLeastSampled, kSampled / static_cast<std::uint64_t>(chosen.size())));
+  const std::vector<std::uint32_t> sample = simulator.sampled_voxels(voxels);
   double done = 0;
   for (const std::size_t k : chosen) {
     const VoxelField* const field = k == report.answer ? report.options.field : nullptr;
     bool cancelled = false;
     const CellColours network = field ? exact_colours(cells, *field, simulator)
-                                      : sampled_colours(cells, report.networks[k].evaluation.stations, ranks, simulator,
-                                                        progress.stop, cancelled);
+                                      : sampled_colours(cells, report.networks[k].evaluation.stations, sample,
+                                                        simulator, progress.stop, cancelled);
     if (!cancelled)
       colours[k] = {{"sample", field ? std::uint64_t{0} : voxels},
                     {"coverage", packed(network.coverage)},
@@ -166,8 +167,8 @@ ordered_json view_json(const Report& report, Site& site, const Progress& progres
   ordered_json json = site_json(site, report.shown().stations, cells);
   if (cells.keys.empty()) return json;
   json["cells"]["networks"] = colours_json(report, simulator, cells, progress);
-  if (const MissedVoxels* const missed = report.options.missed; missed && !missed->ranks.empty())
-    json["cells"]["reasons"] = packed(cell_reasons(cells, missed->ranks, missed->status));
+  if (const MissedVoxels* const missed = report.options.missed; missed && !missed->voxels.empty())
+    json["cells"]["reasons"] = packed(cell_reasons(cells, missed->voxels, missed->status));
   return json;
 }
 

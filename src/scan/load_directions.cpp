@@ -36,7 +36,7 @@ DirectionTable load_directions(const std::filesystem::path& file) {
                  elevation = parse_number(cells[1], what, {.low = -90, .high = 90});
     table.directions.push_back({Angle::degrees(90 - elevation), Angle::degrees(azimuth)});
     if (cells_a_line < 3) continue;
-    const double time = parse_number(cells[2], what, any_seconds);
+    const double time = parse_number(cells[2], what, kAnySeconds);
     if (!table.times_s.empty() && time < table.times_s.back())
       throw Error(Errc::malformed_file, what + ": times must not fall");
     table.times_s.push_back(time);

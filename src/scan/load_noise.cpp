@@ -21,7 +21,7 @@ std::string noise_line(std::string line) {
   return line;
 }
 
-constexpr Interval incidences{.low = 0, .high = 90, .high_included = false};
+constexpr Interval kIncidences{.low = 0, .high = 90, .high_included = false};
 
 // Returns the reflectivity in the first cell of a header `incidence_deg@<reflectivity>`; nothing for another header.
 std::optional<double> measured_reflectivity(std::string_view cell, const std::string& what) {
@@ -72,9 +72,9 @@ NoiseTable load_noise(const std::string& name) {
       throw Error(Errc::malformed_file, what + ": '" + line + "' must have " +
                                             (header ? std::string("`reflectivity` and the distances in metres")
                                                     : std::to_string(table.distances_m.size() + 1) + " cells"));
-    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, of_angles ? incidences : any_share));
+    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, of_angles ? kIncidences : kAnyShare));
     for (std::size_t k = 1; k < cells.size(); ++k)
-      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, not_negative));
+      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, kNotNegative));
   }
   if (table.reflectivities.empty()) throw Error(Errc::malformed_file, name + ": holds no line of standard deviations");
   const auto ascending = [](const std::vector<double>& values) {

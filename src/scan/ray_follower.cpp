@@ -60,7 +60,7 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
     RayBundle ray = one_ray(from, narrowed, reflections == 0 ? start : kOffMirror_m, end - way);
     caster_.cast(ray);
     const std::uint32_t triangle = ray.primitive[0];
-    if (triangle == RayBundle::no_hit) break;
+    if (triangle == RayBundle::kNoHit) break;
     if (glass_) passed *= glass_->share(from, narrowed, reflections == 0 ? 0 : kOffMirror_m, ray.t[0]);
     if (!is_mirror(triangle)) {
       Seen last = seen(from, narrowed, ray.t[0], triangle);
@@ -76,7 +76,7 @@ RayFollower::Seen RayFollower::follow(const Float3& origin, const Float3& direct
     normals[reflections] = planes_->normal(triangle);
     d = reflected(d, normals[reflections]);
   }
-  return {.triangle = RayBundle::no_hit, .t = 0, .reflectivity = 0, .cosine = 0, .normal = {}, .weights = {}};
+  return {.triangle = RayBundle::kNoHit, .t = 0, .reflectivity = 0, .cosine = 0, .normal = {}, .weights = {}};
 }
 
 double RayFollower::distance_from_plane(std::uint32_t triangle, const Vec3& point) const {
@@ -89,26 +89,26 @@ void RayFollower::show_ghosts(const TraceScanner& scanner, const TraceStation& s
   const bool limited = scanner.limits && scanner.limits->enabled();
   parallel::for_all(tbb::blocked_range<std::size_t>(0, ghost.size(), 4096), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
-      if (raw.primitive[k] == RayBundle::no_hit || !is_mirror(raw.primitive[k])) continue;
+      if (raw.primitive[k] == RayBundle::kNoHit || !is_mirror(raw.primitive[k])) continue;
       const std::uint64_t ray = first_ray + k;
       const Float3 d = direction_of(*scanner.pattern, station, ray);
       const Seen found = follow(station.origin, d, scanner.pattern->min_range, scanner.pattern->max_range);
-      const float reach = limited && found.triangle != RayBundle::no_hit
+      const float reach = limited && found.triangle != RayBundle::kNoHit
                               ? scanner.limits->meshes[mesh(found.triangle)].largest_reach_square
                               : 0;
       const bool point =
-          found.triangle != RayBundle::no_hit &&
+          found.triangle != RayBundle::kNoHit &&
           (reach == 0 || PointJudge::detected(static_cast<double>(reach) * found.passed, found.cosine, found.t));
       float t = std::numeric_limits<float>::infinity();
       if (point) t = noise.enabled() ? noise.displaced(found.t, found.reflectivity, ray, station.place) : found.t;
-      raw.primitive[k] = point ? found.triangle : RayBundle::no_hit;
+      raw.primitive[k] = point ? found.triangle : RayBundle::kNoHit;
       ghost[k] = point ? 1 : 0;
       if (!raw.range.empty()) raw.range[k] = t;
       if (!raw.position.empty() && point) raw.position[k] = point_at(station.origin, d, t);
       if (!raw.normal.empty()) raw.normal[k] = point ? found.normal : Float3{};
       if (!raw.reflectivity.empty()) raw.reflectivity[k] = point ? found.reflectivity : 0;
       if (!raw.barycentric.empty()) raw.barycentric[k] = point ? found.weights : Float2{};
-      if (!raw.voxel.empty()) raw.voxel[k] = no_voxel;
+      if (!raw.voxel.empty()) raw.voxel[k] = kNoVoxel;
     }
   });
 }

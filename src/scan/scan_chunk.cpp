@@ -11,8 +11,8 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
-constexpr std::size_t grain = 4096;
+constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
+constexpr std::size_t kGrain = 4096;
 
 // Neighbouring rays mostly hit the same mesh, so the last one is tried before searching.
 class MeshLookup {
@@ -39,17 +39,17 @@ struct Sums {
 Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghost, std::size_t count,
               const SceneData& scene) {
   return parallel::reduce(
-      tbb::blocked_range<std::size_t>(0, count, grain), Sums{},
+      tbb::blocked_range<std::size_t>(0, count, kGrain), Sums{},
       [&](const tbb::blocked_range<std::size_t>& range, Sums sums) {
         MeshLookup mesh_of(scene);
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          if (raw.primitive[k] == no_primitive) continue;
+          if (raw.primitive[k] == kNoPrimitive) continue;
           ++sums.points;
           if (ghost[k] != 0) {
             ++sums.ghosts;
             continue;
           }
-          sums.counted += raw.voxel[k] != no_voxel;
+          sums.counted += raw.voxel[k] != kNoVoxel;
           sums.surveyed += scene.meshes[mesh_of(raw.primitive[k])].role == Role::surveyed;
         }
         return sums;
@@ -61,12 +61,12 @@ Sums sum_rays(const Tracer::RawChunk& raw, const std::vector<std::uint8_t>& ghos
 template <class To, class Make>
 void fill(std::vector<To>& to, std::size_t count, Make make) {
   to.resize(count);
-  parallel::for_all(tbb::blocked_range<std::size_t>(0, count, grain),
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, count, kGrain),
                     [&](const tbb::blocked_range<std::size_t>& range) { make(range.begin(), range.end()); });
 }
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::array<float, 3> nowhere{nan, nan, nan};
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<float, 3> kNowhere{kNan, kNan, kNan};
 
 std::array<float, 3> array_of(const Float3& v) { return {v.x, v.y, v.z}; }
 
@@ -99,7 +99,7 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::
 
   if (outputs & scan_position) {
     fill(chunk.position, count, [&](std::size_t k, std::size_t end) {
-      for (; k != end; ++k) chunk.position[k] = raw.primitive[k] == no_primitive ? nowhere : array_of(raw.position[k]);
+      for (; k != end; ++k) chunk.position[k] = raw.primitive[k] == kNoPrimitive ? kNowhere : array_of(raw.position[k]);
     });
   }
   if (outputs & scan_normal) {
@@ -111,14 +111,14 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const std::vector<std::
     fill(chunk.mesh, count, [&](std::size_t k, std::size_t end) {
       MeshLookup mesh_of(scene);
       for (; k != end; ++k)
-        chunk.mesh[k] = raw.primitive[k] == no_primitive ? -1 : static_cast<std::int32_t>(mesh_of(raw.primitive[k]));
+        chunk.mesh[k] = raw.primitive[k] == kNoPrimitive ? -1 : static_cast<std::int32_t>(mesh_of(raw.primitive[k]));
     });
   }
   if (outputs & scan_colour) {
     fill(chunk.colour, count, [&](std::size_t k, std::size_t end) {
       MeshLookup mesh_of(scene);
       for (; k != end; ++k) {
-        if (raw.primitive[k] == no_primitive) {
+        if (raw.primitive[k] == kNoPrimitive) {
           chunk.colour[k] = 0;
         } else if (options.colour) {
           const RayAngles angles = scanner.angles(chunk.first_ray + k);

@@ -14,12 +14,12 @@
 namespace vantage {
 namespace {
 
-constexpr double floor_guard = 1e-9;      // makes 360° / 0.1° 3600 and not 3599
-constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may exceed 360° by rounding
-constexpr double step_guard = 1e-9;       // of a mean step that was written in degrees
-constexpr double max_steps = 16'777'216;  // 2^24 per direction: 0.00002° over a full turn
+constexpr double kFloorGuard = 1e-9;      // makes 360° / 0.1° 3600 and not 3599
+constexpr double kAngleGuard_deg = 1e-9;  // 360° given in radians may exceed 360° by rounding
+constexpr double kStepGuard = 1e-9;       // of a mean step that was written in degrees
+constexpr double kMaxSteps = 16'777'216;  // 2^24 per direction: 0.00002° over a full turn
 
-double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + floor_guard); }
+double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + kFloorGuard); }
 
 Angle zenith_sweep(const Scanner& scanner) { return Angle::radians(scanner.vertical_angle.in_radians() / 2); }
 
@@ -40,7 +40,7 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
   if (count < 1)
     refuse(member + " in degrees", degrees,
            std::string("at most ") + sweep_name + ", " + ten_digits(sweep.in_degrees()));
-  if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
+  if (count > kMaxSteps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
 }
 
 // Returns the azimuth from the middle of the sweep, within half a turn.
@@ -76,7 +76,7 @@ void check_directions(const Scanner& scanner) {
   if (!scanner.row_zeniths.empty())
     throw Error(Errc::invalid_argument,
                 "scanner: there are both directions and row_zeniths, but only one may be given");
-  if (static_cast<double>(directions.size()) > max_steps)
+  if (static_cast<double>(directions.size()) > kMaxSteps)
     refuse("the number of directions", static_cast<double>(directions.size()), "at most 2^24");
   if (!scanner.times_s.empty() && scanner.times_s.size() != directions.size())
     refuse("the number of times_s", static_cast<double>(scanner.times_s.size()),
@@ -84,9 +84,9 @@ void check_directions(const Scanner& scanner) {
   const auto member = [](const char* name, std::size_t k) { return name + ("[" + std::to_string(k) + "]"); };
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const double zenith = directions[k].zenith.in_degrees(), azimuth = directions[k].azimuth.in_degrees();
-    if (!(zenith >= 0 && zenith <= 180 + angle_guard_deg))
+    if (!(zenith >= 0 && zenith <= 180 + kAngleGuard_deg))
       refuse(member("directions", k) + ": zenith in degrees", zenith, "from 0 to 180");
-    if (!(azimuth >= -360 - angle_guard_deg && azimuth <= 360 + angle_guard_deg))
+    if (!(azimuth >= -360 - kAngleGuard_deg && azimuth <= 360 + kAngleGuard_deg))
       refuse(member("directions", k) + ": azimuth in degrees", azimuth, "from -360 to 360");
   }
   for (std::size_t k = 0; k < scanner.times_s.size(); ++k) {
@@ -96,14 +96,14 @@ void check_directions(const Scanner& scanner) {
   }
   const double step = listed_step(directions);
   for (const Angle& own : {scanner.azimuth_step, scanner.zenith_step})
-    if (!(std::abs(own.in_radians() / step - 1) <= step_guard))
+    if (!(std::abs(own.in_radians() / step - 1) <= kStepGuard))
       refuse("a step in degrees", own.in_degrees(),
              "the mean step of directions, " + ten_digits(step * 180 / std::numbers::pi) +
                  ", as set_directions() sets it");
   const ListedField field = field_of(directions);
   const double first = scanner.zenith_start.in_radians(), last = first + scanner.vertical_angle.in_radians() / 2;
-  if (field.first < first - angle_guard_deg || field.last > last + angle_guard_deg ||
-      2 * field.aside > scanner.horizontal_angle.in_radians() + angle_guard_deg)
+  if (field.first < first - kAngleGuard_deg || field.last > last + kAngleGuard_deg ||
+      2 * field.aside > scanner.horizontal_angle.in_radians() + kAngleGuard_deg)
     throw Error(Errc::invalid_argument, "scanner: directions must lie in the field, which set_directions() sets");
 }
 
@@ -114,22 +114,22 @@ double mean_step(const std::vector<Angle>& rows) {
 
 void check_rows(const Scanner& scanner) {
   const std::vector<Angle>& rows = scanner.row_zeniths;
-  if (static_cast<double>(rows.size()) > max_steps)
+  if (static_cast<double>(rows.size()) > kMaxSteps)
     refuse("the number of row_zeniths", static_cast<double>(rows.size()), "at most 2^24");
   const double first = scanner.zenith_start.in_degrees(), last = first + scanner.vertical_angle.in_degrees() / 2;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double zenith = rows[i].in_degrees();
     const std::string member = "row_zeniths[" + std::to_string(i) + "] in degrees";
-    if (!(zenith >= 0 && zenith <= 180 + angle_guard_deg)) refuse(member, zenith, "from 0 to 180");
+    if (!(zenith >= 0 && zenith <= 180 + kAngleGuard_deg)) refuse(member, zenith, "from 0 to 180");
     if (i > 0 && !(rows[i - 1] < rows[i]))
       refuse(member, zenith, "above the zenith before it, " + ten_digits(rows[i - 1].in_degrees()));
   }
-  if (rows.front().in_degrees() < first - angle_guard_deg || rows.back().in_degrees() > last + angle_guard_deg)
+  if (rows.front().in_degrees() < first - kAngleGuard_deg || rows.back().in_degrees() > last + kAngleGuard_deg)
     throw Error(Errc::invalid_argument, "scanner: row_zeniths from " + ten_digits(rows.front().in_degrees()) + " to " +
                                             ten_digits(rows.back().in_degrees()) +
                                             " degrees must lie in the vertical field, " + ten_digits(first) + " to " +
                                             ten_digits(last) + ", which set_row_zeniths() sets");
-  if (rows.size() > 1 && !(std::abs(mean_step(rows) / scanner.zenith_step.in_radians() - 1) <= step_guard))
+  if (rows.size() > 1 && !(std::abs(mean_step(rows) / scanner.zenith_step.in_radians() - 1) <= kStepGuard))
     refuse("zenith_step in degrees", scanner.zenith_step.in_degrees(),
            "the mean step of row_zeniths, " + ten_digits(mean_step(rows) * 180 / std::numbers::pi) +
                ", as set_row_zeniths() sets it");
@@ -230,12 +230,12 @@ void Scanner::check() const {
   if (!directions.empty()) check_directions(*this);
   if (!row_zeniths.empty()) check_rows(*this);
   const double horizontal = horizontal_angle.in_degrees(), vertical = vertical_angle.in_degrees();
-  if (!(horizontal > 0 && horizontal <= 360 + angle_guard_deg))
+  if (!(horizontal > 0 && horizontal <= 360 + kAngleGuard_deg))
     refuse("horizontal_angle in degrees", horizontal, "in (0, 360]");
-  if (!(vertical > 0 && vertical <= 360 + angle_guard_deg))
+  if (!(vertical > 0 && vertical <= 360 + kAngleGuard_deg))
     refuse("vertical_angle in degrees", vertical, "in (0, 360]");
   const double start = zenith_start.in_degrees();
-  if (!(start >= 0 && start + vertical / 2 <= 180 + angle_guard_deg))
+  if (!(start >= 0 && start + vertical / 2 <= 180 + kAngleGuard_deg))
     refuse("zenith_start in degrees", start,
            "0 or more, and at most 180 with half of vertical_angle, " + ten_digits(vertical / 2));
   check_step("azimuth_step", azimuth_step, "horizontal_angle", horizontal_angle);
@@ -261,7 +261,7 @@ void Scanner::check() const {
   const double tilt_arcsec = tilt_accuracy.in_degrees() * 3600;
   if (!(tilt_arcsec >= 0 && tilt_arcsec <= 18'000))
     refuse("tilt_accuracy in arc seconds", tilt_arcsec, "from 0 to 18000");
-  check_number(points_per_second, "scanner: points_per_second", measurable);
+  check_number(points_per_second, "scanner: points_per_second", kMeasurable);
   const auto check_battery = [](double lasts, const char* what) {
     if (lasts != 0 && !(lasts >= 1 && lasts <= 1e6)) refuse(what, lasts, "0, or from 1 to 1e6");
   };

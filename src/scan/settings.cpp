@@ -92,11 +92,11 @@ const SettingTable<std::optional<BeamOptions>>& beam_settings() {
           .custom(
               "pulse", "M", "Length of a pulse: surfaces nearer together than half of it share a return; 1 otherwise",
               [own](Beam& beam, const std::string& text, const std::string& what) {
-                own(beam).pulse_m = parse_number(text, what, measurable);
+                own(beam).pulse_m = parse_number(text, what, kMeasurable);
               },
               given)
           .checked([](const Beam& beam, const std::string& what) {
-            if (beam) check_number(beam->pulse_m, what, measurable);
+            if (beam) check_number(beam->pulse_m, what, kMeasurable);
           })
           .take();
   return table;

@@ -52,11 +52,11 @@ std::uint32_t stop_at(CountTo count_to, double goal) {
   return count_to == CountTo::all ? 0 : count_to == CountTo::one ? 1 : static_cast<std::uint32_t>(std::ceil(goal));
 }
 
-constexpr std::uint32_t sample_groups = 20;
+constexpr std::uint32_t kSampleGroups = 20;
 constexpr std::uint64_t kSampleGrowth = 4;  // of the voxels that registration is summed over
 // Most voxels for which all planes are kept, some 700 MB; larger fields are registered in parts.
 constexpr std::uint64_t kKeptPlanes = std::uint64_t{1} << 23, kPlanesAtOnce = std::uint64_t{1} << 22;
-constexpr std::uint32_t known_outputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
+constexpr std::uint32_t kKnownOutputs = scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids |
                                         scan_colour | scan_voxel | scan_ghost | scan_returns;
 
 // Rounds up to six digits, so that the text, used as a user size, gives the voxel size that it states.
@@ -95,7 +95,7 @@ using MakeGrid = std::function<std::optional<VoxelGrid>(double user_size_m)>;
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
                                             std::span<const double> spacings_m, const MakeGrid& make,
                                             const Progress& progress) {
-  check_number(config.point_spacing_m, "the point spacing in metres", measurable);
+  check_number(config.point_spacing_m, "the point spacing in metres", kMeasurable);
   // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a working size.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
@@ -144,7 +144,7 @@ class AsCaller {
 void check_beam(const BeamOptions& beam, const Scanner& scanner) {
   if (beam.sub_rays != 7 && beam.sub_rays != 19)
     throw Error(Errc::invalid_argument, "a beam has 7 or 19 sub-rays, and not " + std::to_string(beam.sub_rays));
-  check_number(beam.pulse_m, "the length of a pulse in metres", measurable);
+  check_number(beam.pulse_m, "the length of a pulse in metres", kMeasurable);
   if (scanner.beam_divergence.in_radians() == 0 && scanner.exit_diameter_m == 0)
     throw Error(Errc::invalid_argument, "the beam of the scanner \"" + scanner.name +
                                             "\" is not known: choose a scanner that states it, or give its divergence "
@@ -511,7 +511,7 @@ struct Simulator::Impl {
       for (std::size_t w = 0; w < masks.words(); ++w)
         parallel::for_all(std::size_t{0}, sample.size(),
                           [&](std::size_t k) { words[w * sample.size() + k] = masks.word(w, sample[k]); });
-      take_registration(counts, sum_patches(*job, stations, counts.stations, words, sample_groups));
+      take_registration(counts, sum_patches(*job, stations, counts.stations, words, kSampleGroups));
       if (!options.registration_known || options.registration_known(network, counts)) return true;
       if (voxels > grid->size() / kSampleGrowth) break;
     }
@@ -724,9 +724,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
 
 ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& options,
                                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
-  if (options.outputs & ~known_outputs)
+  if (options.outputs & ~kKnownOutputs)
     throw Error(Errc::invalid_argument,
-                "scan: unknown output bits " + std::to_string(options.outputs & ~known_outputs));
+                "scan: unknown output bits " + std::to_string(options.outputs & ~kKnownOutputs));
   ScanSummary summary;
   if (!station.active) return summary;
   const TraceStation from = trace_station(station, options.place);
@@ -771,7 +771,7 @@ ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& opt
       returns.resize(chunk.ray_count);
       if (options.outputs & scan_returns)
         std::ranges::transform(raw.primitive, returns.begin(), [](std::uint32_t triangle) {
-          return static_cast<std::uint8_t>(triangle == RayBundle::no_hit ? 0 : 1);
+          return static_cast<std::uint8_t>(triangle == RayBundle::kNoHit ? 0 : 1);
         });
       if (options.instrument) apply(*options.instrument, scanner, from, first, raw);
       fill_chunk(chunk, raw, ghost, returns, options, data(), scanner, summary);
@@ -923,7 +923,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   if (!options.leave_out.empty() && options.leave_out.size() != sample.size())
     throw Error(Errc::invalid_argument, "evaluate_sampled: leave_out has " + std::to_string(options.leave_out.size()) +
                                             " voxels, and the sample " + std::to_string(sample.size()));
-  const std::size_t groups = options.groups ? sample_groups : 1;
+  const std::size_t groups = options.groups ? kSampleGroups : 1;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> tracing;
@@ -935,9 +935,9 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
       const std::uint32_t point_weight = grid->demands().least_point_weight();
       all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_weight, networks[k].size(), options.overlap,
                             options.registration.has_value());
-      for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g) {
-        all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
-                                             weight_of(sample, g, sample_groups), point_weight, networks[k].size(),
+      for (std::uint32_t g = 0; options.groups && g < kSampleGroups; ++g) {
+        all[k].groups.push_back(nothing_seen((sample.size() + kSampleGroups - 1 - g) / kSampleGroups,
+                                             weight_of(sample, g, kSampleGroups), point_weight, networks[k].size(),
                                              options.overlap, options.registration.has_value()));
         if (options.registration) all[k].registration.groups.push_back(std::move(all[k].groups.back().registration));
       }
@@ -971,12 +971,12 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
     for (std::size_t k = 0; k * words < masks.size(); ++k) {
       NetworkCounts& own = sharing[first + k];
       own.stations = sizes[first + k];
-      own.groups.resize(options.groups ? sample_groups : 0);
+      own.groups.resize(options.groups ? kSampleGroups : 0);
       share_one_sided(own, tracing[first + k], *planes, sample, masks.subspan(k * words, words));
     }
   };
   const Tracer::SampleJob job{.sample = sample,
-                              .groups = options.groups ? sample_groups : 0,
+                              .groups = options.groups ? kSampleGroups : 0,
                               .masks = options.overlap,
                               .stop_at = stop_at(options.count_to, goal),
                               .points = options.points || options.meshes ? decltype(options.points)(points) : nullptr,

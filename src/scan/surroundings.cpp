@@ -11,9 +11,9 @@ namespace {
 
 // Voxels of a hundredth to a two-hundredth of the site distinguish a door from a desk, but not bolts. Above half a
 // metre, rooms of a large site would merge.
-constexpr double extent_share = 0.01, largest_voxel_m = 0.5;
+constexpr double kExtentShare = 0.01, kLargestVoxel_m = 0.5;
 // Two rays cross a voxel at the far end of the site. Near surfaces get more; oblique ones get fewer, as in a survey.
-constexpr double rays_across = 2, fewest_rays = 16;
+constexpr double kRaysAcross = 2, kFewestRays = 16;
 
 double extent_of(const Scene& scene) {
   const Vec3 size = scene.bounds().size();
@@ -39,7 +39,7 @@ Simulator surroundings_of(const Simulator& simulator, bool through_glass) {
     config.engine = simulator.engine().engine;
     config.device_index = simulator.engine().device_index;
   }
-  config.user_size_m = std::max(simulator.voxel_size_m(), std::min(extent_share * extent, largest_voxel_m));
+  config.user_size_m = std::max(simulator.voxel_size_m(), std::min(kExtentShare * extent, kLargestVoxel_m));
   config.point_spacing_m = config.user_size_m / 4;  // the goal is not used here, but must be at least 1
   config.noise = false;
   config.max_incidence = std::nullopt;
@@ -49,10 +49,10 @@ Simulator surroundings_of(const Simulator& simulator, bool through_glass) {
   for (Scanner& scanner : scanners) {
     const double reach = std::min(scanner.max_range_m, extent);
     if (!(reach > 0)) continue;
-    const Angle step = Angle::radians(config.user_size_m / 2 / (rays_across * reach));
+    const Angle step = Angle::radians(config.user_size_m / 2 / (kRaysAcross * reach));
     // At least a few rays, even if the sweep is narrow.
     const auto coarser = [&](Angle own, Angle sweep) {
-      return std::max(own, std::min(step, Angle::radians(sweep.in_radians() / fewest_rays)));
+      return std::max(own, std::min(step, Angle::radians(sweep.in_radians() / kFewestRays)));
     };
     if (!scanner.directions.empty()) {
       scanner.set_directions(thinned(scanner, coarser(scanner.azimuth_step, scanner.horizontal_angle)));

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint64_t sample_stream = 0x766f78656cull;
+constexpr std::uint64_t kSampleStream = 0x766f78656cull;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t 
   std::vector<std::uint32_t> voxel_indices(size);
   const std::uint64_t step = golden_step(population);
   auto voxel_index =
-      static_cast<std::uint64_t>(RandomStream(seed, sample_stream).uniform() * static_cast<double>(population));
+      static_cast<std::uint64_t>(RandomStream(seed, kSampleStream).uniform() * static_cast<double>(population));
   voxel_index = (voxel_index + from % population * step) % population;
   for (std::uint32_t& r : voxel_indices) {
     r = static_cast<std::uint32_t>(voxel_index);

@@ -140,7 +140,7 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
     RayBundle beams = rays;
     beams.start = 0;
     for (std::uint32_t k = 0; k < rays.size; ++k)
-      if (rays.primitive[k] != RayBundle::no_hit) beams.end[k] = rays.t[k];
+      if (rays.primitive[k] != RayBundle::kNoHit) beams.end[k] = rays.t[k];
     behind_glass = glass->follow(beams, passed);
   }
 
@@ -149,18 +149,18 @@ void WideBeam::Follower::find_echoes(std::uint64_t ray) {
     const Float3 way{rays.x[k], rays.y[k], rays.z[k]};
     Echo echo{0, 0, 0, rays.primitive[k], false, from[k], way, {}};
     double gleam = 1;
-    if (behind_glass && passed[k].pane != RayBundle::no_hit && passed[k].t >= rays.start) {
+    if (behind_glass && passed[k].pane != RayBundle::kNoHit && passed[k].t >= rays.start) {
       echo.triangle = passed[k].pane;
       echo.t = static_cast<double>(passed[k].t);
       echo.seen = beam_.rays_.seen(from[k], way, passed[k].t, echo.triangle);
       echo.reflectivity = places.share[k];
       gleam = kPaneGleam;
     } else {
-      if (echo.triangle == RayBundle::no_hit) continue;
+      if (echo.triangle == RayBundle::kNoHit) continue;
       if (beam_.rays_.is_mirror(echo.triangle)) {
         echo.seen = beam_.rays_.follow(from[k], way, rays.start, rays.end[k]);
         echo.ghost = true;
-        if (echo.seen.triangle == RayBundle::no_hit) continue;
+        if (echo.seen.triangle == RayBundle::kNoHit) continue;
         echo.triangle = echo.seen.triangle;
       } else {
         echo.seen = beam_.rays_.seen(from[k], way, rays.t[k], echo.triangle);
@@ -200,7 +200,7 @@ WideBeam::Return WideBeam::Follower::merged(std::uint64_t ray, std::size_t begin
               .t = t,
               .reflectivity = static_cast<float>(std::min(reflectivity, 1.0)),
               .triangle = main->triangle,
-              .voxel = no_voxel,
+              .voxel = kNoVoxel,
               .dropped = {},
               .point = {},
               .normal = main->seen.normal,
@@ -209,7 +209,7 @@ WideBeam::Return WideBeam::Follower::merged(std::uint64_t ray, std::size_t begin
   made.point = point_at(station_.origin, axis_, made.t);
   if (made.ghost) return made;
   const std::uint32_t voxel_index = beam_.grid_->index_of(made.point), mesh = beam_.rays_.mesh(made.triangle);
-  if (voxel_index == no_voxel) return made;
+  if (voxel_index == kNoVoxel) return made;
   made.wrong_voxel = made.mixed && std::none_of(echoes_.begin() + static_cast<std::ptrdiff_t>(begin),
                                                 echoes_.begin() + static_cast<std::ptrdiff_t>(end), [&](const Echo& e) {
                                                   return beam_.grid_->index_of(point_at(
@@ -250,8 +250,8 @@ std::span<const WideBeam::Return> WideBeam::Follower::returns_of(std::uint64_t r
     found_.push_back(merged(ray, lost.first, lost.second, strongest_lost));
     Return& lost_one = found_.front();
     DroppedPoints& dropped = lost_one.dropped;
-    if (lost_one.voxel != no_voxel || dropped.points > 0) dropped.echo = dropped.points = 1;
-    lost_one.detected = false, lost_one.voxel = no_voxel;
+    if (lost_one.voxel != kNoVoxel || dropped.points > 0) dropped.echo = dropped.points = 1;
+    lost_one.detected = false, lost_one.voxel = kNoVoxel;
     return found_;
   }
   if (found_.size() > 1 && options_.returns != Returns::all) {
@@ -301,7 +301,7 @@ std::optional<WideBeam::Totals> WideBeam::count(const Scanner& scanner, const Tr
               if (!own.detected) continue;
               ++sum.points;
               sum.mixed = sum.mixed + mixed_points(own);
-              if (own.voxel == no_voxel) continue;
+              if (own.voxel == kNoVoxel) continue;
               ++sum.points_on_surveyed;
               std::atomic_ref(points[own.voxel]).fetch_add(1, std::memory_order_relaxed);
             }
@@ -316,7 +316,7 @@ std::optional<WideBeam::Totals> WideBeam::count(const Scanner& scanner, const Tr
 
 MixedPoints WideBeam::mixed_points(const Return& own) {
   if (!own.mixed) return {};
-  return {.points = 1, .counted = own.voxel != no_voxel ? 1u : 0u, .wrong_voxel = own.wrong_voxel ? 1u : 0u};
+  return {.points = 1, .counted = own.voxel != kNoVoxel ? 1u : 0u, .wrong_voxel = own.wrong_voxel ? 1u : 0u};
 }
 
 void WideBeam::fill(const std::vector<Return>& returns, std::uint8_t number, std::uint64_t first_ray,
@@ -326,9 +326,9 @@ void WideBeam::fill(const std::vector<Return>& returns, std::uint8_t number, std
   raw.position.assign(ray_count, {});
   raw.normal.assign(ray_count, {});
   raw.reflectivity.assign(ray_count, 0);
-  raw.primitive.assign(ray_count, RayBundle::no_hit);
+  raw.primitive.assign(ray_count, RayBundle::kNoHit);
   raw.barycentric.assign(ray_count, {});
-  raw.voxel.assign(ray_count, no_voxel);
+  raw.voxel.assign(ray_count, kNoVoxel);
   ghost.assign(ray_count, 0);
   count.assign(ray_count, 0);
   for (const Return& own : returns) {

@@ -25,8 +25,8 @@ struct Connected {
 // Groups triangles. Two are connected if they share the position of a corner.
 template <class Position>
 Connected connect(std::span<const Triangle> triangles, std::span<const Position> positions) {
-  constexpr std::uint32_t none = 0xFFFFFFFFu;
-  std::uint32_t low = none, high = 0;
+  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  std::uint32_t low = kNone, high = 0;
   for (const Triangle& t : triangles)
     for (const std::uint32_t v : t) low = std::min(low, v), high = std::max(high, v);
   if (triangles.empty()) return {};
@@ -46,10 +46,10 @@ Connected connect(std::span<const Triangle> triangles, std::span<const Position>
     if (key(order[i]) == key(order[i - 1])) parts.join(order[i], order[i - 1]);
   Connected out{std::vector<std::uint32_t>(triangles.size()), {0}};
   std::vector<std::uint32_t>& number = order;  // of the part of each root
-  number.assign(parts.size(), none);
+  number.assign(parts.size(), kNone);
   for (const Triangle& t : triangles) {
     std::uint32_t& part = number[parts.find(t[0] - low)];
-    if (part == none) part = static_cast<std::uint32_t>(out.begin.size()) - 1, out.begin.push_back(0);
+    if (part == kNone) part = static_cast<std::uint32_t>(out.begin.size()) - 1, out.begin.push_back(0);
     ++out.begin[part + 1];
   }
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());

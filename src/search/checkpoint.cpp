@@ -26,14 +26,14 @@ void pass(Archive& archive, T& checkpoint) {
   archive.text(snapshot.optimiser), archive.text(snapshot.evaluator);
   archive.whole(snapshot.drawn), archive.whole(snapshot.redrawn);
   // None is empty. Lists of empty ones would take far more memory than bytes in a file.
-  constexpr std::size_t least_reals = 1 + sizeof(double);
-  constexpr std::size_t least_line = 19;  // two counts, two reals, a length
-  archive.list(snapshot.history, least_line, [&](auto& line) {
+  constexpr std::size_t kLeastRealsBytes = 1 + sizeof(double);
+  constexpr std::size_t kLeastLineBytes = 19;  // two counts, two reals, a length
+  archive.list(snapshot.history, kLeastLineBytes, [&](auto& line) {
     archive.whole(line.iteration), archive.whole(line.evaluations);
     archive.raw(line.hypervolume), archive.raw(line.seconds);
-    archive.list(line.front, least_reals, reals);
+    archive.list(line.front, kLeastRealsBytes, reals);
   });
-  archive.list(checkpoint.since, least_reals, reals);
+  archive.list(checkpoint.since, kLeastRealsBytes, reals);
 }
 
 }  // namespace

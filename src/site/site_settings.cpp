@@ -19,7 +19,7 @@ auto wish(std::string unit, std::string example, Parse parse) {
       };
 }
 
-double length(const std::string& text, const std::string& what) { return parse_number(text, what, measurable); }
+double length(const std::string& text, const std::string& what) { return parse_number(text, what, kMeasurable); }
 
 // A check of the values of wishes.
 template <class Values>
@@ -77,13 +77,13 @@ void add_scene(Rows& rows) {
           "Widest beam footprint, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.details_mm; }, wish("PATTERN=MM", "pipe*=10", length))
       .checked(each_in(
-          [](const SiteOptions& o) -> auto& { return o.scene.details_mm; }, measurable))
+          [](const SiteOptions& o) -> auto& { return o.scene.details_mm; }, kMeasurable))
       .repeated(
           "accuracy", "PATTERN=MM",
           "Largest range noise, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.accuracies_mm; }, wish("PATTERN=MM", "flange*=1", length))
       .checked(each_in(
-          [](const SiteOptions& o) -> auto& { return o.scene.accuracies_mm; }, measurable))
+          [](const SiteOptions& o) -> auto& { return o.scene.accuracies_mm; }, kMeasurable))
       .custom(
           "unit", "UNIT", "Unit of lengths in the file: m, cm, mm, in or ft; recognised by default",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
@@ -102,11 +102,11 @@ void add_scene(Rows& rows) {
       .custom(
           "wall-height", "M", "Height of a floor plan's walls; 2.7",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
-            o.scene.wall_height_m = parse_number(text, what, measurable);
+            o.scene.wall_height_m = parse_number(text, what, kMeasurable);
           },
           [](const SiteOptions& o) { return o.scene.wall_height_m.has_value(); })
       .checked(if_given(
-          [](const SiteOptions& o) -> auto& { return o.scene.wall_height_m; }, measurable))
+          [](const SiteOptions& o) -> auto& { return o.scene.wall_height_m; }, kMeasurable))
       .custom(
           "scene-index", "N", "Scene of the file; its own default otherwise",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
@@ -116,7 +116,7 @@ void add_scene(Rows& rows) {
       .advanced()
       .number_in(
           "diffuse", "R", "Diffuse reflection coefficient if the file gives none, 0 to 1",
-          [](SiteOptions & o) -> auto& { return o.scene.default_diffuse; }, any_share)
+          [](SiteOptions & o) -> auto& { return o.scene.default_diffuse; }, kAnyShare)
       .advanced()
       .custom(
           "shared-meshes", "WHEN",
@@ -144,17 +144,17 @@ void add_scanner(Rows& rows) {
       .by_scene()
       .optional("step", "DEG[,DEG]", "Angle between rays: one for both, or azimuth and zenith", &SiteOptions::steps,
                 [](const std::string& text, const std::string& what) {
-                  const auto values = parse_numbers(text, what, 1, 2, measurable);
+                  const auto values = parse_numbers(text, what, 1, 2, kMeasurable);
                   return std::array{Angle::degrees(values.front()), Angle::degrees(values.back())};
                 })
       .checked([](const SiteOptions& o, const std::string& what) {
         if (o.steps)
-          for (const Angle step : *o.steps) check_number(whole_degrees(step), what, measurable);
+          for (const Angle step : *o.steps) check_number(whole_degrees(step), what, kMeasurable);
       })
       .by_scene()
       .by_preset()
       .degrees("heading", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", &SiteOptions::heading,
-               any_number)
+               kAnyNumber)
       .by_scene()
       .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle, {.low = 1e-6, .high = 360})
       .by_scene()
@@ -168,10 +168,10 @@ void add_scanner(Rows& rows) {
       .advanced()
       .by_scene()
       .by_preset()
-      .number("height", "M", "Height of the scanner's head above the ground", &SiteOptions::height_m, not_negative)
+      .number("height", "M", "Height of the scanner's head above the ground", &SiteOptions::height_m, kNotNegative)
       .by_scene()
       .numbers("range", "MIN,MAX", "Nearest and farthest distance measured, in metres", &SiteOptions::range_m, 2,
-               not_negative)
+               kNotNegative)
       .by_scene()
       .by_preset()
       .text("noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", &SiteOptions::noise)
@@ -179,14 +179,14 @@ void add_scanner(Rows& rows) {
       .by_preset()
       .numbers("beam", "MRAD,MM",
                "Full angle of the beam's divergence, in milliradians, and its diameter at the exit, in millimetres",
-               &SiteOptions::beam, 2, not_negative)
+               &SiteOptions::beam, 2, kNotNegative)
       .advanced()
       .by_scene()
       .by_preset()
       .numbers("calibration", "ARCSEC,MM,PPM",
                "Errors that a calibration leaves, which all scans share: of angles in arc seconds, and of the offset "
                "and the scale of ranges, one standard deviation each",
-               &SiteOptions::calibration, 3, not_negative)
+               &SiteOptions::calibration, 3, kNotNegative)
       .advanced()
       .by_scene()
       .by_preset()
@@ -196,7 +196,7 @@ void add_scanner(Rows& rows) {
                 &SiteOptions::detection,
                 [](const std::string& text, const std::string& what) {
                   if (text == "off") return std::array{0.0, 1.0};
-                  const auto values = parse_numbers(text, what, 2, 2, positive);
+                  const auto values = parse_numbers(text, what, 2, 2, kPositive);
                   if (values[1] > 1)
                     throw Error(Errc::invalid_argument, what + ": a reflectivity is at most 1, and " + text +
                                                             " ends with " + std::to_string(values[1]));
@@ -205,18 +205,18 @@ void add_scanner(Rows& rows) {
       .advanced()
       .checked([](const SiteOptions& o, const std::string& what) {
         if (!o.detection) return;
-        check_number((*o.detection)[0], what, not_negative);
-        check_number((*o.detection)[1], what, any_share);
+        check_number((*o.detection)[0], what, kNotNegative);
+        check_number((*o.detection)[1], what, kAnyShare);
       })
       .by_scene()
       .by_preset()
       .number("dropout", "P", "Share of the rays, 0 to below 1, whose echo is lost at random; that of the preset, or 0",
-              &SiteOptions::dropout, share_below_1)
+              &SiteOptions::dropout, kShareBelow1)
       .advanced()
       .by_scene()
       .by_preset()
       .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
-              &SiteOptions::points_per_second, measurable)
+              &SiteOptions::points_per_second, kMeasurable)
       .advanced()
       .by_preset()
       .optional("battery", "MIN[,SCANS]",
@@ -224,7 +224,7 @@ void add_scanner(Rows& rows) {
                 "preset otherwise",
                 &SiteOptions::battery,
                 [](const std::string& text, const std::string& what) {
-                  const auto values = parse_numbers(text, what, 1, 2, not_negative);
+                  const auto values = parse_numbers(text, what, 1, 2, kNotNegative);
                   const std::array battery{values.front(), values.size() > 1 ? values.back() : 0};
                   check_battery(battery, what);
                   return battery;
@@ -238,7 +238,7 @@ void add_scanner(Rows& rows) {
 
 void add_measure(Rows& rows) {
   rows.group("Measure")
-      .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, measurable)
+      .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, kMeasurable)
       .advanced()
       .by_scene()
       .degrees("incidence",
@@ -246,7 +246,7 @@ void add_measure(Rows& rows) {
                "is set, else 90",
                &SiteOptions::max_incidence, {.low = 1e-6, .high = 90})
       .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
-              measurable)
+              kMeasurable)
       .by_scene()
       .optional("for", "1:N|LOA20..LOA50",
                 "What the scans are for, which sets the spacing: a drawing at this scale (1:50: 5 mm), or an accuracy "
@@ -266,19 +266,19 @@ void add_placement(Rows& rows) {
   rows.group("Placement")
       .numbers("security", "H1,H2,R",
                "Clear space of a station: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
-               &SiteOptions::security_m, 3, not_negative)
+               &SiteOptions::security_m, 3, kNotNegative)
       .by_scene()
       .degrees("slope", "Steepest walkable ground, if the scene marks no search area", &SiteOptions::max_slope,
                {.low = 0, .high = 90, .high_included = false})
       .by_scene()
-      .number("headroom", "M", "Clear height above walkable ground", &SiteOptions::headroom_m, not_negative)
+      .number("headroom", "M", "Clear height above walkable ground", &SiteOptions::headroom_m, kNotNegative)
       .by_scene()
-      .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, not_negative)
+      .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, kNotNegative)
       .advanced()
       .by_scene()
       .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
-               &SiteOptions::passage_m, 2, measurable)
-      .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, not_negative)
+               &SiteOptions::passage_m, 2, kMeasurable)
+      .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, kNotNegative)
       .repeated(
           "enter", "X,Y,Z", "Entrance of the site; found automatically by default; may be repeated",
           [](SiteOptions & o) -> auto& { return o.enter; },
@@ -299,7 +299,7 @@ void add_placement(Rows& rows) {
           [](SiteOptions & o) -> auto& { return o.scene.station_area; })
       .advanced()
       .numbers("levels", "LOW,HIGH", "Heights of ground between which stations may stand", &SiteOptions::levels_m, 2,
-               any_number)
+               kAnyNumber)
       .repeated(
           "within", "FILE", "Polygon that all stations stand in: GeoJSON, or a CSV file with x,y on each line",
           [](SiteOptions & o) -> auto& { return o.within; },

@@ -9,15 +9,15 @@
 namespace vantage {
 namespace {
 
-constexpr std::array<std::pair<Engine, const char*>, 4> names{{{Engine::automatic, "auto"},
-                                                               {Engine::ray_query, "ray_query"},
-                                                               {Engine::compute_bvh, "compute_bvh"},
-                                                               {Engine::embree, "embree"}}};
+constexpr std::array<std::pair<Engine, const char*>, 4> kEngineNames{{{Engine::automatic, "auto"},
+                                                                      {Engine::ray_query, "ray_query"},
+                                                                      {Engine::compute_bvh, "compute_bvh"},
+                                                                      {Engine::embree, "embree"}}};
 
 }  // namespace
 
 std::string to_string(Engine engine) {
-  for (const auto& [known, name] : names) {
+  for (const auto& [known, name] : kEngineNames) {
     if (known == engine) return name;
   }
   return "unknown";
@@ -27,7 +27,7 @@ Engine engine_from_string(const std::string& text) {
   if (text == "automatic") return Engine::automatic;  // name of the enumerator
   std::string known;
   std::vector<std::string> all;
-  for (const auto& [engine, name] : names) {
+  for (const auto& [engine, name] : kEngineNames) {
     if (text == name) return engine;
     known += (known.empty() ? "" : ", ") + std::string(name);
     all.emplace_back(name);

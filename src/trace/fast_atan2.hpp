@@ -12,7 +12,7 @@ namespace vantage {
 // 1964, 4.4.49). The C library's atan2 would take most of the time of a sampled voxel. Branch-free, for loops.
 template <class Real>
 [[gnu::always_inline]] inline Real fast_atan2(Real y, Real x) {
-  constexpr Real half_turn = std::numbers::pi_v<Real>;
+  constexpr Real kHalfTurn = std::numbers::pi_v<Real>;
   const Real size = std::abs(x), least = std::min(y, size), most = std::max(y, size);
   const Real q = least / (most + std::numeric_limits<Real>::min()), s = q * q;
   const Real angle =
@@ -23,8 +23,8 @@ template <class Real>
                           s * (Real(0.1065626393) +
                                s * (Real(-0.0752896400) +
                                     s * (Real(0.0429096138) + s * (Real(-0.0161657367) + s * Real(0.0028662257)))))))));
-  const Real upright = (y > size ? half_turn / 2 : Real(0)) + (y > size ? Real(-1) : Real(1)) * angle;
-  return (x < 0 ? half_turn : Real(0)) + (x < 0 ? Real(-1) : Real(1)) * upright;
+  const Real upright = (y > size ? kHalfTurn / 2 : Real(0)) + (y > size ? Real(-1) : Real(1)) * angle;
+  return (x < 0 ? kHalfTurn : Real(0)) + (x < 0 ? Real(-1) : Real(1)) * upright;
 }
 
 }  // namespace vantage

@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t block = 64;  // voxels per block: bits in a word
+constexpr std::size_t kBlockVoxels = 64;  // voxels per block: bits in a word
 
 struct Sums {
   std::uint64_t weight = 0, saturated = 0, partial_points = 0;
@@ -31,10 +31,10 @@ struct Sums {
   }
 };
 
-void transpose(std::array<std::uint64_t, block>& rows) {
+void transpose(std::array<std::uint64_t, kBlockVoxels>& rows) {
   std::uint64_t low = 0x00000000FFFFFFFFu;
   for (std::size_t half = 32; half != 0; half >>= 1, low ^= low << half) {
-    for (std::size_t i = 0; i < block; i = ((i | half) + 1) & ~half) {
+    for (std::size_t i = 0; i < kBlockVoxels; i = ((i | half) + 1) & ~half) {
       const std::uint64_t swapped = ((rows[i] >> half) ^ rows[i | half]) & low;
       rows[i] ^= swapped << half;
       rows[i | half] ^= swapped;
@@ -46,9 +46,9 @@ void transpose(std::array<std::uint64_t, block>& rows) {
 VANTAGE_TARGET_CLONES
 void add_few_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
                    std::uint64_t* shared) {
-  for (std::size_t first = 0; first < n; first += block) {
-    std::array<std::uint64_t, block> planes{};
-    const std::size_t end = std::min(n, first + block);
+  for (std::size_t first = 0; first < n; first += kBlockVoxels) {
+    std::array<std::uint64_t, kBlockVoxels> planes{};
+    const std::size_t end = std::min(n, first + kBlockVoxels);
     std::uint64_t any = 0;
     for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = masks[k];
     if (any == 0) continue;
@@ -74,12 +74,12 @@ void add_many_pairs(std::span<const std::span<const std::uint64_t>> words, std::
                     std::uint64_t* seen, std::uint64_t* shared) {
   std::vector<std::uint64_t> plane(stations);
   std::vector<std::size_t> here;
-  for (std::size_t first = 0; first < n; first += block) {
+  for (std::size_t first = 0; first < n; first += kBlockVoxels) {
     here.clear();
-    const std::size_t end = std::min(n, first + block);
+    const std::size_t end = std::min(n, first + kBlockVoxels);
     for (std::size_t w = 0; w < words.size(); ++w) {
       if (words[w].empty()) continue;
-      std::array<std::uint64_t, block> planes{};
+      std::array<std::uint64_t, kBlockVoxels> planes{};
       std::uint64_t any = 0;
       for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = words[w][k];
       if (any == 0) continue;
@@ -132,8 +132,8 @@ NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, 
   zero.shared.resize(masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2);
   const double goal = std::ceil(goal_density * demands.least_point_weight());
 
-  constexpr std::size_t grain = 16, at_once = StationMasks::block_voxels;
-  const std::size_t parts = (counts.size() + at_once - 1) / at_once;
+  constexpr std::size_t kGrain = 16, kAtOnce = StationMasks::block_voxels;
+  const std::size_t parts = (counts.size() + kAtOnce - 1) / kAtOnce;
   const auto add_part = [&](Sums& sums, std::size_t first, std::size_t end) {
     for (std::size_t k = first; k < end; ++k) {
       const std::uint64_t weight = demands.weight(k),
@@ -151,10 +151,10 @@ NetworkCounts reduce(std::span<const std::uint32_t> counts, const Masks& masks, 
     add_pairs(std::span(words).first(mask_words(stations)), end - first, stations, sums.seen, sums.shared);
   };
   const Sums sums = parallel::reduce(
-      tbb::blocked_range<std::size_t>(0, parts, grain), zero,
+      tbb::blocked_range<std::size_t>(0, parts, kGrain), zero,
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
         for (std::size_t p = range.begin(); p != range.end(); ++p)
-          add_part(part, p * at_once, std::min(counts.size(), (p + 1) * at_once));
+          add_part(part, p * kAtOnce, std::min(counts.size(), (p + 1) * kAtOnce));
         return part;
       },
       [](Sums a, const Sums& b) {

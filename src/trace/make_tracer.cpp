@@ -23,7 +23,7 @@ namespace vantage {
 namespace {
 
 // Engines that run on Vulkan; `automatic` takes the first of those on a device.
-constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
+constexpr const vulkan::VulkanEngine* kVulkanEngines[] = {
     &vulkan::ray_query_engine,
     &vulkan::compute_bvh_engine,
 };
@@ -45,9 +45,9 @@ const vulkan::VulkanEngine* vulkan_engine_of(const DeviceChoice& device) {
                   "there is no device " + std::to_string(*device.index) + " for embree, which has only device 0");
     return nullptr;
   }
-  const auto chosen = std::find_if(std::begin(vulkan_engines), std::end(vulkan_engines),
+  const auto chosen = std::find_if(std::begin(kVulkanEngines), std::end(kVulkanEngines),
                                    [&](const vulkan::VulkanEngine* each) { return each->engine == device.engine; });
-  if (chosen == std::end(vulkan_engines))
+  if (chosen == std::end(kVulkanEngines))
     throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(device.engine)));
   return *chosen;
 }
@@ -66,7 +66,7 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional
     });
     if (on_device != engines.end()) return static_cast<std::size_t>(on_device - engines.begin());
   }
-  for (const vulkan::VulkanEngine* wanted : vulkan_engines)
+  for (const vulkan::VulkanEngine* wanted : kVulkanEngines)
     for (std::size_t k = 0; k < engines.size(); ++k)
       if (engines[k].engine == wanted->engine && engines[k].usable && !engines[k].software) return k;
   const auto embree =
@@ -75,7 +75,7 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional
 }
 
 std::vector<EngineInfo> list_engines() {
-  std::vector<EngineInfo> engines = list_vulkan_engines(vulkan_engines);
+  std::vector<EngineInfo> engines = list_vulkan_engines(kVulkanEngines);
   engines.push_back(embree_engine_info());
   EngineInfo& chosen = engines[default_engine(engines)];
   chosen.chosen_by_default = true;
@@ -94,7 +94,7 @@ ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_in
   const DeviceChoice chosen = resolved(engine, device_index);
   ChosenDevice device{.engine = chosen.engine};
   if (chosen.engine == Engine::embree) return device;
-  const std::vector<EngineInfo> listed = list_vulkan_engines(vulkan_engines);
+  const std::vector<EngineInfo> listed = list_vulkan_engines(kVulkanEngines);
   const EngineInfo* best = nullptr;
   for (const EngineInfo& info : listed)
     if (info.engine == chosen.engine && info.usable && (!chosen.index || *chosen.index == info.device_index) &&

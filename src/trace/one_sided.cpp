@@ -71,7 +71,7 @@ class SideCounter {
     int seers = 0;
     for (const std::vector<std::uint64_t>& word : masks) seers += std::popcount(word[k]);
     if (seers < 2) return;
-    std::array<std::size_t, std::size_t{1} << VoxelPlanes::most> row_of;
+    std::array<std::size_t, std::size_t{1} << VoxelPlanes::kMost> row_of;
     row_of.fill(kNone);
     for (std::size_t w = 0; w < masks.size(); ++w)
       for (std::uint64_t rest = masks[w][k]; rest != 0; rest &= rest - 1) {

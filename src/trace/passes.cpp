@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-constexpr auto bits = static_cast<std::uint32_t>(mask_bits);
+constexpr auto kMaskBits = static_cast<std::uint32_t>(mask_bits);
 
 // Stations of consecutive places. `word`: word of the mask; `size`: number of places.
 struct Pass {
@@ -25,10 +25,10 @@ struct Pass {
 // Returns the passes that have a station to trace.
 std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_t station_count) {
   std::vector<Pass> passes;
-  for (std::uint32_t first = 0; first < station_count; first += bits) {
-    Pass pass{.word = first / bits, .size = std::min(bits, station_count - first), .stations = {}};
+  for (std::uint32_t first = 0; first < station_count; first += kMaskBits) {
+    Pass pass{.word = first / kMaskBits, .size = std::min(kMaskBits, station_count - first), .stations = {}};
     for (const TraceStation& station : stations)
-      if (station.place >= first && station.place - first < bits) pass.stations.push_back(station);
+      if (station.place >= first && station.place - first < kMaskBits) pass.stations.push_back(station);
     if (!pass.stations.empty()) passes.push_back(std::move(pass));
   }
   return passes;
@@ -51,7 +51,7 @@ void place(std::vector<Figure>& all, const std::vector<Figure>& own, const Pass&
 NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
                               const Tracer::CountOptions& options, VoxelField* field, const VoxelGrid& grid,
                               double goal_density, const Progress& progress) {
-  if (station_count <= bits && !field) return tracer.count(stations, station_count, options, progress);
+  if (station_count <= kMaskBits && !field) return tracer.count(stations, station_count, options, progress);
   VoxelField own;
   VoxelField& all = field ? *field : own;
   all.stations = {};
@@ -61,7 +61,7 @@ NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stat
                         of_pass);
   };
   const std::vector<Pass> passes = passes_of(stations, station_count);
-  if (station_count <= bits) {
+  if (station_count <= kMaskBits) {
     NetworkCounts counts = count(passes.front(), progress);
     all.count = std::move(part.count);
     if (options.masks) all.stations = StationMasks(std::move(part.stations));

@@ -13,7 +13,7 @@ namespace {
 
 // Widening of angles. Components of a direction are products of two values rounded to 24 bits, which shifts angles by
 // less than 2^−22; fast_atan2 adds 2^−25.
-constexpr double angle_pad = 0x1p-20;
+constexpr double kAnglePad = 0x1p-20;
 
 // Returns the indices k in [0, count) with low <= first + k·step <= high.
 [[gnu::always_inline]] inline RayRanges::Range indices(double low, double high, double first, double step,
@@ -36,12 +36,12 @@ constexpr double angle_pad = 0x1p-20;
 // Returns the columns whose azimuths lie in [begin, begin + width], modulo a turn.
 [[gnu::always_inline]] inline std::array<RayRanges::Range, 2> columns_of(const RayPattern& pattern, double begin,
                                                                          double width) {
-  constexpr double turn = 2 * std::numbers::pi;
+  constexpr double kTurn = 2 * std::numbers::pi;
   const std::uint32_t columns = pattern.columns();
   begin -= pattern.first_azimuth;
-  begin -= std::floor(begin / turn) * turn;
+  begin -= std::floor(begin / kTurn) * kTurn;
   const RayRanges::Range first = indices(begin, begin + width, 0, pattern.azimuth_step, columns);
-  const RayRanges::Range second = indices(begin - turn, begin - turn + width, 0, pattern.azimuth_step, columns);
+  const RayRanges::Range second = indices(begin - kTurn, begin - kTurn + width, 0, pattern.azimuth_step, columns);
   // Both ends of nearly a full turn, or a pattern of more than a turn, give one range.
   if (!first.empty() && second.end > first.begin) return {{{0, columns}, {}}};
   return {first, second};
@@ -69,11 +69,11 @@ constexpr double angle_pad = 0x1p-20;
   // Half extents of the box along and across the horizontal direction to its middle, times r.
   const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
   if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
-    if (low.z <= 0 && high.z >= 0) return {-angle_pad, std::numbers::pi + angle_pad, 0, kTurn};
+    if (low.z <= 0 && high.z >= 0) return {-kAnglePad, std::numbers::pi + kAnglePad, 0, kTurn};
     const double far = r + std::sqrt(hx * hx + hy * hy);
     const double least = high.z > 0 ? 0 : fast_atan2(far, high.z),
                  most = low.z > 0 ? fast_atan2(far, low.z) : std::numbers::pi;
-    return {least - angle_pad, most + angle_pad, 0, kTurn};
+    return {least - kAnglePad, most + kAnglePad, 0, kTurn};
   }
   // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point is further across
   // or nearer. In the plane of axis distance and height, it likewise lies in a rectangle around its middle.
@@ -81,12 +81,12 @@ constexpr double angle_pad = 0x1p-20;
   const double distance = std::sqrt(r * r + cz * cz);
   const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
   const double rise = (std::abs(cz) * radial + r * hz) / distance;
-  AngleWindow window{-angle_pad, std::numbers::pi + angle_pad, 0, 0};
+  AngleWindow window{-kAnglePad, std::numbers::pi + kAnglePad, 0, 0};
   if (depth > 0) {
-    const double zenith = fast_atan2(r, cz), half = rise / depth + angle_pad;
+    const double zenith = fast_atan2(r, cz), half = rise / depth + kAnglePad;
     window.least_zenith = zenith - half, window.most_zenith = zenith + half;
   }
-  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + angle_pad;
+  const double azimuth = fast_atan2(std::abs(cy), cx) * (cy < 0 ? -1 : 1), half = across / (r * r - along) + kAnglePad;
   window.azimuth = azimuth - half, window.width = 2 * half;
   return window;
 }
@@ -94,12 +94,12 @@ constexpr double angle_pad = 0x1p-20;
 // Turns a box's middle into the scanner's frame, and the half extents into those of an enclosing box. Rounding of the
 // turn and of the direction moves a turned direction by less than 2^−21.
 void turn_box(const Turn& turn, Vec3& middle, Vec3& half) {
-  constexpr double doubt = 0x1p-20;
+  constexpr double kDoubt = 0x1p-20;
   const Vec3 m = middle, h = half;
   const Vec3 rows[3] = {{turn.x.x, turn.x.y, turn.x.z}, {turn.y.x, turn.y.y, turn.y.z}, {turn.z.x, turn.z.y, turn.z.z}};
   const auto size = [](const Vec3& v) { return Vec3{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
   const Vec3 reach = size(m) + h;
-  const double pad = doubt * (reach.x + reach.y + reach.z);
+  const double pad = kDoubt * (reach.x + reach.y + reach.z);
   middle = rows[0] * m.x + rows[1] * m.y + rows[2] * m.z;
   half = size(rows[0]) * h.x + size(rows[1]) * h.y + size(rows[2]) * h.z + Vec3{pad, pad, pad};
 }
@@ -125,7 +125,7 @@ void turn_back(const Turn& turn, BoxBatch& boxes) {
 RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
                        double width) {
   return rays_in(pattern,
-                 {least_zenith - angle_pad, most_zenith + angle_pad, azimuth - angle_pad, width + 2 * angle_pad});
+                 {least_zenith - kAnglePad, most_zenith + kAnglePad, azimuth - kAnglePad, width + 2 * kAnglePad});
 }
 
 double rounding_pad(double reach) { return 0x1p-20 * reach; }
@@ -141,7 +141,7 @@ AngleWindow angles_of_box(const Vec3& low, const Vec3& high) { return window_of_
 // Works as rays_of_box() for boxes that neither surround the axis nor cross the seam, on even rows; branch-free.
 VANTAGE_TARGET_CLONES
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
-  constexpr double turn = 2 * std::numbers::pi;
+  constexpr double kTurn = 2 * std::numbers::pi;
   const double rows = pattern.rows(), columns = pattern.columns();
   const double first_zenith = pattern.first_zenith, zenith_step = pattern.zenith_step;
   const double first_azimuth = pattern.first_azimuth, azimuth_step = pattern.azimuth_step;
@@ -163,12 +163,12 @@ void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
     const double distance = std::sqrt(square + cz * cz);
     const double depth = distance - (r * radial + az * hz) / distance;
     const double rise = (az * radial + r * hz) / distance;
-    const double zenith = fast_atan2(r, cz), tall = rise / depth + angle_pad;
-    const double side = fast_atan2(ay, cx), wide = across / gap + angle_pad;
+    const double zenith = fast_atan2(r, cz), tall = rise / depth + kAnglePad;
+    const double side = fast_atan2(ay, cx), wide = across / gap + kAnglePad;
     const double from = (cy < 0 ? -1.0 : 1.0) * side - wide - first_azimuth;
-    const double begin = from - std::floor(from / turn) * turn;
+    const double begin = from - std::floor(from / kTurn) * kTurn;
     const double end = begin + 2 * wide;
-    boxes.simple[i] = std::min(std::min(gap, depth), turn - end) > 0 ? 1 : 0;
+    boxes.simple[i] = std::min(std::min(gap, depth), kTurn - end) > 0 ? 1 : 0;
     boxes.row_begin[i] = clamped(std::ceil((zenith - tall - first_zenith) / zenith_step), rows);
     boxes.row_end[i] = clamped(std::floor((zenith + tall - first_zenith) / zenith_step) + 1, rows);
     boxes.column_begin[i] = clamped(std::ceil(begin / azimuth_step), columns);

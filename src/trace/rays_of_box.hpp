@@ -38,14 +38,14 @@ void turn_back(const Turn& turn, Vec3& low, Vec3& high);
 
 // Batch of boxes seen from one head. Small and distant boxes, the majority, are handled several at once.
 struct BoxBatch {
-  static constexpr std::uint32_t capacity = 512;
+  static constexpr std::uint32_t kCapacity = 512;
   std::uint32_t size = 0;
   // Middle, relative to the head, and half extents.
-  alignas(64) double x[capacity], y[capacity], z[capacity];
-  alignas(64) double half_x[capacity], half_y[capacity], half_z[capacity];
+  alignas(64) double x[kCapacity], y[kCapacity], z[kCapacity];
+  alignas(64) double half_x[kCapacity], half_y[kCapacity], half_z[kCapacity];
   // Output: one range of rows and one of columns, either possibly empty. Unless `simple`, rays_of_box() must be called.
-  alignas(64) std::int32_t row_begin[capacity], row_end[capacity], column_begin[capacity], column_end[capacity];
-  alignas(64) std::int32_t simple[capacity];
+  alignas(64) std::int32_t row_begin[kCapacity], row_end[kCapacity], column_begin[kCapacity], column_end[kCapacity];
+  alignas(64) std::int32_t simple[kCapacity];
 };
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes);
 void turn_back(const Turn& turn, BoxBatch& boxes);

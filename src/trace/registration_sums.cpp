@@ -17,24 +17,24 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
-constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
-constexpr std::size_t of_errors = 6 * RegistrationSums::instrument_errors;
-static_assert(of_pair == pair_sums && of_station == station_sums && of_errors == instrument_sums);
+constexpr std::size_t kOfPair = RegistrationSums::of_pair, kOfStation = RegistrationSums::of_station;
+constexpr std::size_t kPatchesABlock = kPatchesIn64Bits / 2;
+constexpr std::size_t kOfErrors = 6 * RegistrationSums::instrument_errors;
+static_assert(kOfPair == pair_sums && kOfStation == station_sums && kOfErrors == instrument_sums);
 static_assert(instrument_errors == RegistrationSums::instrument_errors &&
               instrument_errors == start_draws * angle_errors + 2);
 using Deviations = std::array<float, RegistrationSums::instrument_errors>;
-constexpr double least_share = 0.5;       // least share of one plane in a voxel's surface, and in the surface around it
-constexpr double least_area = 1e-3;       // in faces; smaller surfaces are corners that no scan resolves
-constexpr double points_of_a_plane = 10;  // least points in a patch for a normal to register by
+constexpr double kLeastShare = 0.5;     // least share of one plane in a voxel's surface, and in the surface around it
+constexpr double kLeastArea = 1e-3;     // in faces; smaller surfaces are corners that no scan resolves
+constexpr double kPointsOfAPlane = 10;  // least points in a patch for a normal to register by
 // Distance, as a share of a patch's side, within which a surface must be flat. A scan's normal is fitted to points
 // around it, within the patch of constant error; a pipe thinner than that has no normal, however fine the voxels.
-constexpr double flat_part = 0.5;
-constexpr double widest_fit_m = 1;  // largest surface for a normal's fit, however large patches are
+constexpr double kFlatPart = 0.5;
+constexpr double kWidestFit_m = 1;  // largest surface for a normal's fit, however large patches are
 
-constexpr double largest_section = 1.5;  // in faces: a plane's section of a cube is at most 3√3/4
+constexpr double kLargestSection = 1.5;  // in faces: a plane's section of a cube is at most 3√3/4
 
-int quantised(double x) { return static_cast<int>(std::lround(x * patch_unit)); }
+int quantised(double x) { return static_cast<int>(std::lround(x * kPatchUnit)); }
 
 __extension__ using Wide = __int128;
 
@@ -43,7 +43,7 @@ template <class Number>
 struct Accumulator {
   std::vector<Number> pairs, surface, instrument;
   Accumulator(std::size_t stations, std::size_t pairs_kept, bool errors)
-      : pairs(pairs_kept * of_pair), surface(stations * of_station), instrument(errors ? stations * of_errors : 0) {}
+      : pairs(pairs_kept * kOfPair), surface(stations * kOfStation), instrument(errors ? stations * kOfErrors : 0) {}
   template <class Other>
   void add(const Accumulator<Other>& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
@@ -149,8 +149,8 @@ void add_products(std::int64_t* sums, const std::int32_t* products, const std::i
                   const std::uint32_t* columns, std::size_t many) {
   for (std::size_t k = 0; k < many; ++k) {
     const std::int32_t x = weights[k];
-    std::int64_t* of = sums + std::size_t{columns[k]} * of_pair;
-    for (std::size_t c = 0; c < of_pair; ++c) of[c] += std::int64_t{x} * products[c];
+    std::int64_t* of = sums + std::size_t{columns[k]} * kOfPair;
+    for (std::size_t c = 0; c < kOfPair; ++c) of[c] += std::int64_t{x} * products[c];
   }
 }
 
@@ -252,18 +252,18 @@ class Summer {
         heads_(heads),
         pairs_(pairs),
         seen_by_(seen_by),
-        units_(static_cast<float>(patch_weight_units / patches.largest)) {}
+        units_(static_cast<float>(kPatchWeightUnits / patches.largest)) {}
 
   // Sums every `step`-th patch from `first` on.
   Accumulator<Wide> sum(std::size_t first, std::size_t step) const {
     const std::size_t voxels = patches_.patches.size(), some = voxels > first ? (voxels - first + step - 1) / step : 0,
-                      blocks = (some + patches_a_block - 1) / patches_a_block;
+                      blocks = (some + kPatchesABlock - 1) / kPatchesABlock;
     return parallel::reduce(
         tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(heads_.size(), pairs_.size(), errors()),
         [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
           for (std::size_t b = range.begin(); b != range.end(); ++b) {
             Accumulator<std::int64_t> here(heads_.size(), pairs_.size(), errors());
-            for (std::size_t k = b * patches_a_block; k < std::min(some, (b + 1) * patches_a_block); ++k)
+            for (std::size_t k = b * kPatchesABlock; k < std::min(some, (b + 1) * kPatchesABlock); ++k)
               add_voxel(first + k * step, here);
             sums.add(here);
           }
@@ -292,10 +292,10 @@ class Summer {
     const auto weight =
         static_cast<std::int64_t>(patch.extent * exact_reciprocal(static_cast<float>(seen.size())) + 0.5f);
     const std::int64_t x = patch.place[0], y = patch.place[1], z = patch.place[2];
-    const std::array<std::int64_t, of_station> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
+    const std::array<std::int64_t, kOfStation> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
     for (const std::size_t station : seen) {
-      std::int64_t* of = sums + station * of_station;
-      for (std::size_t m = 0; m < of_station; ++m) of[m] += weight * moments[m];
+      std::int64_t* of = sums + station * kOfStation;
+      for (std::size_t m = 0; m < kOfStation; ++m) of[m] += weight * moments[m];
     }
   }
 
@@ -315,7 +315,7 @@ class Summer {
       total[side] = total[side] + view.weight;
     }
     if (many[0] < 2 && many[1] < 2) return;
-    std::array<std::int32_t, of_pair> products;
+    std::array<std::int32_t, kOfPair> products;
     std::size_t m = 0;
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = a; b < 6; ++b) products[m++] = patch.jacobian[a] * patch.jacobian[b];
@@ -357,7 +357,7 @@ class Summer {
     for (float& one : mean) one = one * inverse;
     for (std::size_t k = 0; k < places.size(); ++k) {
       const float scaled = weights[k] * units_;
-      std::int64_t* of = sums + places[k] * of_errors;
+      std::int64_t* of = sums + places[k] * kOfErrors;
       for (std::size_t e = 0; e < mean.size(); ++e) {
         const float apart = moved[k][e] - mean[e];
         const float share = scaled * apart;
@@ -386,12 +386,12 @@ RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> 
   sums.heads.assign(count, Vec3{});
   for (const TraceStation& s : stations)
     sums.heads[s.place] = Vec3{s.origin.x, s.origin.y, s.origin.z} - patches.centre;
-  const double weight = patches.largest / static_cast<double>(patch_weight_units) / patch_unit / patch_unit;
+  const double weight = patches.largest / static_cast<double>(kPatchWeightUnits) / kPatchUnit / kPatchUnit;
   for (const Number& sum : pairs) sums.pairs.push_back(static_cast<double>(sum) * weight);
-  constexpr std::array<int, of_station> order{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
+  constexpr std::array<int, kOfStation> kPowers{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
   for (std::size_t k = 0; k < surface.size(); ++k)
-    sums.surface.push_back(static_cast<double>(surface[k]) * 0x1p-15 / std::pow(patch_unit, order[k % of_station]));
-  const double moved = patches.largest / static_cast<double>(patch_weight_units) / patch_unit * deviation /
+    sums.surface.push_back(static_cast<double>(surface[k]) * 0x1p-15 / std::pow(kPatchUnit, kPowers[k % kOfStation]));
+  const double moved = patches.largest / static_cast<double>(kPatchWeightUnits) / kPatchUnit * deviation /
                        static_cast<double>(deviation_quanta);
   for (const Number& sum : instrument) sums.instrument.push_back(static_cast<double>(sum) * moved);
   return sums;
@@ -401,12 +401,12 @@ RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> 
 RegistrationSums to_sums(const Accumulator<Wide>& all, const PairNumbers& pairs, double deviation,
                          const Patches& patches, std::span<const TraceStation> stations, std::size_t count) {
   if (pairs.all() <= pairs.size())
-    return to_sums(std::span(all.pairs).first(pairs.all() * of_pair), std::span(all.surface), std::span(all.instrument),
+    return to_sums(std::span(all.pairs).first(pairs.all() * kOfPair), std::span(all.surface), std::span(all.instrument),
                    deviation, patches, stations, count);
-  std::vector<Wide> whole(pairs.all() * of_pair);
+  std::vector<Wide> whole(pairs.all() * kOfPair);
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    std::ranges::copy(std::span(all.pairs).subspan(p * of_pair, of_pair),
-                      whole.begin() + static_cast<std::ptrdiff_t>(pairs.pair(p) * of_pair));
+    std::ranges::copy(std::span(all.pairs).subspan(p * kOfPair, kOfPair),
+                      whole.begin() + static_cast<std::ptrdiff_t>(pairs.pair(p) * kOfPair));
   return to_sums(std::span<const Wide>(whole), std::span(all.surface), std::span(all.instrument), deviation, patches,
                  stations, count);
 }
@@ -417,9 +417,9 @@ RegistrationSums to_sums_of_part(const Accumulator<Wide>& part, const Accumulato
                                  std::span<const TraceStation> stations, std::size_t count) {
   std::vector<Wide> kept;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const auto of_whole = std::span(whole.pairs).subspan(p * of_pair, of_pair);
+    const auto of_whole = std::span(whole.pairs).subspan(p * kOfPair, kOfPair);
     if (std::ranges::all_of(of_whole, [](Wide sum) { return sum == 0; })) continue;
-    const auto of_part = std::span(part.pairs).subspan(p * of_pair, of_pair);
+    const auto of_part = std::span(part.pairs).subspan(p * kOfPair, kOfPair);
     kept.insert(kept.end(), of_part.begin(), of_part.end());
   }
   return to_sums(std::span<const Wide>(kept), std::span(part.surface), std::span(part.instrument), deviation, patches,
@@ -463,7 +463,7 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
   made.radius = frame.side_m * std::sqrt(0.75);
   const double face = frame.voxel_m * frame.voxel_m;
   const double floor = model.rho_m * model.rho_m * model.patch_m * model.patch_m;
-  made.largest = largest_section * face / floor;
+  made.largest = kLargestSection * face / floor;
   made.patches.resize(surfaces.size());
   parallel::for_all(std::size_t{0}, surfaces.size(), [&](std::size_t i) {
     const VoxelSurface& surface = surfaces[i];
@@ -472,8 +472,8 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
     patch.normal = {surface.normal.x, surface.normal.y, surface.normal.z};
     patch.diffuse = surface.diffuse;
     patch.rays = static_cast<float>(surface.area / pattern.cell());
-    patch.least = static_cast<float>(points_of_a_plane * surface.area / (model.patch_m * model.patch_m));
-    if (surface.share >= least_share && surface.area >= least_area * face)
+    patch.least = static_cast<float>(kPointsOfAPlane * surface.area / (model.patch_m * model.patch_m));
+    if (surface.share >= kLeastShare && surface.area >= kLeastArea * face)
       patch.variance = static_cast<float>(floor / surface.area);
     patch.extent = static_cast<float>(surface.extent / face * 0x1p15);
     const std::array<double, 3> q{(surface.point.x - frame.centre.x) / made.radius,
@@ -495,7 +495,7 @@ Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<c
                      const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop) {
   const double side = std::ldexp(grid.voxel_size(), grid.depth());
   const auto middle = [&](int axis) { return grid.min()[static_cast<std::size_t>(axis)] + side / 2; };
-  const double window_m = std::min(flat_part * model.patch_m, widest_fit_m);
+  const double window_m = std::min(kFlatPart * model.patch_m, kWidestFit_m);
   return make_patches(surfaces.find(voxel_indices, window_m, stop),
                       {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()}, pattern, model);
 }
@@ -545,8 +545,8 @@ std::optional<RegistrationSums> sum_patches(const PatchesFrom& patches_from, std
 }
 
 void for_summed_pairs(const RegistrationSums& whole, const std::function<void(std::size_t)>& with) {
-  for (std::size_t first = 0; first < whole.pairs.size(); first += of_pair)
-    if (std::ranges::any_of(std::span(whole.pairs).subspan(first, of_pair), [](double sum) { return sum != 0; }))
+  for (std::size_t first = 0; first < whole.pairs.size(); first += kOfPair)
+    if (std::ranges::any_of(std::span(whole.pairs).subspan(first, kOfPair), [](double sum) { return sum != 0; }))
       with(first);
 }
 
@@ -563,9 +563,9 @@ void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums
 
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
                                    std::uint32_t station_count, std::span<const std::int64_t> sums, double deviation) {
-  const std::size_t count = station_count, pairs = count * (count - 1) / 2 * of_pair, moments = count * of_station;
+  const std::size_t count = station_count, pairs = count * (count - 1) / 2 * kOfPair, moments = count * kOfStation;
   return with_voxels({to_sums(sums.first(pairs), sums.subspan(pairs, moments),
-                              sums.subspan(pairs + moments, deviation > 0 ? count * of_errors : 0), deviation, patches,
+                              sums.subspan(pairs + moments, deviation > 0 ? count * kOfErrors : 0), deviation, patches,
                               stations, count)},
                      patches)
       .front();

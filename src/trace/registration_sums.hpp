@@ -20,16 +20,16 @@
 
 namespace vantage {
 
-inline constexpr int patch_unit = 32767;
+inline constexpr int kPatchUnit = 32767;
 // Largest weight, of a station at a full voxel, in units of the sums.
-inline constexpr float patch_weight_units = 65536;
+inline constexpr float kPatchWeightUnits = 65536;
 
 // Planes of a sample's voxels, or of all voxels.
 struct Patches {
   std::vector<RegistrationPatch> patches;
   Vec3 centre;         // c: centre of the grid's cube, local frame
   double radius = 1;   // R: half the cube's diagonal, metres
-  double largest = 1;  // weight, 1/m², that equals patch_weight_units
+  double largest = 1;  // weight, 1/m², that equals kPatchWeightUnits
   RegistrationModel model;
 };
 
@@ -106,7 +106,7 @@ std::vector<RegistrationSums> with_voxels(std::vector<RegistrationSums> sums, co
 
 // Number of voxels whose integer sums fit into 64 signed bits together: 2^15 of weight times 2^30 of two components of
 // J.
-inline constexpr std::size_t patches_in_64_bits = std::size_t{1} << 17;
+inline constexpr std::size_t kPatchesIn64Bits = std::size_t{1} << 17;
 // Converts integers summed by an engine: `sums` of each pair, of each station, and, unless `deviation` is 0, of the
 // errors of each station's scanner.
 RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,

@@ -16,9 +16,9 @@ namespace vantage {
 
 class SampleRuns {
  public:
-  static constexpr std::size_t length = 32;  // voxels; the sample's last run may have fewer
+  static constexpr std::size_t kLength = 32;  // voxels; the sample's last run may have fewer
 
-  explicit SampleRuns(std::size_t voxels) : runs_((voxels + length - 1) / length), step_(golden_step(runs_)) {}
+  explicit SampleRuns(std::size_t voxels) : runs_((voxels + kLength - 1) / kLength), step_(golden_step(runs_)) {}
   std::size_t size() const { return runs_; }
 
   // Returns the k-th run of `sample`. REQUIRES: the size passed to the constructor.
@@ -33,7 +33,7 @@ class SampleRuns {
     for (std::size_t k = first; k < end; ++k) places.push_back(k * step_ % runs_);
     std::sort(places.begin(), places.end());
     std::vector<T> voxels;
-    voxels.reserve(places.size() * length);
+    voxels.reserve(places.size() * kLength);
     for (const std::size_t place : places) {
       const std::span<const T> run = of(sample, place);
       voxels.insert(voxels.end(), run.begin(), run.end());
@@ -44,8 +44,8 @@ class SampleRuns {
  private:
   template <class T>
   static std::span<const T> of(std::span<const T> sample, std::size_t place) {
-    const auto from = sample.subspan(place * length);
-    return from.first(std::min(length, from.size()));
+    const auto from = sample.subspan(place * kLength);
+    return from.first(std::min(kLength, from.size()));
   }
 
   std::size_t runs_;

@@ -58,7 +58,7 @@ struct RayPattern {
 // Algorithm 1: σ by bilinear interpolation over normalised distance (columns) and reflectivity (rows), both in [0, 1],
 // in steps of 0.01.
 struct NoiseModel {
-  static constexpr std::uint32_t side = 101;
+  static constexpr std::uint32_t kSide = 101;
   std::vector<float> sigma;  // side × side, row-major [reflectivity][distance]; empty: no noise
   float min_range = 0;       // normalised distance = (t − min_range) · inverse_span
   float inverse_span = 0;

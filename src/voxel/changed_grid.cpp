@@ -115,7 +115,7 @@ class Remarked {
     TriangleCells(in_bricks, bricks_).for_each([&](const TriangleCells::Cell& c) {
       const std::uint32_t index = find_brick(marked_.slots, static_cast<std::uint32_t>(c[0]),
                                              static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]));
-      if (index == no_brick) return;
+      if (index == kNoBrick) return;
       std::atomic_ref(touched_[index]).store(1, std::memory_order_relaxed);
       any = true;
     });

@@ -26,13 +26,13 @@ using Cell = std::array<std::int64_t, 3>;
 
 // Largest distance from the plane of surface that still belongs to it, in half windows. A surface that bends by one
 // plane's 26° within half a window leaves the plane by tan 13° of it. A parallel surface further away is another sheet.
-constexpr double other_sheet = 0.25;
+constexpr double kOtherSheet = 0.25;
 // Triangles up to this share of a window, along any axis, count as a whole, by their middle.
-constexpr double small_share = 1.0 / 4;
+constexpr double kSmallShare = 1.0 / 4;
 // Voxels between two checks of a stop; as many keys and lists are kept at once.
-constexpr std::size_t voxels_at_once = std::size_t{1} << 22;
+constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 22;
 // Windows of a cell that one thread takes. A cell of a fine grid has thousands, and thousands of triangles around it.
-constexpr std::size_t windows_a_task = 128;
+constexpr std::size_t kWindowsATask = 128;
 
 bool is_small(const Corners& c, double at_most) {
   const dvec3 extent = max(c[0], max(c[1], c[2])) - min(c[0], min(c[1], c[2]));
@@ -101,9 +101,9 @@ struct Window {
     return std::abs(p.x - point.x) <= half && std::abs(p.y - point.y) <= half && std::abs(p.z - point.z) <= half;
   }
   void add(const dvec3& middle, const dvec3& along, double area) {
-    if (!(std::abs(dot(along, normal)) > one_plane))
+    if (!(std::abs(dot(along, normal)) > kOnePlaneCosine))
       other += area;
-    else if (std::abs(dot(middle - point, normal)) <= other_sheet * half)
+    else if (std::abs(dot(middle - point, normal)) <= kOtherSheet * half)
       within += area;
   }
   float share() const { return within + other > 0 ? static_cast<float>(within / (within + other)) : 1; }
@@ -169,8 +169,8 @@ std::vector<Large> large_triangles(const SceneData& scene, std::span<const std::
 }
 
 // Cells of a block, per side, as a power of two. Windows from one block share the cells around it.
-constexpr int block_bits = 3;
-constexpr std::int64_t block_side = std::int64_t{1} << block_bits;
+constexpr int kBlockBits = 3;
+constexpr std::int64_t kBlockSide = std::int64_t{1} << kBlockBits;
 
 // Calls visit(block) for each block within `reach` blocks of one, along every axis, that the grid has.
 template <class Visit>
@@ -222,11 +222,11 @@ class SortedTriangles {
     }
     // In ascending order within a block, so that the result does not depend on the threads.
     parallel::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-      const std::uint64_t of_a = a.cell >> 3 * block_bits, of_b = b.cell >> 3 * block_bits;
+      const std::uint64_t of_a = a.cell >> 3 * kBlockBits, of_b = b.cell >> 3 * kBlockBits;
       return of_a != of_b ? of_a < of_b : a.triangle < b.triangle;
     });
     for (std::size_t k = 0; k < placed.size(); ++k)
-      if (const std::uint64_t block = placed[k].cell >> 3 * block_bits; blocks_.empty() || block != blocks_.back())
+      if (const std::uint64_t block = placed[k].cell >> 3 * kBlockBits; blocks_.empty() || block != blocks_.back())
         blocks_.push_back(block), first_.push_back(k);
     first_.push_back(placed.size());
     small_.resize(placed.size());
@@ -235,7 +235,7 @@ class SortedTriangles {
       const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]), middle = (p[0] + p[1] + p[2]) / 3.0;
       const double area = 0.5 * length(twice);
       small_[k] = {rounded(middle), area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area),
-                   static_cast<std::uint32_t>(placed[k].cell & ((1u << 3 * block_bits) - 1))};
+                   static_cast<std::uint32_t>(placed[k].cell & ((1u << 3 * kBlockBits) - 1))};
     });
   }
 
@@ -263,8 +263,8 @@ class SortedTriangles {
 class SmallsAround {
  public:
   // The cube reaches `reach` cells beyond the block on every side.
-  SmallsAround(const Cell& block, std::int64_t reach) : side_(block_side + 2 * reach) {
-    for (int axis = 0; axis < 3; ++axis) low_[axis] = block[axis] * block_side - reach;
+  SmallsAround(const Cell& block, std::int64_t reach) : side_(kBlockSide + 2 * reach) {
+    for (int axis = 0; axis < 3; ++axis) low_[axis] = block[axis] * kBlockSide - reach;
   }
   // In ascending order of triangles, so that the result does not depend on the other windows.
   void add(const Cell& block, std::span<const Small> smalls) {
@@ -273,7 +273,7 @@ class SmallsAround {
       std::int64_t place = 0;
       bool around = true;
       for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t at = block[axis] * block_side + within[axis] - low_[axis];
+        const std::int64_t at = block[axis] * kBlockSide + within[axis] - low_[axis];
         around = around && at >= 0 && at < side_;
         place = place * side_ + at;
       }
@@ -336,7 +336,7 @@ struct FlatWindows::Impl {
         window_m(side_m),
         wide(cells_of(grid, 0.7 * window_m)),
         narrow(cells_of(grid, window_m / 4)),
-        triangles(scene, narrow, window_m * small_share) {}
+        triangles(scene, narrow, window_m * kSmallShare) {}
 
   const SceneData& scene;
   const VoxelGrid& grid;
@@ -363,9 +363,9 @@ std::vector<float> FlatWindows::shares(std::span<const std::uint32_t> voxel_indi
                               narrow.a_side - 1);  // in narrow cells
   std::vector<float> shares(voxel_indices.size(), 1);
   std::vector<std::uint64_t> keys;
-  for (std::size_t begin = 0; begin < voxel_indices.size(); begin += voxels_at_once) {
+  for (std::size_t begin = 0; begin < voxel_indices.size(); begin += kVoxelsAtOnce) {
     if (stop.stop_requested()) return {};
-    keys.resize(std::min(voxels_at_once, voxel_indices.size() - begin));
+    keys.resize(std::min(kVoxelsAtOnce, voxel_indices.size() - begin));
     parallel::for_all(std::size_t{0}, keys.size(),
                       [&](std::size_t i) { keys[i] = grid.key(voxel_indices[begin + i]); });
     const Runs cells(keys, wide.shift);
@@ -378,7 +378,7 @@ std::vector<float> FlatWindows::shares(std::span<const std::uint32_t> voxel_indi
     // Windows of one cell, with the small triangles around its block.
     const auto measure = [&](std::size_t cell, const SmallsAround& around) {
       const std::vector<Large> larges = larges_of(cell);
-      parallel::for_all(tbb::blocked_range<std::size_t>(cells.first[cell], cells.first[cell + 1], windows_a_task),
+      parallel::for_all(tbb::blocked_range<std::size_t>(cells.first[cell], cells.first[cell + 1], kWindowsATask),
                         [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i != range.end(); ++i) {
                             const VoxelSurface& surface = surfaces[begin + i];
@@ -391,13 +391,13 @@ std::vector<float> FlatWindows::shares(std::span<const std::uint32_t> voxel_indi
                           }
                         });
     };
-    const Runs blocks(cells.cells, narrow.shift + block_bits - wide.shift);
+    const Runs blocks(cells.cells, narrow.shift + kBlockBits - wide.shift);
     parallel::for_all(std::size_t{0}, blocks.cells.size(), [&](std::size_t run) {
       if (stop.stop_requested()) return;
       const Cell block = cell_of_key(blocks.cells[run]);
       SmallsAround around(block, reach);
       if (triangles.any_small())
-        for_each_near(block, (reach + block_side - 1) / block_side, (narrow.a_side + block_side - 1) / block_side,
+        for_each_near(block, (reach + kBlockSide - 1) / kBlockSide, (narrow.a_side + kBlockSide - 1) / kBlockSide,
                       [&](const Cell& near) { around.add(near, triangles.small_in(Cells::key(near))); });
       if (!around.empty()) around.sort();
       parallel::for_all(blocks.first[run], blocks.first[run + 1], [&](std::size_t cell) { measure(cell, around); });

@@ -25,8 +25,8 @@ class FlatWindows {
   double window_m() const;
 
   // Share of coplanar surface in all surveyed surface within the cube of side `window_m()`, metres, around each voxel's
-  // plane point. Coplanar means the plane's normal (`one_plane`), with n and −n equal. Parallel surface displaced along
-  // the normal is not coplanar, since the other face of a wall is seen from its other side. 1 if a voxel has no
+  // plane point. Coplanar means the plane's normal (`kOnePlaneCosine`), with n and −n equal. Parallel surface displaced
+  // along the normal is not coplanar, since the other face of a wall is seen from its other side. 1 if a voxel has no
   // surface. Triangles much smaller than the window count as a whole, by their middle; others are clipped.
   //
   // Parallel; a voxel's share depends neither on the other voxels nor on the number of threads. A stop ends it early,

@@ -19,8 +19,8 @@
 namespace vantage {
 namespace {
 
-constexpr double margin_share = 0.001;  // on either side: the cube's side is 1.002 extents
-constexpr double max_tilt =
+constexpr double kMarginShare = 0.001;  // on either side: the cube's side is 1.002 extents
+constexpr double kMaxTilt =
     1.0 / 128;  // off the axis; thickness is the criterion, this only excludes small facets of curves
 
 // Adds up the weights of slabs at the same heights.
@@ -40,10 +40,10 @@ constexpr std::size_t kMostSlabs = std::size_t{1} << 20;  // that are kept, 24 M
 AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, const GridCube& cube) {
   const std::array<float, 3>& min = cube.fit.min;
   const double thickest = 4 * cube.clearance, area_unit = cube.extent * cube.extent * 0x1p-30;
-  constexpr std::size_t least_merged = std::size_t{1} << 18;
+  constexpr std::size_t kLeastMerged = std::size_t{1} << 18;
   struct Slabs {
     std::vector<Slab> slabs;
-    std::size_t merge_at = least_merged;
+    std::size_t merge_at = kLeastMerged;
   };
   tbb::enumerable_thread_specific<std::array<Slabs, 3>> collected;
   for (const MeshRange& mesh : surveyed)
@@ -58,7 +58,7 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
             for (int axis = 0; axis < 3; ++axis) {
               const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
                            high = std::max({p[0][axis], p[1][axis], p[2][axis]});
-              if (high - low > thickest || n[axis] * n[axis] < squared * (1 - max_tilt * max_tilt)) continue;
+              if (high - low > thickest || n[axis] * n[axis] < squared * (1 - kMaxTilt * kMaxTilt)) continue;
               own[axis].slabs.push_back({low - min[axis], high - min[axis],
                                          static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
             }
@@ -66,7 +66,7 @@ AxisSlabs slabs_of(const SceneData& scene, std::span<const MeshRange> surveyed, 
           for (Slabs& of_axis : own) {
             if (of_axis.slabs.size() < of_axis.merge_at) continue;
             merge(of_axis.slabs);
-            of_axis.merge_at = std::max(least_merged, 2 * of_axis.slabs.size());
+            of_axis.merge_at = std::max(kLeastMerged, 2 * of_axis.slabs.size());
           }
         });
   AxisSlabs all;
@@ -170,16 +170,16 @@ GridCube cube_around(const Box& bounds, const Box& local_bounds, double user_siz
   double reach = 0;
   for (int axis = 0; axis < 3; ++axis) reach = std::max({reach, std::abs(low[axis]), std::abs(high[axis])});
   // If coordinates are very large for their extent, the usual margin does not cover the rounding of min itself.
-  const double margin = std::max(margin_share * extent, 4 * 0x1p-23 * reach);
+  const double margin = std::max(kMarginShare * extent, 4 * 0x1p-23 * reach);
   const double side = extent + 2 * margin;
 
   double size = side;
   while (size > user_size_m) {
     size /= 2;
-    if (++fit.depth > max_voxel_depth) {
+    if (++fit.depth > kMaxVoxelDepth) {
       std::ostringstream what;
       what << "a user size of " << user_size_m << " m is too small for surveyed meshes " << extent
-           << " m wide; the smallest that works is " << side / std::ldexp(1.0, max_voxel_depth) << " m";
+           << " m wide; the smallest that works is " << side / std::ldexp(1.0, kMaxVoxelDepth) << " m";
       throw Error(Errc::invalid_argument, what.str());
     }
   }

@@ -119,7 +119,7 @@ class TriangleCells {
       }
     }
   }
-  static constexpr double rounding = 0x1p-50;
+  static constexpr double kRounding = 0x1p-50;
 
   void prepare() {
     Point e0, e1;
@@ -146,7 +146,7 @@ class TriangleCells {
     // The products of the normal are rounded relative to the edges' lengths, which for a sliver far exceed the normal.
     const double products =
         (std::abs(e0[0]) + std::abs(e0[1]) + std::abs(e0[2])) * (std::abs(e1[0]) + std::abs(e1[1]) + std::abs(e1[2]));
-    plane_slack_ = rounding * (reach + margin_ + 1) * (4 + 4 * products / std::abs(nw));
+    plane_slack_ = kRounding * (reach + margin_ + 1) * (4 + 4 * products / std::abs(nw));
     plane_known_ = std::isfinite(plane_slack_);
     height_ = corner_[0][w_] + slope_u_ * corner_[0][u_] + slope_v_ * corner_[0][v_];
     const double half = 0.5 + margin_;
@@ -165,7 +165,7 @@ class TriangleCells {
                          static_cast<double>(count_[axis])}) +
                margin_;
       };
-      const double slack = rounding * (std::abs(a) * reach(p) + std::abs(b) * reach(q));
+      const double slack = kRounding * (std::abs(a) * reach(p) + std::abs(b) * reach(q));
       const double box_low = std::min(-a * margin_, a * (1 + margin_)) + std::min(-b * margin_, b * (1 + margin_));
       const double box_high = std::max(-a * margin_, a * (1 + margin_)) + std::max(-b * margin_, b * (1 + margin_));
       result[e] = {a, b, std::min(at_edge, at_opposite) - box_high - slack,
@@ -194,7 +194,7 @@ class TriangleCells {
       }
       double from = (e.low - a) / e.b, to = (e.high - a) / e.b;
       if (e.b < 0) std::swap(from, to);
-      const double slack = rounding * 4 * (std::abs(from) + std::abs(to) + std::abs(a / e.b));
+      const double slack = kRounding * 4 * (std::abs(from) + std::abs(to) + std::abs(a / e.b));
       first = std::max(first, from - slack);
       last = std::min(last, to + slack);
     }

@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t least_compacted = std::size_t{1} << 22;  // keys that a thread collects before it removes
+constexpr std::size_t kLeastCompacted = std::size_t{1} << 22;  // keys that a thread collects before it removes
                                                                // duplicates
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
@@ -39,14 +39,14 @@ std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& tri
                                                          std::int64_t bricks_per_side, const Progress& progress) {
   struct Keys {
     std::vector<std::uint64_t> keys;
-    std::size_t compact_at = least_compacted;
+    std::size_t compact_at = kLeastCompacted;
   };
   tbb::enumerable_thread_specific<Keys> collected;
   const bool whole = triangles.for_each(grid, bricks_per_side, progress, [&](std::size_t) {
     Keys& own = collected.local();
     if (own.keys.size() > own.compact_at) {
       sort_unique(own.keys);
-      own.compact_at = std::max(least_compacted, 2 * own.keys.size());
+      own.compact_at = std::max(kLeastCompacted, 2 * own.keys.size());
     }
     return [&keys = own.keys](const TriangleCells::Cell& cell) {
       const std::uint64_t key = morton_encode(static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
@@ -75,7 +75,7 @@ void number_bricks(VoxelBricks& marked) {
   for (VoxelBrick& brick : marked.bricks) {
     brick.first = static_cast<std::uint32_t>(marked.voxels);
     for (const std::uint32_t word : brick.mask) marked.voxels += static_cast<std::uint64_t>(std::popcount(word));
-    if (marked.voxels >= no_voxel)
+    if (marked.voxels >= kNoVoxel)
       throw Error(
           Errc::invalid_argument,
           "the surveyed meshes fill more than the 4294967294 voxels that can be numbered; use a larger user size");
@@ -104,12 +104,12 @@ std::array<std::array<double, 3>, 3> GridTransform::corners(const std::array<Flo
 }
 
 std::uint32_t brick_bit(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  static constexpr std::array<std::uint32_t, 8> spread{0, 1, 8, 9, 64, 65, 72, 73};
-  return spread[x & 7] | spread[y & 7] << 1 | spread[z & 7] << 2;
+  static constexpr std::array<std::uint32_t, 8> kSpread{0, 1, 8, 9, 64, 65, 72, 73};
+  return kSpread[x & 7] | kSpread[y & 7] << 1 | kSpread[z & 7] << 2;
 }
 
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  if (slots.empty()) return no_brick;
+  if (slots.empty()) return kNoBrick;
   const std::size_t mask = slots.size() - 1;
   for (std::size_t slot = brick_hash(x, y, z) & mask;; slot = (slot + 1) & mask) {
     const BrickSlot& s = slots[slot];

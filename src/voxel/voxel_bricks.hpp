@@ -16,7 +16,7 @@
 
 namespace vantage {
 
-inline constexpr std::uint32_t no_brick = empty_slot;
+inline constexpr std::uint32_t kNoBrick = empty_slot;
 
 // Local frame to grid units: (p − min) · inverse_size, in double. Voxel faces lie at whole numbers.
 struct GridTransform {
@@ -46,7 +46,7 @@ std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks);
 // Counts the voxels, and fills `first` of the bricks. Throws as mark_bricks().
 void number_bricks(VoxelBricks& marked);
 
-// Returns the index of the brick with these brick coordinates, or no_brick.
+// Returns the index of the brick with these brick coordinates, or kNoBrick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
 // Sets the bits of the voxels that a triangle touches, in existing bricks. Several may work at once.
@@ -54,14 +54,14 @@ class MarkVoxels {
  public:
   explicit MarkVoxels(VoxelBricks& bricks) : bricks_(bricks) {}
   void operator()(const TriangleCells::Cell& cell) {
-    constexpr int shift = static_cast<int>(brick_bits);
+    constexpr int kShift = static_cast<int>(brick_bits);
     const std::array<std::uint32_t, 3> c{static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
                                          static_cast<std::uint32_t>(cell[2])};
-    const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
+    const std::array<std::uint32_t, 3> b{c[0] >> kShift, c[1] >> kShift, c[2] >> kShift};
     if (b != at_) {
       const std::uint32_t index = find_brick(bricks_.slots, b[0], b[1], b[2]);
       // Rounding may mark a voxel 2^-50 beyond the triangle as touched, but not its brick.
-      brick_ = index == no_brick ? nullptr : &bricks_.bricks[index];
+      brick_ = index == kNoBrick ? nullptr : &bricks_.bricks[index];
       at_ = b;
     }
     if (!brick_) return;

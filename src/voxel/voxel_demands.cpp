@@ -40,7 +40,7 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
                              const std::uint32_t voxel_index = grid.find(
                                  morton_encode(static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]),
                                                static_cast<std::uint32_t>(c[2])));
-                             if (voxel_index != no_voxel) bring_forward(found[voxel_index], asked);
+                             if (voxel_index != kNoVoxel) bring_forward(found[voxel_index], asked);
                            };
                          });
   if (!whole) return std::nullopt;
@@ -58,7 +58,7 @@ T last_of(const SceneData& scene, std::span<const T> of_mesh, Before before) {
 
 }  // namespace
 
-std::uint32_t VoxelDemands::least_point_weight() const { return point_weights.empty() ? 1 : densest_point_weight; }
+std::uint32_t VoxelDemands::least_point_weight() const { return point_weights.empty() ? 1 : kDensestPointWeight; }
 
 VoxelDemands VoxelDemands::of(std::span<const std::uint32_t> voxel_indices) const {
   VoxelDemands some;
@@ -90,8 +90,7 @@ std::optional<std::vector<std::uint32_t>> point_weights(const SceneData& scene, 
   std::vector<std::uint32_t> of_mesh;
   for (const double spacing : spacings_m) {
     const double wide = std::min(spacing, grid.voxel_size()) / finest;
-    of_mesh.push_back(
-        static_cast<std::uint32_t>(std::min(std::ceil(densest_point_weight * wide * wide), 4294967295.0)));
+    of_mesh.push_back(static_cast<std::uint32_t>(std::min(std::ceil(kDensestPointWeight * wide * wide), 4294967295.0)));
   }
   const std::span<const std::uint32_t> all = of_mesh;
   return foremost(scene, grid, all, last_of(scene, all, std::less<>()), std::less<>(), progress);

@@ -17,9 +17,9 @@ class VoxelGrid;
 // Element k belongs to voxel index k, or to the k-th voxel of a sample; empty if all voxels are alike.
 struct VoxelDemands {
   std::vector<std::uint8_t> weights;  // weight of the voxel in coverage; empty: 1 each
-  // Point weight per voxel: `densest_point_weight` at the densest goal, more if fewer points suffice. A voxel is full
+  // Point weight per voxel: `kDensestPointWeight` at the densest goal, more if fewer points suffice. A voxel is full
   // once its point weights sum to those of the densest goal. Integers, so that sums do not depend on the order; rounded
-  // up, by less than 1 in `densest_point_weight`. Empty: all voxels have one goal and point weight 1.
+  // up, by less than 1 in `kDensestPointWeight`. Empty: all voxels have one goal and point weight 1.
   std::vector<std::uint32_t> point_weights;
 
   std::uint32_t weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
@@ -30,7 +30,7 @@ struct VoxelDemands {
   VoxelDemands of(std::span<const std::uint32_t> voxel_indices) const;
 };
 
-inline constexpr std::uint32_t densest_point_weight = 4096;
+inline constexpr std::uint32_t kDensestPointWeight = 4096;
 
 // Returns for each voxel index the largest weight of the surveyed meshes that touch the voxel. Empty if all surveyed
 // meshes have equal weights, since only ratios matter. No value if stopped. Parallel; the result does not depend on the

@@ -85,11 +85,11 @@ VANTAGE_TARGET_CLONES
 std::uint32_t VoxelGrid::find(std::uint64_t key) const {
   const auto [x, y, z] = morton_decode(key >> (3 * brick_bits));
   const std::uint32_t index = find_brick(slots_, x, y, z);
-  if (index == no_brick) return no_voxel;
+  if (index == kNoBrick) return kNoVoxel;
   const VoxelBrick& brick = bricks_[index];
   const auto bit = static_cast<std::uint32_t>(key & 511);
   const std::uint32_t word = bit / 32, flag = std::uint32_t{1} << (bit % 32);
-  if (!(brick.mask[word] & flag)) return no_voxel;
+  if (!(brick.mask[word] & flag)) return kNoVoxel;
   auto voxel_index = brick.first + static_cast<std::uint32_t>(std::popcount(brick.mask[word] & (flag - 1)));
   for (std::uint32_t w = 0; w < word; ++w) voxel_index += static_cast<std::uint32_t>(std::popcount(brick.mask[w]));
   return voxel_index;
@@ -109,7 +109,7 @@ std::optional<std::array<std::uint32_t, 3>> VoxelGrid::cell_of(const Float3& p) 
 
 std::uint32_t VoxelGrid::index_of(const Float3& p) const {
   const auto cell = cell_of(p);
-  return cell ? find(morton_encode((*cell)[0], (*cell)[1], (*cell)[2])) : no_voxel;
+  return cell ? find(morton_encode((*cell)[0], (*cell)[1], (*cell)[2])) : kNoVoxel;
 }
 
 std::vector<std::uint64_t> voxelize(std::span<const Float3> positions, std::span<const Triangle> triangles,

@@ -22,8 +22,8 @@ struct FitBasis;         // voxel/grid_fit.hpp
 struct VoxelBricks;      // voxel/voxel_bricks.hpp
 struct SceneDifference;  // scene/scene_difference.hpp
 
-inline constexpr std::uint32_t no_voxel = 0xFFFFFFFFu;
-inline constexpr int max_voxel_depth = 18;  // 2^18 cells per side; 54-bit Morton keys
+inline constexpr std::uint32_t kNoVoxel = 0xFFFFFFFFu;
+inline constexpr int kMaxVoxelDepth = 18;  // 2^18 cells per side; 54-bit Morton keys
 
 // Interleaves voxel coordinates, x lowest: bit 3k of the key is bit k of x.
 std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z);
@@ -33,7 +33,7 @@ class VoxelGrid {
  public:
   // Builds the grid by equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on
   // their bounds. It is moved within that margin to keep surveyed axis-aligned planes off voxel faces (docs/method.md).
-  // Throws Error invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
+  // Throws Error invalid_argument: user size not positive, or so small that the depth exceeds kMaxVoxelDepth.
   static VoxelGrid build(const SceneData& scene, double user_size_m);
   // Does the same with progress; empty if stopped.
   static std::optional<VoxelGrid> build(const SceneData& scene, double user_size_m, const Progress& progress);
@@ -50,11 +50,11 @@ class VoxelGrid {
   std::uint64_t size() const { return size_; }              // N_v
   // Returns the sorted Morton key of the voxel with this index; find() is the inverse.
   std::uint64_t key(std::uint64_t voxel_index) const;
-  std::uint32_t find(std::uint64_t key) const;  // index, or no_voxel
+  std::uint32_t find(std::uint64_t key) const;  // index, or kNoVoxel
   // Returns the voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size));
   // empty outside the cube.
   std::optional<std::array<std::uint32_t, 3>> cell_of(const Float3& p) const;
-  std::uint32_t index_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
+  std::uint32_t index_of(const Float3& p) const;  // find(morton(cell_of(p))), kNoVoxel outside
 
   // Data for upload: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
   std::span<const VoxelBrick> bricks() const { return bricks_; }

@@ -25,7 +25,7 @@ constexpr double kFlat = 1e-3;
 constexpr double kWide_m = 0.75, kWideInVoxels = 0.5;
 // Two planes of a voxel count as one if they differ by less, in their normals and by this share of a voxel in place.
 constexpr double kSame = 1e-3;
-// Least share of a voxel's surface that lies in one direction (`one_plane`) if the voxel is flat.
+// Least share of a voxel's surface that lies in one direction (`kOnePlaneCosine`) if the voxel is flat.
 constexpr double kFlatShare = 0.95;
 // A triangle of this many voxels or more is walked in parts, in parallel.
 constexpr double kLargeTriangle = 1 << 16;
@@ -90,7 +90,7 @@ class TouchFinder {
       return [&](const TriangleCells::Cell& c) {
         const std::uint32_t voxel = grid_.find(morton_encode(
             static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
-        if (voxel != no_voxel) some.emplace_back(voxel, t);
+        if (voxel != kNoVoxel) some.emplace_back(voxel, t);
       };
     };
     double extent = 0;
@@ -137,7 +137,7 @@ std::optional<VoxelPlanes::Plane> flat_plane(const SceneData& scene, std::span<c
   double height = 0, along = 0;
   for (const Part& part : parts) {
     const double turned = dot(part.normal, parts[largest].normal);
-    if (std::abs(turned) < one_plane) continue;
+    if (std::abs(turned) < kOnePlaneCosine) continue;
     const double signed_area = turned < 0 ? -part.area : part.area;
     sum = sum + part.normal * signed_area;
     height += part.height * signed_area;
@@ -204,7 +204,7 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
     return std::abs(turned) > 1 - kSame * kSame &&
            std::abs(planes_[a].offset - (turned < 0 ? -1 : 1) * planes_[b].offset) < kSame * voxel;
   };
-  const auto wide_planes = [&](std::size_t v, std::array<std::uint32_t, most>& kept) {
+  const auto wide_planes = [&](std::size_t v, std::array<std::uint32_t, kMost>& kept) {
     std::vector<std::uint32_t> all;
     for (const std::uint32_t t : triangles_of(v))
       if (plane_of[t] != kNone) all.push_back(plane_of[t]);
@@ -212,7 +212,7 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
                       [&](std::uint32_t a, std::uint32_t b) { return area[a] != area[b] ? area[a] > area[b] : a < b; });
     std::size_t many = 0;
     for (const std::uint32_t plane : all) {
-      if (many == most) break;
+      if (many == kMost) break;
       if (std::none_of(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(many),
                        [&](std::uint32_t one) { return same(one, plane); }))
         kept[many++] = plane;
@@ -229,7 +229,7 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
   const auto voxels = static_cast<std::size_t>(grid.size());
   std::vector<std::optional<Plane>> flat_planes(voxels);
   parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
-    std::array<std::uint32_t, most> kept;
+    std::array<std::uint32_t, kMost> kept;
     first_[v + 1] = static_cast<std::uint32_t>(wide_planes(v, kept));
     if (first_[v + 1] > 0) return;
     flat_planes[v] = flat(v);
@@ -244,7 +244,7 @@ VoxelPlanes::VoxelPlanes(const SceneData& scene, const VoxelGrid& grid) : first_
     }
   parallel::for_all(std::size_t{0}, voxels, [&](std::size_t v) {
     if (flat_planes[v]) return;
-    std::array<std::uint32_t, most> kept;
+    std::array<std::uint32_t, kMost> kept;
     const std::size_t many = wide_planes(v, kept);
     std::copy_n(kept.begin(), many, plane_of_.begin() + first_[v]);
   });

@@ -19,7 +19,7 @@ namespace vantage {
 // well see the same surface beside it. Winding does not matter.
 class VoxelPlanes {
  public:
-  static constexpr std::size_t most = 4;  // of a voxel, the largest surfaces; a wall has two
+  static constexpr std::size_t kMost = 4;  // of a voxel, the largest surfaces; a wall has two
 
   // Parallel; the result does not depend on the number of threads.
   VoxelPlanes(const SceneData& scene, const VoxelGrid& grid);

@@ -17,7 +17,7 @@ namespace {
 using Point = ClippedPolygon::Point;
 
 // Sheets of a plane further apart than this share of a voxel are two; nearer ones are a single sheet wound both ways.
-constexpr double one_sheet = 0.01;
+constexpr double kOneSheetShare = 0.01;
 
 void clip_to_unit_cube(ClippedPolygon& polygon) {
   for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
@@ -53,7 +53,7 @@ struct Plane {
   double diffuse = 0;
 
   double all() const { return area[0] + area[1]; }
-  bool takes(const Part& part) const { return std::abs(dot(axis, part.along)) > one_plane * length(axis); }
+  bool takes(const Part& part) const { return std::abs(dot(axis, part.along)) > kOnePlaneCosine * length(axis); }
   void add(const Part& part) {
     const bool back = dot(axis, part.along) < 0;
     axis += part.along * (back ? -part.area : part.area);
@@ -126,7 +126,7 @@ VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transf
   Point centre = (plane.centre[0] + plane.centre[1]) / area;
   if (plane.area[0] > 0 && plane.area[1] > 0) {
     const Point front = plane.centre[0] / plane.area[0], back = plane.centre[1] / plane.area[1];
-    if (std::abs(dot(normal, front - back)) > one_sheet) {
+    if (std::abs(dot(normal, front - back)) > kOneSheetShare) {
       area = std::max(plane.area[0], plane.area[1]);
       centre = plane.area[0] >= plane.area[1] ? front : back;
     }

@@ -16,7 +16,7 @@
 namespace vantage {
 
 // Normals closer than this, some 26°, belong to one plane: scans of a curved surface still match up to this angle.
-inline constexpr double one_plane = 0.9;
+inline constexpr double kOnePlaneCosine = 0.9;
 
 // The plane that holds most of a voxel's surface. Winding does not matter: n and −n are one plane.
 struct VoxelSurface {

@@ -18,13 +18,13 @@ namespace {
 
 // If more than one in this many surveyed voxels is wanted, walking each triangle's voxels is cheaper than walking its
 // bricks and testing the wanted voxels in each.
-constexpr std::uint64_t dense_share = 32;
+constexpr std::uint64_t kDenseShare = 32;
 
 bool is_dense(std::span<const std::uint32_t> voxel_indices, const VoxelGrid& grid) {
-  return voxel_indices.size() >= grid.size() / dense_share;
+  return voxel_indices.size() >= grid.size() / kDenseShare;
 }
 
-constexpr int brick_shift = static_cast<int>(brick_bits);
+constexpr int kBrickShift = static_cast<int>(brick_bits);
 std::int64_t voxels_a_side(const VoxelGrid& grid) { return std::int64_t{1} << grid.depth(); }
 GridTransform transform_of(const VoxelGrid& grid) {
   return {{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
@@ -60,14 +60,14 @@ class TriangleReach {
 template <class Visit>
 void for_each_brick(const VoxelGrid& grid, const std::array<std::array<double, 3>, 3>& corners, double margin,
                     const Visit& visit) {
-  const std::int64_t bricks = std::max<std::int64_t>(voxels_a_side(grid) >> brick_shift, 1);
+  const std::int64_t bricks = std::max<std::int64_t>(voxels_a_side(grid) >> kBrickShift, 1);
   auto coarse = corners;
   for (auto& corner : coarse)
-    for (double& x : corner) x *= 1.0 / (1 << brick_shift);
-  TriangleCells(coarse, bricks, margin / (1 << brick_shift)).for_each([&](const TriangleCells::Cell& c) {
+    for (double& x : corner) x *= 1.0 / (1 << kBrickShift);
+  TriangleCells(coarse, bricks, margin / (1 << kBrickShift)).for_each([&](const TriangleCells::Cell& c) {
     const std::uint32_t brick = find_brick(grid.slots(), static_cast<std::uint32_t>(c[0]),
                                            static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]));
-    if (brick != no_brick) visit(brick);
+    if (brick != kNoBrick) visit(brick);
   });
 }
 
@@ -114,7 +114,7 @@ class Finder {
     if (voxel_indices.empty()) return;
     if (dense_) {
       first_index_ = voxel_indices.front();
-      number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, no_voxel);
+      number_.assign(std::size_t{voxel_indices.back() - first_index_} + 1, kNoVoxel);
       for (std::size_t i = 0; i < voxel_indices.size(); ++i)
         number_[voxel_indices[i] - first_index_] = static_cast<std::uint32_t>(i);
       within_ = parallel::reduce(
@@ -163,7 +163,7 @@ class Finder {
       const std::uint32_t voxel_index = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
       const std::uint32_t place = voxel_index - first_index_;  // voxels before the first one wrap around
-      if (voxel_index != no_voxel && place < number_.size() && number_[place] != no_voxel) found(number_[place], t);
+      if (voxel_index != kNoVoxel && place < number_.size() && number_[place] != kNoVoxel) found(number_[place], t);
     });
   }
 
@@ -185,7 +185,7 @@ class Finder {
   bool dense_;
   CellBox within_;                                   // dense: around the wanted voxels
   std::uint32_t first_index_ = 0;                    // dense: index of the first of them
-  std::vector<std::uint32_t> number_;                // dense: for each voxel index from there, its number or no_voxel
+  std::vector<std::uint32_t> number_;                // dense: for each voxel index from there, its number or kNoVoxel
   std::vector<std::array<std::uint32_t, 3>> cells_;  // sparse: cell of each wanted voxel
   std::vector<std::uint32_t> first_;                 // sparse: brick b has first_[b] … first_[b + 1] − 1
 };
@@ -209,12 +209,12 @@ VoxelTriangles SampleTriangles::touching(std::span<const std::uint32_t> voxel_in
 
 std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::span<const std::uint32_t> voxel_indices,
                                                                            double margin_m) {
-  constexpr double to_spare = 1.5;  // of the margin, which grows with the distance of stations
+  constexpr double kToSpare = 1.5;  // of the margin, which grows with the distance of stations
   const std::lock_guard lock(mutex_);
   if (first_.empty()) first_.assign(voxel_indices.begin(), voxel_indices.end());
   if (std::ranges::equal(first_, voxel_indices)) return nullptr;
   if (!bricks_ || bricks_->margin_m < margin_m) {
-    const double margin = to_spare * margin_m;
+    const double margin = kToSpare * margin_m;
     // A thread that waits here must not take up other work, which might wait here, too.
     tbb::this_task_arena::isolate([&] {
       bricks_ = std::make_shared<const Bricks>(
@@ -232,7 +232,7 @@ VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const 
   parallel::for_all(std::size_t{0}, voxel_indices.size(), [&](std::size_t i) {
     const auto cell = morton_decode(grid_->key(voxel_indices[i]));
     const std::uint32_t brick =
-        find_brick(grid_->slots(), cell[0] >> brick_shift, cell[1] >> brick_shift, cell[2] >> brick_shift);
+        find_brick(grid_->slots(), cell[0] >> kBrickShift, cell[1] >> kBrickShift, cell[2] >> kBrickShift);
     for (std::uint32_t k = bricks.triangles.offset[brick]; k < bricks.triangles.offset[brick + 1]; ++k) {
       const std::uint32_t t = bricks.triangles.triangle[k];
       TriangleReach reach(fine.corners(scene_->corners(t)), voxels_a_side(*grid_), margin);

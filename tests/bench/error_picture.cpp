@@ -24,14 +24,14 @@ struct Look {
 
 Look look_of(Way way) {
   switch (way) {
-    case Way::sampled: return {style::blue, "a sample of the voxels"};
-    case Way::coarser_steps: return {style::orange, "coarser steps, goal scaled"};
+    case Way::sampled: return {style::kBlue, "a sample of the voxels"};
+    case Way::coarser_steps: return {style::kOrange, "coarser steps, goal scaled"};
     case Way::coarser_steps_and_voxels: return {kPurple, "coarser steps and voxels"};
     case Way::coarser_voxels: return {kGreen, "coarser voxels"};
     case Way::every_ray:
     case Way::exact: break;
   }
-  return {style::ink, "exact"};
+  return {style::kInk, "exact"};
 }
 
 struct Quantity {
@@ -87,7 +87,7 @@ void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>&
     taken.push_back(best);
     std::vector<double> dashes;
     if (way == Way::every_ray) dashes = {5, 4};
-    canvas.line({at, area.y}, {at, area.bottom()}, {.colour = style::ink, .width = 1.4, .dashes = dashes});
+    canvas.line({at, area.y}, {at, area.bottom()}, {.colour = style::kInk, .width = 1.4, .dashes = dashes});
     for (double top = area.y; top < area.bottom(); top += 8) taken.push_back({at - 1, top, 2, 8});
   }
 }
@@ -113,7 +113,7 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
   const std::vector<std::string> labels = logarithmic_labels(ratios);
   for (std::size_t k = 0; k < ratios.size(); ++k) {
     const Point at = chart.at(exact / ratios[k], y.high);
-    canvas.line({at.x, at.y - 5}, at, {.colour = style::faint, .width = 1});
+    canvas.line({at.x, at.y - 5}, at, {.colour = style::kFaint, .width = 1});
     canvas.text({at.x, at.y - 8}, labels[k], {.size = 12.5, .across = Align::middle, .down = Align::end});
   }
 
@@ -122,8 +122,8 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
     if (dot.way == Way::sampled && dot.*quantity.predicted > 0)
       predicted.push_back(chart.at(dot.milliseconds, dot.*quantity.predicted));
   keep_clear(predicted, taken);
-  canvas.path(predicted, {.colour = style::blue, .width = 1.2, .dashes = {5, 4}});
-  for (const Point& at : predicted) canvas.circle(at, 4, {.colour = style::blue, .width = 1.2});
+  canvas.path(predicted, {.colour = style::kBlue, .width = 1.2, .dashes = {5, 4}});
+  for (const Point& at : predicted) canvas.circle(at, 4, {.colour = style::kBlue, .width = 1.2});
 
   struct Mark {
     Point at;
@@ -162,7 +162,7 @@ std::unique_ptr<Canvas> error_picture(const std::vector<ErrorDot>& dots, const s
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
   canvas.text({24, 30}, title, {.size = 18, .bold = true});
-  canvas.text({24, 54}, subtitle, {.size = 12.5, .colour = style::faint});
+  canvas.text({24, 54}, subtitle, {.size = 12.5, .colour = style::kFaint});
   constexpr double top = 124, height = 400, width = 470;
   draw_panel(canvas, {96, top, width, height}, dots,
              {"Error of the coverage (rms)", &ErrorDot::coverage_rms, &ErrorDot::coverage_se}, time_label);

@@ -103,7 +103,7 @@ std::vector<double> flat(const std::vector<ParetoPoint>& front) {
   return f;
 }
 
-constexpr std::array<Colour, 4> kColours{{style::orange, style::blue, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kColours{{style::kOrange, style::kBlue, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
 void draw(const std::string& file, const FrontOptions& options, const std::vector<Curve>& curves) {
   constexpr double kWidth = 860, kHeight = 520;
@@ -143,13 +143,13 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
     at.y += 24;
   }
   at.y += 12;
-  canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::ink, .width = 2});
+  canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::kInk, .width = 2});
   canvas.text({at.x + 34, at.y}, "by every ray", {.size = 12.5});
   at.y += 22;
-  canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::ink, .width = 1, .dashes = {4, 4}});
+  canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::kInk, .width = 1, .dashes = {4, 4}});
   canvas.text({at.x + 34, at.y}, "as searched", {.size = 12.5});
   at.y += 22;
-  ring({at.x + 13, at.y}, style::ink);
+  ring({at.x + 13, at.y}, style::kInk);
   canvas.text({at.x + 34, at.y}, "confirmed", {.size = 12.5});
   canvas.save(file);
 }

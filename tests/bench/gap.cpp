@@ -20,7 +20,7 @@ struct Dot {
   double bound, found;
 };
 
-constexpr std::array<Colour, 4> kColours{{style::blue, style::orange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
 void draw(const std::string& file, const GapOptions& options, const std::vector<Dot>& dots) {
   constexpr double kWidth = 820, kHeight = 520;
@@ -58,9 +58,9 @@ void draw(const std::string& file, const GapOptions& options, const std::vector<
     canvas.text({at.x, at.y + 18}, "gap " + fixed(100 * gap, 1) + " % at the last", {.size = 12.5});
     at.y += 48;
   }
-  canvas.circle({at.x + 6, at.y}, 4, {.colour = style::ink, .width = 1.4});
+  canvas.circle({at.x + 6, at.y}, 4, {.colour = style::kInk, .width = 1.4});
   canvas.text({at.x + 18, at.y}, "no choice has more", {.size = 12.5});
-  canvas.disc({at.x + 6, at.y + 22}, 4, style::ink);
+  canvas.disc({at.x + 6, at.y + 22}, 4, style::kInk);
   canvas.text({at.x + 18, at.y + 22}, "the best choice found", {.size = 12.5});
   canvas.save(file);
 }

@@ -131,7 +131,7 @@ struct Dot {
   double times;
 };
 
-constexpr std::array<Colour, 4> kColours{{style::blue, style::orange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
 void draw(const RanksOptions& options, const RanksModel& model, const std::vector<Dot>& dots) {
   constexpr double kWidth = 860, kHeight = 560;
@@ -146,7 +146,7 @@ void draw(const RanksOptions& options, const RanksModel& model, const std::vecto
                         fixed((model.ask_bytes + model.answer_bytes) / 1e3, 1) + " kB of messages, " +
                         fixed(1e6 * model.round_trip_s, 0) + " µs there and back, " + fixed(options.gbit, 0) +
                         " Gbit/s at rank 0");
-  const Pen ideal{.colour = style::faint, .width = 1.2, .dashes = {5, 4}};
+  const Pen ideal{.colour = style::kFaint, .width = 1.2, .dashes = {5, 4}};
   canvas.line(chart.at(1, 1), chart.at(most, most), ideal);
   Point at{kWidth - 190, 100};
   for (std::size_t p = 0; p < options.populations.size(); ++p) {

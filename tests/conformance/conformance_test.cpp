@@ -146,7 +146,7 @@ TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
       apart += bits_apart(chunk.position[k].x, o.x + chunk.range[k] * d.x) +
                bits_apart(chunk.position[k].y, o.y + chunk.range[k] * d.y) +
                bits_apart(chunk.position[k].z, o.z + chunk.range[k] * d.z);
-      if (chunk.voxel[k] != no_voxel) {
+      if (chunk.voxel[k] != kNoVoxel) {
         ASSERT_EQ(chunk.voxel[k], site.grid->index_of(chunk.position[k])) << "ray " << k;
       }
     }
@@ -271,7 +271,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
             chunk.primitive.begin(), chunk.primitive.end(), [](std::uint32_t p) { return p != ReferenceHit::none; })));
         on_surveyed.push_back(0);
         for (const std::uint32_t voxel : chunk.voxel) {
-          if (voxel == no_voxel) continue;
+          if (voxel == kNoVoxel) continue;
           ++expected.count[voxel];
           expected.stations[voxel] |= std::uint64_t{1} << s;
           ++on_surveyed.back();
@@ -301,8 +301,8 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     for (std::size_t s = 0; s < site.stations.size(); ++s) {
       for (const ReferenceHit& hit : site.reference(s, true)) {
         points += hit.triangle != ReferenceHit::none;
-        on_surveyed += hit.voxel != no_voxel;
-        if (hit.voxel != no_voxel) ++expected.count[hit.voxel];
+        on_surveyed += hit.voxel != kNoVoxel;
+        if (hit.voxel != kNoVoxel) ++expected.count[hit.voxel];
       }
     }
     const NetworkCounts counts = count(site, true, {false, false, nullptr});

@@ -118,12 +118,12 @@ TEST_P(GlassConformance, EchoesBehindAPaneFollowFresnel) {
     const float at_wall = static_cast<float>(5 / x), at_pane = static_cast<float>(3 / x);
     if (std::acos(x) < 0.01745) {
       EXPECT_NEAR(chunk.range[ray], at_pane, 1e-5);
-      EXPECT_EQ(chunk.voxel[ray], no_voxel);
+      EXPECT_EQ(chunk.voxel[ray], kNoVoxel);
       EXPECT_EQ(scene->mesh_of(chunk.primitive[ray]), 1u);
       ++on_pane;
     } else if (reach > 1) {
       EXPECT_NEAR(chunk.range[ray], at_wall, 1e-5) << std::acos(x);
-      EXPECT_NE(chunk.voxel[ray], no_voxel);
+      EXPECT_NE(chunk.voxel[ray], kNoVoxel);
       ++counted;
     } else {
       EXPECT_EQ(chunk.primitive[ray], no_primitive) << std::acos(x);
@@ -138,7 +138,7 @@ TEST_P(GlassConformance, EchoesBehindAPaneFollowFresnel) {
   EXPECT_GE(counts.dropped[0].echo, lost + on_pane);
   const auto voxels = chunk.voxel;
   EXPECT_EQ(counts.points_on_surveyed[0],
-            static_cast<std::uint64_t>(std::ranges::count_if(voxels, [](auto v) { return v != no_voxel; })));
+            static_cast<std::uint64_t>(std::ranges::count_if(voxels, [](auto v) { return v != kNoVoxel; })));
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, GlassConformance, testing::ValuesIn(engines_under_test()),

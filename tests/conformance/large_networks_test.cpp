@@ -40,7 +40,7 @@ PassField field_of_scans(Tracer& tracer, const TestSite& site, std::span<const T
   for (const TraceStation& station : stations) {
     tracer.scan(station, 0, site.rays(), Tracer::voxel, chunk);
     for (const std::uint32_t voxel_index : chunk.voxel) {
-      if (voxel_index == no_voxel) continue;
+      if (voxel_index == kNoVoxel) continue;
       ++field.count[voxel_index];
       field.stations[station.place / 64 * voxels + voxel_index] |= std::uint64_t{1} << (station.place % 64);
     }

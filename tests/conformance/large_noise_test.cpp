@@ -63,7 +63,7 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
     at_head += static_cast<std::size_t>(std::ranges::count(chunk.range, 0.0f));
     for (const float range : chunk.range) ASSERT_FALSE(range < 0) << "station " << s;
     for (const std::uint32_t voxel : chunk.voxel) {
-      if (voxel == no_voxel) continue;
+      if (voxel == kNoVoxel) continue;
       ++expected.count[voxel];
       expected.stations[voxel] |= std::uint64_t{1} << s;
     }

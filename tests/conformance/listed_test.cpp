@@ -84,7 +84,7 @@ TEST_P(ListedConformance, ScansAndCountsMatchADoublePrecisionReference) {
         if (HasFailure()) return;
         rays += chunk.voxel.size();
         for (const std::uint32_t voxel : chunk.voxel) {
-          if (voxel == no_voxel) continue;
+          if (voxel == kNoVoxel) continue;
           ++points;
           ++expected.count[voxel];
           expected.stations[voxel] |= std::uint64_t{1} << station.place;

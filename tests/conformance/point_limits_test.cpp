@@ -72,7 +72,7 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
                         hit.limit_distance < undecided_part)
                 << "ray " << k << " of station " << s << ", limit " << hit.limit_distance;
           }
-          if (chunk.voxel[k] == no_voxel) continue;
+          if (chunk.voxel[k] == kNoVoxel) continue;
           ++counted;
           ++expected.count[chunk.voxel[k]];
           expected.stations[chunk.voxel[k]] |= std::uint64_t{1} << s;

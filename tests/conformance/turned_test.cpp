@@ -188,7 +188,7 @@ TEST_P(TurnedConformance, CountsAreThePointsOfTheScans) {
         tracer->scan(station, 0, rays_of(scene, station), Tracer::voxel, chunk);
         rays += chunk.voxel.size();
         for (const std::uint32_t voxel : chunk.voxel) {
-          if (voxel == no_voxel) continue;
+          if (voxel == kNoVoxel) continue;
           ++expected.count[voxel];
           expected.stations[voxel] |= std::uint64_t{1} << station.place;
         }

@@ -43,9 +43,9 @@ bool within(const test::Place& place, const Vec3& local, double low, double high
 double captured_of(const test::Place& place, const test::KnownSite& site, const Simulator& simulator,
                    const VoxelField& field) {
   double sum = 0, count = 0;
-  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
-    if (!within(place, simulator.voxel_centre(rank) - site.offset, -0.5 * simulator.voxel_size_m(), 2)) continue;
-    sum += std::min(1.0, field.count[rank] / simulator.goal_density());
+  for (std::uint64_t voxel = 0; voxel < simulator.voxel_count(); ++voxel) {
+    if (!within(place, simulator.voxel_centre(voxel) - site.offset, -0.5 * simulator.voxel_size_m(), 2)) continue;
+    sum += std::min(1.0, field.count[voxel] / simulator.goal_density());
     ++count;
   }
   return count > 0 ? sum / count : 1;

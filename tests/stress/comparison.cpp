@@ -99,7 +99,7 @@ BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
   std::vector<std::set<std::uint32_t>> visible(stations.size());
   for (std::size_t s = 0; s < stations.size(); ++s) {
     for (const ReferenceHit& hit : stations[s]) {
-      if (hit.voxel == no_voxel) continue;
+      if (hit.voxel == kNoVoxel) continue;
       points[hit.voxel] += 1;
       visible[s].insert(hit.voxel);
     }

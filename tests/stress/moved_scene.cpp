@@ -102,11 +102,11 @@ double predicted_coverage(const Survey& original, const Survey& moved, const Mov
   std::vector<double> counts(grid.size());
   for (std::size_t s = 0; s < original.points.size(); ++s) {
     for (std::size_t k = 0; k < original.points[s].size(); ++k) {
-      if (original.voxels[s][k] == no_voxel) continue;
+      if (original.voxels[s][k] == kNoVoxel) continue;
       const Vec3 p = move(original.point(s, k)) - data.origin;
       const std::uint32_t voxel_index =
           grid.index_of({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-      if (voxel_index != no_voxel) counts[voxel_index] += 1;
+      if (voxel_index != kNoVoxel) counts[voxel_index] += 1;
     }
   }
   double sum = 0;

@@ -136,9 +136,9 @@ class RayTest {
       cell[axis] = inside ? static_cast<std::uint32_t>(scaled) : 0;
     }
     if (inside) hit.voxel = grid.find(morton_encode(cell[0], cell[1], cell[2]));
-    if (hit.voxel == no_voxel || !scanner_.limits || !scanner_.limits->enabled()) return;
+    if (hit.voxel == kNoVoxel || !scanner_.limits || !scanner_.limits->enabled()) return;
     hold_to_limits(hit, ray);
-    if (hit.dropped.points > 0) hit.voxel = no_voxel;
+    if (hit.dropped.points > 0) hit.voxel = kNoVoxel;
   }
 
   // Share of the echo that passes the glass before a hit, there and back, from the reflectances of a face in both

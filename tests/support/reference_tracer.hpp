@@ -17,7 +17,7 @@ struct ReferenceHit {
   double range = 0;  // with noise
   double reflectivity = 0;
   Vec3 point, normal;
-  std::uint32_t voxel = no_voxel;  // also no_voxel if the point misses a limit
+  std::uint32_t voxel = kNoVoxel;  // also kNoVoxel if the point misses a limit
   DroppedPoints dropped;           // limits that the point misses, if it lies in a surveyed voxel
   // Smallest change that would alter the answer, in metres: from the ray to the nearest edge of a triangle that it hits
   // or passes, or to an end of the range; to another surface behind the hit; and from the point to its nearest voxel

@@ -28,10 +28,10 @@ struct Moments {
 };
 
 struct Cell {
-  static constexpr std::uint16_t several = 0xFFFF;
+  static constexpr std::uint16_t kSeveralScans = 0xFFFF;
   std::uint64_t key = 0;
   std::uint32_t count = 0;
-  std::uint16_t scan = 0;         // the only scan that saw it, or `several`
+  std::uint16_t scan = 0;         // the only scan that saw it, or `kSeveralScans`
   std::uint8_t seen_through = 0;  // rays of other scans that went through it
   bool kept = true;
   std::array<float, 3> sum{}, towards{};  // about its middle, in cells; summed unit vectors to the scanner
@@ -42,9 +42,9 @@ struct Cell {
 
 class CellGrid {
  public:
-  static constexpr std::uint32_t none = UINT32_MAX;
-  static constexpr std::int32_t reach = 1 << 20;          // cells from the middle
-  static constexpr double bytes_each = 3 * sizeof(Cell);  // with all that is kept for a cell until the end
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  static constexpr std::int32_t kReach = 1 << 20;         // cells from the middle
+  static constexpr double kBytesEach = 3 * sizeof(Cell);  // with all that is kept for a cell until the end
 
   CellGrid(const Eigen::Vector3d& middle, double cell_m);
 
@@ -58,7 +58,7 @@ class CellGrid {
   std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
   Cell& operator[](std::uint32_t k) { return cells_[k]; }
   const Cell& operator[](std::uint32_t k) const { return cells_[k]; }
-  // Returns the number of the cell there, or `none`. Also finds cells that are not kept.
+  // Returns the number of the cell there, or `kNone`. Also finds cells that are not kept.
   std::uint32_t find(const CellIndex& index) const;
   static CellIndex index_of(const Cell& cell);
   static Eigen::Vector3d middle_of(const CellIndex& index) { return index.cast<double>().array() + 0.5; }
@@ -70,7 +70,7 @@ class CellGrid {
         for (int x = -1; x <= 1; ++x) {
           if (x == 0 && y == 0 && z == 0) continue;
           const CellIndex beside = index + CellIndex(x, y, z);
-          if (const std::uint32_t k = find(beside); k != none) visit(k, beside);
+          if (const std::uint32_t k = find(beside); k != kNone) visit(k, beside);
         }
   }
   // Does the same for kept cells only.

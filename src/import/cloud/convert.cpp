@@ -183,7 +183,7 @@ class Converter {
         scale_ = scale_ == 1 ? kCentimetres : kMostScale;
         density = density_of(scale_);
       }
-      cell = scale_ * Density::sizes_m[choose_cell(density, memory_for_cells(), CellGrid::bytes_each)];
+      cell = scale_ * Density::kSizes_m[choose_cell(density, memory_for_cells(), CellGrid::kBytesEach)];
     }
     // Rounds the middle to whole metres, so that coordinates stay short.
     grid_.emplace(density.middle().array().round(), cell);
@@ -202,7 +202,7 @@ class Converter {
 
   // Returns the number of a scan as cells store it.
   static std::uint16_t number_of(std::uint32_t scan) {
-    return static_cast<std::uint16_t>(std::min<std::uint32_t>(scan, Cell::several - 1));
+    return static_cast<std::uint16_t>(std::min<std::uint32_t>(scan, Cell::kSeveralScans - 1));
   }
 
   void accumulate() {

@@ -33,11 +33,11 @@ void Density::add(const Eigen::Vector3d& p) {
     random_ += 0x9E3779B97F4A7C15;
     if (const std::uint64_t place = mixed(random_) % points_; place < kReservoir) reservoir_[place] = p;
   }
-  for (std::size_t s = 0; s < sizes_m.size(); ++s) {
+  for (std::size_t s = 0; s < kSizes_m.size(); ++s) {
     std::uint64_t hash = s;
     for (int axis = 0; axis < 3; ++axis)
       hash = mixed(hash +
-                   static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / (sizes_m[s] * scale_)))));
+                   static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[axis] / (kSizes_m[s] * scale_)))));
     Sample& sample = samples_[s];
     if (hash & sample.mask) continue;
     ++sample.counts[hash];
@@ -84,14 +84,14 @@ double Density::median(std::size_t size) const {
   return *half;
 }
 
-bool Density::too_thin() const { return median(sizes_m.size() - 1) < kEnough; }
+bool Density::too_thin() const { return median(kSizes_m.size() - 1) < kEnough; }
 
 double Density::cells(std::size_t size) const {
   return static_cast<double>(samples_[size].counts.size()) * static_cast<double>(samples_[size].mask + 1);
 }
 
 std::size_t choose_cell(const Density& density, double memory, double bytes_each) {
-  for (std::size_t s = 0; s < Density::sizes_m.size(); ++s)
+  for (std::size_t s = 0; s < Density::kSizes_m.size(); ++s)
     if (density.median(s) >= kEnough && density.cells(s) * bytes_each <= memory) return s;
   if (!density.too_thin())
     throw Refused("its surfaces take more memory than there is, even in cells of 50 cm; export parts of it");

@@ -13,9 +13,9 @@ namespace vantage::importer {
 
 class Density {
  public:
-  static constexpr std::array<double, 11> sizes_m{0.02, 0.025, 0.03, 0.04, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5};
+  static constexpr std::array<double, 11> kSizes_m{0.02, 0.025, 0.03, 0.04, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5};
 
-  // `scale`: units of the points in a metre of `sizes_m`.
+  // `scale`: units of the points in a metre of `kSizes_m`.
   explicit Density(double scale = 1) : scale_(scale) {}
 
   void add(const Eigen::Vector3d& p);
@@ -40,7 +40,7 @@ class Density {
   double scale_;
   std::uint64_t points_ = 0, random_ = 0x9E3779B97F4A7C15;
   std::vector<Eigen::Vector3d> reservoir_;
-  std::array<Sample, sizes_m.size()> samples_;
+  std::array<Sample, kSizes_m.size()> samples_;
 };
 
 // Returns the index of the smallest size whose cells mostly hold enough points for a plane and fit into `memory` bytes.

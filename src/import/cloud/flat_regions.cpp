@@ -90,7 +90,7 @@ class Growth {
       for_steps(plane.normal, [&](const CellIndex& step) {
         const CellIndex there = at + step;
         const std::uint32_t k = grid_.find(there);
-        if (k == CellGrid::none || !grid_[k].kept || region_[k] != kNone || !fits(k, there, plane, base)) return;
+        if (k == CellGrid::kNone || !grid_[k].kept || region_[k] != kNone || !fits(k, there, plane, base)) return;
         region_[k] = number;
         queue.push_back(k);
         all.add(grid_[k].moments(), (there - base).cast<double>());

@@ -68,7 +68,7 @@ FreeSpace::FreeSpace(CellGrid& grid, const std::vector<CellPlane>& planes) : gri
 std::uint64_t FreeSpace::brick_key(const CellIndex& coarse) {
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis)
-    key = key << 21 | static_cast<std::uint64_t>(floor_div(coarse[axis], kSide) + CellGrid::reach);
+    key = key << 21 | static_cast<std::uint64_t>(floor_div(coarse[axis], kSide) + CellGrid::kReach);
   return key;
 }
 
@@ -94,7 +94,7 @@ bool FreeSpace::known(const Eigen::Vector3d& place) const {
 void FreeSpace::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, std::uint16_t scan) {
   const Eigen::Vector3d way = to - from;
   const double length = way.norm(), end = length - 2 * coarse_;
-  if (!(end > 0) || !(from.cwiseAbs().maxCoeff() < CellGrid::reach)) return;
+  if (!(end > 0) || !(from.cwiseAbs().maxCoeff() < CellGrid::kReach)) return;
   const Eigen::Vector3d direction = way / length;
   double begin = 0;  // where the ray enters the box
   for (int axis = 0; axis < 3; ++axis) {
@@ -115,9 +115,9 @@ void FreeSpace::test_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& d
                            std::uint16_t scan) {
   walk(from + begin * direction, direction, end - begin, [&](const CellIndex& index, double, double) {
     const std::uint32_t k = grid_.find(index);
-    if (k == CellGrid::none) return;
+    if (k == CellGrid::kNone) return;
     Cell& cell = grid_[k];
-    if (cell.scan == scan || cell.scan == Cell::several || cell.seen_through == UINT8_MAX) return;
+    if (cell.scan == scan || cell.scan == Cell::kSeveralScans || cell.seen_through == UINT8_MAX) return;
     const Eigen::Vector3f d = direction.cast<float>();
     const float slope = planes_[k].normal.dot(d);
     if (std::abs(slope) < kLeastSlope) return;

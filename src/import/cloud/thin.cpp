@@ -40,7 +40,7 @@ class ThinScans {
       for (const Eigen::Vector3d& p : block.positions) grid_->add(p, 0, Eigen::Vector3d::Zero());
       // Records count twice, since writing copies them.
       too_many_ =
-          grid_->size() * (CellGrid::bytes_each + 2 * kRecord) + 2.0 * static_cast<double>(records_.size()) > memory_;
+          grid_->size() * (CellGrid::kBytesEach + 2 * kRecord) + 2.0 * static_cast<double>(records_.size()) > memory_;
     });
     if (too_many_) return {};
     flush();

@@ -10,9 +10,9 @@
 namespace vantage::built_in {
 namespace {
 
-constexpr double millimetres = 1000;
+constexpr double kMillimetresPerMetre = 1000;
 // End of the search's scale. Good networks register to some tenths of a millimetre.
-constexpr double worst_mm = 10;
+constexpr double kWorst_mm = 10;
 
 std::string parameters_of(const RegistrationOptions& options) {
   std::string text;
@@ -33,12 +33,12 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
       .label = std::move(label),
       .unit = "mm",
       .noun = std::move(noun),
-      .scale = minimise(0, worst_mm),
+      .scale = minimise(0, kWorst_mm),
       .needs = {.pairs = true, .surroundings = all, .registration = options.model, .surroundings_registration = all},
       .value =
           [options, figure](const MeasuredNetwork& m) {
             return registration_error(m.counts, m.voxels, options, m.surroundings, m.surroundings_voxels).*figure *
-                   millimetres;
+                   kMillimetresPerMetre;
           },
       .parameters = parameters_of(options)};
 }

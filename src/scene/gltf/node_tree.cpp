@@ -119,7 +119,7 @@ std::string node_name(const tinygltf::Model& model, int index, const std::string
 }
 
 // (x, y, z) ↦ (x, −z, y): glTF's Y up becomes the survey frame's Z up.
-constexpr glm::dmat4 survey_from_gltf{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+constexpr glm::dmat4 kSurveyFromGltf{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
 
 // Returns CESIUM_RTC's centre, to which all positions are relative: with Z up, as in tiles. Otherwise the identity.
 glm::dmat4 origin_of(const File& file) {
@@ -327,7 +327,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   const std::vector<int> roots = root_nodes(file, options);
   const std::vector<bool> coarser = coarser_levels(file, roots);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-    stack.push_back({*it, -1, origin_of(file) * survey_from_gltf, {}, {}, {}, {}, {}});
+    stack.push_back({*it, -1, origin_of(file) * kSurveyFromGltf, {}, {}, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
   std::vector<std::string> door_names = options.doors;

@@ -25,7 +25,7 @@ namespace {
                                                 PointBuckets::Local& points, std::uint32_t shift,
                                                 StationTotals& totals) {
   const Float3& origin = station.origin;
-  std::array<Passed, RayBundle::capacity> passed;
+  std::array<Passed, RayBundle::kCapacity> passed;
   const bool behind_glass = station_rays.glass() && station_rays.glass()->follow(origin, hits, panes, passed);
   const bool all_count = !station_rays.limited() || station_rays.all_count(hits);
   if (behind_glass || !all_count) {
@@ -41,7 +41,7 @@ namespace {
                                behind_glass ? passed[k].share : 1);
       if (dropped.points == 0) {
         voxels.add(point);
-      } else if (station_rays.grid().index_of(point) != no_voxel) {
+      } else if (station_rays.grid().index_of(point) != kNoVoxel) {
         totals.dropped = totals.dropped + dropped;
       }
     }
@@ -72,7 +72,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     const std::uint64_t first = station_rays.ray(row, tile.column);
     for (std::uint32_t column = 0; column < tile.columns; ++column, ++slot) {
       const std::uint32_t triangle = rays.primitive[slot];
-      if (triangle == RayBundle::no_hit) continue;
+      if (triangle == RayBundle::kNoHit) continue;
       ++totals.points;
       if (surface.surveyed(triangle)) hits.add(rays, slot, first + column);
     }
@@ -84,7 +84,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
 
 // Replaces tiny components as RayCaster::safe() does.
 [[gnu::always_inline]] inline void make_safe(Floats8& v) {
-  v = (v >= RayCaster::least_component) | (v <= -RayCaster::least_component) ? v : Floats8{};
+  v = (v >= RayCaster::kLeastComponent) | (v <= -RayCaster::kLeastComponent) ? v : Floats8{};
 }
 
 // Adds rays row to row + many of a column, which hit the same triangle.
@@ -146,10 +146,10 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
 // Points by voxel: `many` of them lie in the voxel of each `point`.
 struct SettledPoints {
   std::uint32_t size = 0;
-  std::array<Float3, VoxelLookup::capacity> point;
-  std::array<std::uint32_t, VoxelLookup::capacity> many;
+  std::array<Float3, VoxelLookup::kCapacity> point;
+  std::array<std::uint32_t, VoxelLookup::kCapacity> many;
 
-  bool full() const { return size == VoxelLookup::capacity; }
+  bool full() const { return size == VoxelLookup::kCapacity; }
   void add(const Float3& of_voxel, std::uint32_t points) {
     point[size] = of_voxel;
     many[size++] = points;
@@ -161,8 +161,8 @@ struct SettledPoints {
       std::uint32_t sum = 0;
       for (std::uint32_t k = begin; k < end; ++k) sum += many[k];
       totals.points_on_surveyed += sum;
-      for (; sum > PointBuckets::most_at_once; sum -= PointBuckets::most_at_once)
-        points.add(voxel_index, shift, PointBuckets::most_at_once);
+      for (; sum > PointBuckets::kMostAtOnce; sum -= PointBuckets::kMostAtOnce)
+        points.add(voxel_index, shift, PointBuckets::kMostAtOnce);
       points.add(voxel_index, shift, sum);
     });
     size = 0;
@@ -186,22 +186,22 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
     hits.size = 0;
   };
   Facet facet;
-  std::uint32_t known = Picture::none;  // the facet's triangle
+  std::uint32_t known = Picture::kNone;  // the facet's triangle
   for (std::uint32_t j = 0; j < strip.columns; ++j) {
     const std::uint32_t* const triangles = strip.triangles(j);
     for (std::uint32_t row = 0, end; row < rows; row = end) {
       const std::uint32_t triangle = triangles[row];
       end = std::min(rows, end_of_run(triangles, row + 1, rows, triangle));
-      if (triangle == Picture::none) continue;
+      if (triangle == Picture::kNone) continue;
       totals.points += end - row;
       if (!surface.surveyed(triangle)) continue;
       const Planes::Seen plane = station_rays.planes().seen(triangle, station.origin);
       const auto one_by_one = [&](std::uint32_t from, std::uint32_t to) __attribute__((always_inline)) {
         while (from < to) {
-          const std::uint32_t many = std::min(to - from, RayBundle::capacity - hits.size);
+          const std::uint32_t many = std::min(to - from, RayBundle::kCapacity - hits.size);
           add_run(station_rays, station, picture, strip.first + j, from, many, triangle, plane, hits);
           from += many;
-          if (hits.size == RayBundle::capacity) count();
+          if (hits.size == RayBundle::kCapacity) count();
         }
       };
       if (!steps.pay(end - row)) {

@@ -21,7 +21,7 @@ double edge_doubt(double farthest, double side, double longest) {
 
 // Finds the zeniths between the corners of a triangle, and whether the axis may pierce it.
 void find_extremes(const std::array<Vec3, 3>& p, double& least, double& most, bool& up, bool& down) {
-  constexpr double pi = std::numbers::pi;
+  constexpr double kPi = std::numbers::pi;
   up = down = true;
   const double sign = dot(cross(p[1] - p[0], p[2] - p[0]), p[0]) < 0 ? -1 : 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -34,7 +34,7 @@ void find_extremes(const std::array<Vec3, 3>& p, double& least, double& most, bo
     const double a = dot(cross(from, top), m) * sign, b = dot(cross(top, to), m) * sign;
     const double zenith = fast_atan2(std::abs(m.z), std::sqrt(m.x * m.x + m.y * m.y));
     if (a >= 0 && b >= 0) least = std::min(least, zenith);
-    if (a <= 0 && b <= 0) most = std::max(most, pi - zenith);
+    if (a <= 0 && b <= 0) most = std::max(most, kPi - zenith);
   }
 }
 
@@ -104,10 +104,10 @@ double DrawnTriangle::distance() const {
 }
 
 RayRanges DrawnTriangle::rays(const RayPattern& pattern, const Turn* turn) const {
-  constexpr double pi = std::numbers::pi;
+  constexpr double kPi = std::numbers::pi;
   std::array<Vec3, 3> p;
   std::array<double, 3> azimuth;
-  double least = pi, most = 0;
+  double least = kPi, most = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = turned_back(turn, corner[k] + (corner[k] - middle) * stretch);
     const double zenith = fast_atan2(std::sqrt(p[k].x * p[k].x + p[k].y * p[k].y), p[k].z);
@@ -117,7 +117,7 @@ RayRanges DrawnTriangle::rays(const RayPattern& pattern, const Turn* turn) const
   }
   bool up = false, down = false;  // whether the axis may pierce it
   const double wide = radius * (1 + stretch) / length(middle);
-  if (wide < 0.02 && least > 0.25 && most < pi - 0.25) {
+  if (wide < 0.02 && least > 0.25 && most < kPi - 0.25) {
     // A small one away from the axis: the middle of an edge is beyond its ends by less than half of wide² / tan zenith.
     least -= 4 * wide * wide;
     most += 4 * wide * wide;
@@ -125,18 +125,18 @@ RayRanges DrawnTriangle::rays(const RayPattern& pattern, const Turn* turn) const
     find_extremes(p, least, most, up, down);
   }
   if (up) least = 0;
-  if (down) most = pi;
+  if (down) most = kPi;
   double low = 0, high = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     double from_first = azimuth[k] - azimuth[0];
-    from_first += from_first > pi ? -2 * pi : from_first < -pi ? 2 * pi : 0;
+    from_first += from_first > kPi ? -2 * kPi : from_first < -kPi ? 2 * kPi : 0;
     low = std::min(low, from_first);
     high = std::max(high, from_first);
   }
   // A turn is rounded, which moves directions; near the axis it moves azimuths more.
-  if (turn) least = std::max(least - 0x1p-20, 0.0), most = std::min(most + 0x1p-20, pi);
+  if (turn) least = std::max(least - 0x1p-20, 0.0), most = std::min(most + 0x1p-20, kPi);
   const double pad = turn ? 0x1p-19 / std::max(std::min(std::sin(least), std::sin(most)), 1e-9) : 0x1p-20;
-  if (up || down || high - low > 3 || pad > 0.1) return rays_between(pattern, least, most, 0, 2 * pi);
+  if (up || down || high - low > 3 || pad > 0.1) return rays_between(pattern, least, most, 0, 2 * kPi);
   return rays_between(pattern, least, most, azimuth[0] + low - pad, high - low + 2 * pad);
 }
 

@@ -39,9 +39,10 @@ class EmbreeTracer final : public Tracer {
   }
 
   std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
-    constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
+    constexpr std::uint64_t kRaysWanted = std::uint64_t{1} << 20;
     const std::uint64_t columns = scanners_[scanner].pattern().columns();
-    const std::uint64_t rows = std::max<std::uint64_t>(RayTile::side, wanted / columns / RayTile::side * RayTile::side);
+    const std::uint64_t rows =
+        std::max<std::uint64_t>(RayTile::kSide, kRaysWanted / columns / RayTile::kSide * RayTile::kSide);
     return rows * columns;
   }
 

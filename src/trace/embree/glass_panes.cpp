@@ -45,7 +45,7 @@ void GlassPanes::pass(Passed& passed, float& next, float t, std::uint32_t triang
 
 void GlassPanes::follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays,
                             const std::uint32_t* slot, std::span<Passed> passed) const {
-  std::uint32_t ray = RayBundle::no_hit;
+  std::uint32_t ray = RayBundle::kNoHit;
   float next = 0;
   for (const RayCaster::Crossing& face : faces) {
     if (face.ray != ray) next = 0;
@@ -58,7 +58,7 @@ bool GlassPanes::follow(RayBundle& rays, std::span<Passed> passed) const {
   for (std::uint32_t k = 0; k < rays.size; ++k) rays.end[k] = before_hit(rays.end[k]);
   const std::vector<RayCaster::Crossing> faces = caster_.crossings(rays);
   if (faces.empty()) return false;
-  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::no_hit, 0});
+  std::fill_n(passed.begin(), rays.size, Passed{1, RayBundle::kNoHit, 0});
   follow_all(faces, rays, nullptr, passed);
   return true;
 }
@@ -74,15 +74,15 @@ bool GlassPanes::follow(const Float3& origin, const Hits& hits, const PaneView* 
     std::copy_n(hits.t, hits.size, rays.end);
     return follow(rays, passed);
   }
-  alignas(64) float end[Hits::capacity];
+  alignas(64) float end[Hits::kCapacity];
   for (std::uint32_t k = 0; k < hits.size; ++k) end[k] = before_hit(hits.t[k]);
   PaneView::Crossings found;
   if (!view->find(hits, end, found)) return false;
-  std::fill_n(passed.begin(), hits.size, Passed{1, RayBundle::no_hit, 0});
-  std::uint32_t slot[RayBundle::capacity];
+  std::fill_n(passed.begin(), hits.size, Passed{1, RayBundle::kNoHit, 0});
+  std::uint32_t slot[RayBundle::kCapacity];
   for (std::uint32_t k = 0; k < hits.size; ++k) {
     const Float3 d{hits.x[k], hits.y[k], hits.z[k]};
-    if (found.count[k] == PaneView::Crossings::unsure) {
+    if (found.count[k] == PaneView::Crossings::kUnsure) {
       slot[rays.size] = k;
       rays.x[rays.size] = d.x, rays.y[rays.size] = d.y, rays.z[rays.size] = d.z;
       rays.end[rays.size++] = end[k];
@@ -96,7 +96,7 @@ bool GlassPanes::follow(const Float3& origin, const Hits& hits, const PaneView* 
 }
 
 std::unique_ptr<const PaneView> GlassPanes::view(const Float3& origin) const {
-  if (scene_->triangle_count() - first_ > PaneView::most_faces) return nullptr;
+  if (scene_->triangle_count() - first_ > PaneView::kMostFaces) return nullptr;
   return std::make_unique<const PaneView>(scene_, planes_, origin);
 }
 

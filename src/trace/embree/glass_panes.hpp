@@ -18,7 +18,7 @@ namespace vantage {
 // A beam on its way: the share of its strength that passes there and back, or the pane that reflects it.
 struct Passed {
   double share;
-  std::uint32_t pane;  // RayBundle::no_hit: none
+  std::uint32_t pane;  // RayBundle::kNoHit: none
   float t;             // of the pane
 };
 

@@ -36,19 +36,19 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
 
   const RayPattern& pattern = rays_->pattern();
   const std::span<const Ahead> planes = planes_of(look);
-  const double pad = 2 * pad_, nearest = static_cast<double>(look.cube.nearest) * (1 - trust),
+  const double pad = 2 * pad_, nearest = static_cast<double>(look.cube.nearest) * (1 - kTrust),
                start = static_cast<double>(bundle_.start);
   // A plane turned so that it is above the head, with cosines, over slenderness, as in fill_nearest().
   struct Above {
     Vec3 normal;
     double height, graze, sure;
   };
-  std::array<Above, SampledVoxels::most_planes> above;
+  std::array<Above, SampledVoxels::kMostPlanes> above;
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto height = static_cast<double>(planes[k].height),
                slenderness = static_cast<double>(planes[k].plane->slenderness);
     above[k] = {widen(planes[k].plane->normal) * (height < 0 ? -1.0 : 1.0), std::abs(height),
-                static_cast<double>(grazing) * slenderness, static_cast<double>(steep) * slenderness};
+                static_cast<double>(kGrazing) * slenderness, static_cast<double>(kSteep) * slenderness};
   }
   const auto is_before = [&](const SeenTriangle& triangle, const SeenCone& cone) {
     if (triangle.farthest_hit(cone) < nearest) return true;
@@ -57,7 +57,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
       const auto& [normal, height, graze, sure] = above[k];
       const double least = std::max(cone.least(normal), -cone.most(normal));  // absolute cosine
       if (!(least >= graze) ||
-          !triangle.is_before(cone, normal, height, least >= sure ? static_cast<double>(steep_part) : 1 - trust, pad))
+          !triangle.is_before(cone, normal, height, least >= sure ? static_cast<double>(kSteepPart) : 1 - kTrust, pad))
         return false;
     }
     return true;
@@ -76,11 +76,11 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
       // term.
       const double spread = height / least * cone.radius * (1 + 1 / slope);
       const Vec3 at = cone.middle * (height / slope) - centre;
-      if (largest(at) - spread - static_cast<double>(float_doubt) * far / least > half) continue;
+      if (largest(at) - spread - static_cast<double>(kFloatDoubt) * far / least > half) continue;
       for (std::uint32_t p = planes[k].plane->first; p < planes[k].plane->end; ++p) {
         const SampledVoxels::Piece& piece = voxels_.piece(p);
         const double doubt =
-            static_cast<double>(edge_doubt) * (far + half + static_cast<double>(piece.longest)) / least;
+            static_cast<double>(kEdgeDoubt) * (far + half + static_cast<double>(piece.longest)) / least;
         if (std::ranges::none_of(piece.edge, [&](const SampledVoxels::Piece::Edge& edge) {
               return static_cast<double>(edge.offset) - dot(widen(edge.inwards), at) >
                      spread + doubt * static_cast<double>(edge.ratio);
@@ -99,13 +99,13 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     for (std::size_t k = 0; k < planes.size(); ++k) {
       const double slope = dot(above[k].normal, d);
       if (std::abs(slope) < above[k].graze) return nearest;
-      if (slope > 0) end = std::min(end, above[k].height / slope * (1 - trust) - pad);
+      if (slope > 0) end = std::min(end, above[k].height / slope * (1 - kTrust) - pad);
     }
     return std::clamp(end, nearest, static_cast<double>(look.cube.farthest));
   };
 
   hiders_.clear();
-  if (look.occluder != RayBundle::no_hit) hiders_.push_back(seen(look.occluder));
+  if (look.occluder != RayBundle::kNoHit) hiders_.push_back(seen(look.occluder));
   const auto visit = [&](std::uint32_t row, std::uint32_t unit, std::uint32_t size, const auto& again) -> void {
     const std::uint32_t row_begin = window.rows.begin + (row << tiles.row_shift),
                         row_end = std::min(window.rows.begin + ((row + size) << tiles.row_shift), window.rows.end),
@@ -143,7 +143,7 @@ SampledVoxelCounter::Tiles SampledVoxelCounter::find_hidden(const Look& look, co
     Probe probe{d, static_cast<float>(end_of(cone.middle))};
     rays_->caster().any_hits(bundle_.origin, bundle_.start, {&probe, 1});
     ++traced_;
-    if (probe.hit != RayBundle::no_hit) {
+    if (probe.hit != RayBundle::kNoHit) {
       hiders_.push_back(seen(probe.hit));
       if (hides(hiders_.back(), cone)) return hide();
     }

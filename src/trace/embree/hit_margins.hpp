@@ -7,18 +7,18 @@
 namespace vantage {
 
 // Bound on the relative error of any distance computed in float, on any tested plane at any slant.
-inline constexpr double trust = 0x1p-7;
+inline constexpr double kTrust = 0x1p-7;
 // Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
-inline constexpr float grazing = 0x1p-10f;
+inline constexpr float kGrazing = 0x1p-10f;
 // A head may be higher above a plane than this share of the distance, over slenderness. A more grazing ray then meets
 // the plane well beyond the voxel, whatever the rounding.
-inline constexpr float sure_height = 1.5f * grazing;
+inline constexpr float kSureHeight = 1.5f * kGrazing;
 // Error of distances to planes in float, as a share of the farthest distance, over the cosine; the true error is less.
 // Embree's allowance is at least eight times as large, so its margin is 1.5 times.
-inline constexpr float float_doubt = 0x1p-21f;
-inline constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
+inline constexpr float kFloatDoubt = 0x1p-21f;
+inline constexpr auto kEdgeDoubt = static_cast<float>(SeenTriangle::kEdgeDoubt * 1.5);
 // Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
-// If cosine / slenderness is above `steep`, that error is less than `steep_part` allows for.
-inline constexpr float steep = 0x1p-5f, steep_part = 1 - 0x1.8p-13f;
+// If cosine / slenderness is above `kSteep`, that error is less than `kSteepPart` allows for.
+inline constexpr float kSteep = 0x1p-5f, kSteepPart = 1 - 0x1.8p-13f;
 
 }  // namespace vantage

@@ -8,7 +8,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t lanes = Hits::lanes;
+constexpr std::uint32_t kLanes = Hits::kLanes;
 // Fewer hits in a row of one triangle share a bound with others, as a separate bound costs as much as their noise.
 constexpr std::uint32_t kFew = 4;
 // Largest number of standard deviations by which noise moves a point: truncated at five, plus rounding.
@@ -19,12 +19,12 @@ constexpr float kFarthest = 5.01f;
 [[gnu::always_inline]] inline void shade(const Facet& facet, const Float3& o, const float* x, const float* y,
                                          const float* z, const float* t, float* __restrict reflectivity) {
   if (facet.smooth) {
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
       const Float3 d{x[k], y[k], z[k]};
       reflectivity[k] = facet.reflectivity(d, facet.smooth_normal(d, facet.weights(o, d, t[k])));
     }
   } else {
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
       const Float3 d{x[k], y[k], z[k]};
       reflectivity[k] = facet.reflectivity(d, facet.flat_normal(d));
     }
@@ -63,7 +63,7 @@ constexpr float kFarthest = 5.01f;
                                              std::uint32_t first, std::uint32_t end) {
   const Float3 n = narrow(facet.plane);
   Floats8 least = 1.0f - Floats8{}, farthest{};
-  for (std::uint32_t k = first; k < end; k += lanes) {
+  for (std::uint32_t k = first; k < end; k += kLanes) {
     Floats8 x, y, z, t;
     load(x, hits.x + k);
     load(y, hits.y + k);
@@ -92,11 +92,11 @@ template <class FacetOf>
       continue;
     }
     const float reach = reach_of(noise, facet_of(hits.primitive[first]), hits, first, end);
-    for (std::uint32_t k = first; k < end; k += lanes) {
+    for (std::uint32_t k = first; k < end; k += kLanes) {
       Ints8 leaves;
       leave_voxels(reach - Floats8{}, origin, *grid, hits.x + k, hits.y + k, hits.z + k, hits.t + k, leaves);
       if (!any(leaves)) continue;
-      const std::uint32_t of_run = std::min(end - k, lanes);
+      const std::uint32_t of_run = std::min(end - k, kLanes);
       for (std::uint32_t i = 0; i < of_run; ++i) {
         moved[many] = k + i;
         many += leaves[i] != 0;
@@ -110,20 +110,20 @@ VANTAGE_TARGET_CLONES
 void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits,
                const VoxelGrid* grid) {
   Facet facet;
-  std::uint32_t known = RayBundle::no_hit;  // the facet's triangle
+  std::uint32_t known = RayBundle::kNoHit;  // the facet's triangle
   const auto facet_of = [&](std::uint32_t triangle) -> const Facet& {
     if (triangle != known) facet = surface.facet(triangle), known = triangle;
     return facet;
   };
-  std::uint32_t moved[Hits::capacity];
+  std::uint32_t moved[Hits::kCapacity];
   const std::uint32_t many = list_moved(noise, origin, hits, grid, facet_of, moved);
   std::copy_n(hits.t, hits.size, hits.range);
-  for (std::uint32_t first = 0; first < many; first += lanes) {
-    alignas(32) float x[2 * lanes]{}, y[2 * lanes]{}, z[2 * lanes]{}, t[2 * lanes]{}, reflectivity[2 * lanes],
-        range[lanes];
-    alignas(32) std::uint32_t low[lanes], high[lanes], triangle[lanes], bits[lanes];
-    const std::uint32_t here = std::min(many - first, lanes);
-    for (std::uint32_t i = 0; i < lanes; ++i) {
+  for (std::uint32_t first = 0; first < many; first += kLanes) {
+    alignas(32) float x[2 * kLanes]{}, y[2 * kLanes]{}, z[2 * kLanes]{}, t[2 * kLanes]{}, reflectivity[2 * kLanes],
+        range[kLanes];
+    alignas(32) std::uint32_t low[kLanes], high[kLanes], triangle[kLanes], bits[kLanes];
+    const std::uint32_t here = std::min(many - first, kLanes);
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
       const std::uint32_t k = moved[first + std::min(i, here - 1)];
       x[i] = hits.x[k], y[i] = hits.y[k], z[i] = hits.z[k], t[i] = hits.t[k];
       low[i] = hits.ray_low[k], high[i] = hits.ray_high[k], triangle[i] = hits.primitive[k];
@@ -140,7 +140,7 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
       leave_voxels(kFarthest * sigmas, origin, *grid, x, y, z, t, leaves);
       if (!any(leaves)) continue;
     }
-    noise.draw<lanes>(low, high, place, bits);
+    noise.draw<kLanes>(low, high, place, bits);
     noise.displace_eight(t, sigmas, bits, range);
     for (std::uint32_t i = 0; i < here; ++i) hits.range[moved[first + i]] = range[i];
   }
@@ -155,8 +155,8 @@ void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& 
     return;
   }
   // The last vector may run past the last hit; those values are never read.
-  for (float* values : {hits.x, hits.y, hits.z, hits.t}) std::fill_n(values + hits.size, std::size_t{lanes}, 1.0f);
-  for (std::uint32_t* values : {hits.ray_low, hits.ray_high}) std::fill_n(values + hits.size, std::size_t{lanes}, 0u);
+  for (float* values : {hits.x, hits.y, hits.z, hits.t}) std::fill_n(values + hits.size, std::size_t{kLanes}, 1.0f);
+  for (std::uint32_t* values : {hits.ray_low, hits.ray_high}) std::fill_n(values + hits.size, std::size_t{kLanes}, 0u);
   add_noise(surface, noise, origin, place, hits, grid);
 }
 

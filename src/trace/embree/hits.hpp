@@ -16,16 +16,16 @@ inline Float3 point_at(const Float3& origin, const Float3& d, float range) {
 }
 
 struct Hits {
-  static constexpr std::uint32_t lanes = 8;
-  static constexpr std::uint32_t capacity = RayBundle::capacity + lanes;  // whole vectors
+  static constexpr std::uint32_t kLanes = 8;
+  static constexpr std::uint32_t kCapacity = RayBundle::kCapacity + kLanes;  // whole vectors
 
   std::uint32_t size = 0;
-  alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
-  alignas(64) float t[capacity];                            // distances
-  alignas(64) std::uint32_t primitive[capacity];
-  alignas(64) std::uint32_t ray_low[capacity], ray_high[capacity];  // halves of the ray's number, which keys draws
-  std::uint32_t slot[capacity];                                     // in the bundle
-  alignas(64) float range[capacity];                                // output of find_ranges
+  alignas(64) float x[kCapacity], y[kCapacity], z[kCapacity];  // directions
+  alignas(64) float t[kCapacity];                              // distances
+  alignas(64) std::uint32_t primitive[kCapacity];
+  alignas(64) std::uint32_t ray_low[kCapacity], ray_high[kCapacity];  // halves of the ray's number, which keys draws
+  std::uint32_t slot[kCapacity];                                      // in the bundle
+  alignas(64) float range[kCapacity];                                 // output of find_ranges
 
   // REQUIRES: the slot has a hit; at most RayBundle::capacity calls since the size was 0.
   void add(const RayBundle& rays, std::uint32_t from, std::uint64_t ray) {

@@ -15,9 +15,9 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t lanes = 8;
-constexpr std::uint32_t together = 64;  // rays for which faces are chosen at once
-constexpr float rounding = 1e-5f;       // of cosines here
+constexpr std::uint32_t kPaneLanes = 8;
+constexpr std::uint32_t kRaysTogether = 64;  // rays for which faces are chosen at once
+constexpr float kCosineRounding = 1e-5f;     // of cosines here
 
 }  // namespace
 
@@ -62,7 +62,7 @@ PaneView::PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const
     nearest_.push_back(around ? 0 : static_cast<float>((away - radius) * (1 - 0x1p-10)));
     faces_.push_back(face);
   }
-  while (nearest_.size() % lanes != 0) {
+  while (nearest_.size() % kPaneLanes != 0) {
     for (std::vector<float>* each : {&x_, &y_, &z_, &sine_, &cosine_}) each->push_back(0);
     nearest_.push_back(std::numeric_limits<float>::infinity());
   }
@@ -82,14 +82,14 @@ Cone cone_of(const float* x, const float* y, const float* z, std::uint32_t n) {
   const Float3 axis{sx * scale, sy * scale, sz * scale};
   float cosine = 1;
   for (std::uint32_t k = 0; k < n; ++k) cosine = std::min(cosine, axis.x * x[k] + axis.y * y[k] + axis.z * z[k]);
-  cosine -= rounding;
+  cosine -= kCosineRounding;
   if (!(cosine > 0)) return {axis, 0, std::numeric_limits<float>::infinity()};
   return {axis, cosine, std::sqrt(std::max(0.0f, 1 - cosine * cosine))};
 }
 
 // Returns true if no direction of the cone lies on the inner side of the plane through head and edge.
 bool beside_edge(const Cone& cone, float x, float y, float z, float doubt) {
-  return (x * cone.axis.x + y * cone.axis.y + z * cone.axis.z) * cone.cosine + cone.sine + rounding < -doubt;
+  return (x * cone.axis.x + y * cone.axis.y + z * cone.axis.z) * cone.cosine + cone.sine + kCosineRounding < -doubt;
 }
 
 }  // namespace
@@ -98,33 +98,33 @@ VANTAGE_TARGET_CLONES
 bool PaneView::find(const Hits& hits, const float* end, Crossings& found) const {
   bool any_found = false;
   std::fill_n(found.count, hits.size, 0u);
-  for (std::uint32_t first = 0; first < hits.size; first += together) {
-    const std::uint32_t n = std::min(together, hits.size - first);
-    alignas(64) float x[together], y[together], z[together];
-    alignas(64) float farthest[together];
-    for (std::uint32_t k = 0; k < together; ++k) {
+  for (std::uint32_t first = 0; first < hits.size; first += kRaysTogether) {
+    const std::uint32_t n = std::min(kRaysTogether, hits.size - first);
+    alignas(64) float x[kRaysTogether], y[kRaysTogether], z[kRaysTogether];
+    alignas(64) float farthest[kRaysTogether];
+    for (std::uint32_t k = 0; k < kRaysTogether; ++k) {
       const std::uint32_t from = first + std::min(k, n - 1);
       x[k] = RayCaster::safe(hits.x[from]), y[k] = RayCaster::safe(hits.y[from]), z[k] = RayCaster::safe(hits.z[from]);
       farthest[k] = k < n ? end[from] : -1;  // no crossing lies before it
     }
     const Floats8 reach = Floats8{} + *std::max_element(farthest, farthest + n);
     const Cone cone = cone_of(x, y, z, n);
-    for (std::size_t group = 0; group < nearest_.size(); group += lanes) {
+    for (std::size_t group = 0; group < nearest_.size(); group += kPaneLanes) {
       Floats8 fx, fy, fz, cosine, sine, nearest;
       load(fx, x_.data() + group), load(fy, y_.data() + group), load(fz, z_.data() + group);
       load(cosine, cosine_.data() + group), load(sine, sine_.data() + group), load(nearest, nearest_.data() + group);
       const Ints8 apart = (cone.axis.x * fx + cone.axis.y * fy + cone.axis.z * fz <
-                           cone.cosine * cosine - cone.sine * sine - rounding) |
+                           cone.cosine * cosine - cone.sine * sine - kCosineRounding) |
                           (nearest > reach);
       if (!any(~apart)) continue;
-      for (std::uint32_t lane = 0; lane < lanes && group + lane < faces_.size(); ++lane) {
+      for (std::uint32_t lane = 0; lane < kPaneLanes && group + lane < faces_.size(); ++lane) {
         if (apart[lane] != 0) continue;
         const Face& face = faces_[group + lane];
         bool beside = false;
         for (std::uint32_t e = 0; e < 3 && !face.flat; ++e)
           beside = beside || beside_edge(cone, face.x[e], face.y[e], face.z[e], face.doubt[e]);
         if (beside) continue;
-        for (std::uint32_t k = 0; k < n; k += lanes) {
+        for (std::uint32_t k = 0; k < n; k += kPaneLanes) {
           Floats8 dx, dy, dz, ends, t;
           load(dx, x + k), load(dy, y + k), load(dz, z + k), load(ends, farthest + k);
           Ints8 possible = ends > 0, sure = possible;
@@ -140,20 +140,20 @@ bool PaneView::find(const Hits& hits, const float* end, Crossings& found) const 
               sure &= edge >= face.doubt[e];
             }
             if (!any(possible)) continue;
-            alignas(32) float at[lanes];
-            planes_->distances<lanes>(face.plane, face.triangle, head_, x + k, y + k, z + k, at);
+            alignas(32) float at[kPaneLanes];
+            planes_->distances<kPaneLanes>(face.plane, face.triangle, head_, x + k, y + k, z + k, at);
             load(t, at);
             possible &= (t > 0) & (t <= ends);
             if (!any(possible)) continue;
             if (!face.certain) sure = Ints8{};
           }
-          for (std::uint32_t i = 0; i < lanes; ++i) {
+          for (std::uint32_t i = 0; i < kPaneLanes; ++i) {
             if (possible[i] == 0) continue;
             any_found = true;
             const std::uint32_t ray = first + k + i;
             std::uint32_t& count = found.count[ray];
-            if (sure[i] == 0 || count >= Crossings::most) {
-              count = Crossings::unsure;
+            if (sure[i] == 0 || count >= Crossings::kMost) {
+              count = Crossings::kUnsure;
               continue;
             }
             std::uint32_t place = count++;

@@ -16,17 +16,17 @@ namespace vantage {
 class PaneView {
  public:
   // Most faces of a view; with more, a tree finds the faces of a ray faster.
-  static constexpr std::size_t most_faces = 2048;
+  static constexpr std::size_t kMostFaces = 2048;
 
   // Shares ownership of both. REQUIRES: the scene has glass.
   PaneView(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes, const Float3& head);
 
   // Crossings of each hit's ray before `end`, sorted by distance and triangle as in RayCaster::crossings().
   struct Crossings {
-    static constexpr std::uint32_t most = 8, unsure = most + 1;
-    std::uint32_t count[Hits::capacity];  // number, or unsure: ask RayCaster
-    float t[Hits::capacity][most];
-    std::uint32_t triangle[Hits::capacity][most];
+    static constexpr std::uint32_t kMost = 8, kUnsure = kMost + 1;
+    std::uint32_t count[Hits::kCapacity];  // number, or unsure: ask RayCaster
+    float t[Hits::kCapacity][kMost];
+    std::uint32_t triangle[Hits::kCapacity][kMost];
   };
   // Returns false if certainly no ray has a crossing. `end` has whole vectors, as hits do.
   bool find(const Hits& hits, const float* end, Crossings& found) const;

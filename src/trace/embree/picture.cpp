@@ -22,19 +22,19 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t in_doubt = 0x80000000u;
+constexpr std::uint32_t kInDoubt = 0x80000000u;
 
 // Below this ratio of two inverse distances, either may be the larger one. In float, C sin θ + D cos θ has an error
 // of 2^-21 of the inverse of the plane's height. That is 2^-17 of the value if the cosine of the incidence is
-// `steep`.
-constexpr float apart = 1 + 0x1p-15f;
-constexpr float steep = 0x1p-4f;
-constexpr double least_slope = 0x1p-9;     // Planes clamps distances at half of it
-constexpr float angle_doubt = 0x1.8p-20f;  // radians; of rows computed in float
-constexpr float past_all = 8;              // beyond any angle
+// `kSteepCosine`.
+constexpr float kApart = 1 + 0x1p-15f;
+constexpr float kSteepCosine = 0x1p-4f;
+constexpr double kLeastSlope = 0x1p-9;     // Planes clamps distances at half of it
+constexpr float kAngleDoubt = 0x1.8p-20f;  // radians; of rows computed in float
+constexpr float kPastAll = 8;              // beyond any angle
 
-constexpr std::int32_t lanes = 8;
-constexpr std::int32_t few_rows = 32;  // fewer rows are evaluated faster than bounded
+constexpr std::int32_t kRowLanes = 8;
+constexpr std::int32_t kFewRows = 32;  // fewer rows are evaluated faster than bounded
 
 // Coefficients from which a triangle's rows are computed, in the scanner's frame.
 struct Outline {
@@ -45,12 +45,13 @@ struct Outline {
 
 // Rows of one triangle in each column of a strip: those that may hit it, `begin` to `end`, and those that must.
 struct Rows {
-  alignas(64) std::int32_t begin[Picture::wide], end[Picture::wide], sure_begin[Picture::wide], sure_end[Picture::wide];
-  alignas(64) float c[Picture::wide];
+  alignas(64) std::int32_t begin[Picture::kStripColumns], end[Picture::kStripColumns],
+      sure_begin[Picture::kStripColumns], sure_end[Picture::kStripColumns];
+  alignas(64) float c[Picture::kStripColumns];
 };
 
 struct Columns {
-  alignas(64) float cosine[Picture::wide], sine[Picture::wide];
+  alignas(64) float cosine[Picture::kStripColumns], sine[Picture::kStripColumns];
 };
 
 // Bounds the zenith in eight columns by all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
@@ -58,39 +59,40 @@ struct Columns {
 [[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, std::uint32_t column,
                                              float first, float step, std::int32_t row_begin, std::int32_t row_end,
                                              Rows& rows) {
-  constexpr std::uint32_t n = lanes;
+  constexpr std::uint32_t kColumnsAtOnce = kRowLanes;
   const float *const cos_azimuth = columns.cosine + column, *const sin_azimuth = columns.sine + column;
-  constexpr float pi = std::numbers::pi_v<float>;
-  alignas(64) float low[n], high[n], sure_low[n], sure_high[n];
-  for (std::uint32_t j = 0; j < n; ++j) low[j] = sure_low[j] = -past_all, high[j] = sure_high[j] = past_all;
+  constexpr float kPi = std::numbers::pi_v<float>;
+  alignas(64) float low[kColumnsAtOnce], high[kColumnsAtOnce], sure_low[kColumnsAtOnce], sure_high[kColumnsAtOnce];
+  for (std::uint32_t j = 0; j < kColumnsAtOnce; ++j)
+    low[j] = sure_low[j] = -kPastAll, high[j] = sure_high[j] = kPastAll;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const float x = outline.x[k], y = outline.y[k], z = outline.z[k], doubt = outline.doubt[k];
     const float size = std::abs(z), toward = z >= 0 ? -1.0f : 1.0f;
     const float least = outline.least_zenith, most = outline.most_zenith;
-    for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t j = 0; j < kColumnsAtOnce; ++j) {
       const float a = x * cos_azimuth[j] + y * sin_azimuth[j];
       const float r = std::sqrt(a * a + z * z);
       const float zero = fast_atan2(size, toward * a);
-      const float moved = r > 2 * doubt ? 1.05f * doubt / r + angle_doubt : past_all / 2;
+      const float moved = r > 2 * doubt ? 1.05f * doubt / r + kAngleDoubt : kPastAll / 2;
       // An edge whose plane holds the axis to within `moved` may also let rays at the other pole pass.
       if (z >= 0) {
-        const bool below = zero < moved && most > zero + pi - moved, above = !below || least < zero + moved;
-        high[j] = std::min(high[j], below ? past_all : zero + moved);
-        low[j] = std::max(low[j], above ? -past_all : zero + pi - moved);
+        const bool below = zero < moved && most > zero + kPi - moved, above = !below || least < zero + moved;
+        high[j] = std::min(high[j], below ? kPastAll : zero + moved);
+        low[j] = std::max(low[j], above ? -kPastAll : zero + kPi - moved);
         sure_high[j] = std::min(sure_high[j], zero - moved);
-        sure_low[j] = std::max(sure_low[j], zero - pi + moved);
+        sure_low[j] = std::max(sure_low[j], zero - kPi + moved);
       } else {
-        const bool above = pi - zero < moved && least < zero - pi + moved, below = !above || most > zero - moved;
-        low[j] = std::max(low[j], above ? -past_all : zero - moved);
-        high[j] = std::min(high[j], below ? past_all : zero - pi + moved);
+        const bool above = kPi - zero < moved && least < zero - kPi + moved, below = !above || most > zero - moved;
+        low[j] = std::max(low[j], above ? -kPastAll : zero - moved);
+        high[j] = std::min(high[j], below ? kPastAll : zero - kPi + moved);
         sure_low[j] = std::max(sure_low[j], zero + moved);
-        sure_high[j] = std::min(sure_high[j], zero + pi - moved);
+        sure_high[j] = std::min(sure_high[j], zero + kPi - moved);
       }
     }
   }
   const float inverse = 1 / step;
   const auto from = static_cast<float>(row_begin), to = static_cast<float>(row_end);
-  for (std::uint32_t j = 0; j < n; ++j) {
+  for (std::uint32_t j = 0; j < kColumnsAtOnce; ++j) {
     // Rounds up to the least row at or above, and down to the end of rows at or below.
     const auto up = [&](float angle) {
       const float row = std::min(std::max((angle - first) * inverse, from), to);
@@ -118,9 +120,9 @@ bool Picture::Item::operator<(const Item& other) const {
 
 // Drawing visits every triangle, tracing only those near a ray. On a plant of 300 000 triangles with as many rays, both
 // take equally long (docs/evidence/benchmarks.md).
-constexpr std::uint64_t least_rays_a_triangle = 16;
+constexpr std::uint64_t kLeastRaysATriangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
-  return triangles < none && rays >= least_rays_a_triangle * triangles;
+  return triangles < kNone && rays >= kLeastRaysATriangle * triangles;
 }
 
 std::unique_ptr<const Picture> Picture::where_it_pays(const StationRays& rays, const TraceStation& station,
@@ -160,8 +162,8 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
   sine_.resize(ends.tall + 1);
   cosine_.resize(ends.tall + 1);
   for (std::uint32_t r = 0; r < pattern.rows(); ++r) {
-    sine_[r / block].of[r % block] = pattern.sin_zenith[r];
-    cosine_[r / block].of[r % block] = pattern.cos_zenith[r];
+    sine_[r / kBlockRows].of[r % kBlockRows] = pattern.sin_zenith[r];
+    cosine_[r / kBlockRows].of[r % kBlockRows] = pattern.cos_zenith[r];
   }
 
   tbb::enumerable_thread_specific<std::vector<Item>> found;
@@ -180,7 +182,7 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
 
   begin_.assign(std::size_t{strips()} + 1, 0);
   const auto each_strip = [](const Item& item, const auto& f) {
-    for (std::uint32_t s = item.column_begin / wide; s <= (item.column_end - 1) / wide; ++s) f(s);
+    for (std::uint32_t s = item.column_begin / kStripColumns; s <= (item.column_end - 1) / kStripColumns; ++s) f(s);
   };
   for (const Item& item : all) each_strip(item, [&](std::uint32_t s) { ++begin_[s + 1]; });
   for (std::size_t s = 0; s < strips(); ++s) begin_[s + 1] += begin_[s];
@@ -228,28 +230,28 @@ class Picture::StripDrawing {
       : picture_(picture), tiles_(tiles), strip_(strip) {
     const RayPattern& pattern = picture.rays_.pattern();
     const TileEnds& ends = picture.ends_;
-    strip.first = index * wide;
-    strip.columns = std::min(wide, pattern.columns() - strip.first);
+    strip.first = index * kStripColumns;
+    strip.columns = std::min(kStripColumns, pattern.columns() - strip.first);
     strip.blocks_ = ends.tall;
     strip.rays = strip.traced = 0;
     for (std::uint32_t a = tiles.first; a < tiles.end; ++a)
-      if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(block, pattern.rows() - a * block);
-    strip.inverse_.resize(std::size_t{wide} * ends.tall);
-    strip.triangle_.resize(std::size_t{wide} * ends.tall + 1);  // searches for runs read past the end
+      if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(kBlockRows, pattern.rows() - a * kBlockRows);
+    strip.inverse_.resize(std::size_t{kStripColumns} * ends.tall);
+    strip.triangle_.resize(std::size_t{kStripColumns} * ends.tall + 1);  // searches for runs read past the end
     strip.farthest_.assign(ends.tall, 0);
     strip.stale_.assign(ends.tall, 1);
     strip.doubts_.assign(ends.tall, 0);
-    constexpr float nowhere = std::numeric_limits<float>::infinity();
-    for (std::uint32_t j = 0; j < wide; ++j) {
+    constexpr float kNowhere = std::numeric_limits<float>::infinity();
+    for (std::uint32_t j = 0; j < kStripColumns; ++j) {
       for (std::uint32_t a = tiles.first; a < tiles.end; ++a) {
         Block<float>& inverse = strip.inverse_[j * ends.tall + a];
         const float end = ends.of(a, index);
-        std::fill_n(inverse.of, block, j < strip.columns && end > 0 ? 1 / end : nowhere);
-        std::fill_n(strip.triangle_[j * ends.tall + a].of, block, none);
+        std::fill_n(inverse.of, kBlockRows, j < strip.columns && end > 0 ? 1 / end : kNowhere);
+        std::fill_n(strip.triangle_[j * ends.tall + a].of, kBlockRows, kNone);
       }
-      if (pattern.rows() % block != 0) {
+      if (pattern.rows() % kBlockRows != 0) {
         Block<float>& last = strip.inverse_[j * ends.tall + ends.tall - 1];
-        std::fill(last.of + pattern.rows() % block, last.of + block, nowhere);
+        std::fill(last.of + pattern.rows() % kBlockRows, last.of + kBlockRows, kNowhere);
       }
       columns_.cosine[j] = j < strip.columns ? pattern.cos_azimuth[strip.first + j] : 0;
       columns_.sine[j] = j < strip.columns ? pattern.sin_azimuth[strip.first + j] : 0;
@@ -257,12 +259,12 @@ class Picture::StripDrawing {
     first_ = static_cast<float>(pattern.first_zenith);
     step_ = static_cast<float>(pattern.zenith_step);
     middle_azimuth_ = pattern.first_azimuth + (strip.first + 0.5 * (strip.columns - 1)) * pattern.azimuth_step;
-    tile_radius_ = 0.5 * block * (pattern.zenith_step + pattern.azimuth_step) + 0x1p-18;
+    tile_radius_ = 0.5 * kBlockRows * (pattern.zenith_step + pattern.azimuth_step) + 0x1p-18;
   }
 
   // Draws all of its triangles.
   [[gnu::always_inline]] void draw_all() {
-    const std::size_t index = strip_.first / wide;
+    const std::size_t index = strip_.first / kStripColumns;
     const SceneData& scene = picture_.rays_.scene();
     const std::size_t end = picture_.begin_[index + 1];
     for (std::size_t k = picture_.begin_[index]; k < end; ++k) {
@@ -279,7 +281,7 @@ class Picture::StripDrawing {
  private:
   // Returns true if the triangle is to be drawn in any of the tiles.
   bool in_sight(const Item& item) const {
-    return item.row_begin < tiles_.end * block && item.row_end > tiles_.first * block;
+    return item.row_begin < tiles_.end * kBlockRows && item.row_end > tiles_.first * kBlockRows;
   }
   // REQUIRES: in_sight(item).
   [[gnu::always_inline]] void draw(const Item& item);
@@ -291,28 +293,28 @@ class Picture::StripDrawing {
 
   // Returns true if nearer hits hide everything in the tile from `nearest` on.
   [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
-    if (nearest * apart < strip_.farthest_[tile]) return true;
+    if (nearest * kApart < strip_.farthest_[tile]) return true;
     if (strip_.stale_[tile] == 0) return false;
     Floats8 low = std::numeric_limits<float>::infinity() - Floats8{};
-    for (std::uint32_t j = 0; j < wide; ++j)
+    for (std::uint32_t j = 0; j < kStripColumns; ++j)
       for (std::uint32_t half = 0; half < 2; ++half) {
         Floats8 values;
-        load(values, strip_.inverse_[j * strip_.blocks_ + tile].of + half * lanes);
+        load(values, strip_.inverse_[j * strip_.blocks_ + tile].of + half * kRowLanes);
         low = values < low ? values : low;
       }
     float least = low[0];
-    for (std::int32_t k = 1; k < lanes; ++k) least = std::min(least, low[k]);
+    for (std::int32_t k = 1; k < kRowLanes; ++k) least = std::min(least, low[k]);
     strip_.farthest_[tile] = least;
     strip_.stale_[tile] = 0;
-    return nearest * apart < least;
+    return nearest * kApart < least;
   }
   // Notes that a ray may hit a triangle in this row, no nearer than this.
   void doubt(std::uint32_t column, std::int32_t row, float nearest) {
     float& value = inverse(column)[row];
-    if (nearest * apart < value) return;
+    if (nearest * kApart < value) return;
     value = std::max(value, nearest);
-    triangles(column)[row] |= in_doubt;
-    strip_.doubts_[static_cast<std::uint32_t>(row) / block] = 1;
+    triangles(column)[row] |= kInDoubt;
+    strip_.doubts_[static_cast<std::uint32_t>(row) / kBlockRows] = 1;
   }
   Float3 direction(std::uint32_t column, std::int32_t row) const {
     const float s = sine()[row];
@@ -323,7 +325,7 @@ class Picture::StripDrawing {
   // Chooses between two certain hits as RayCaster does.
   void settle(std::uint32_t column, std::int32_t row, float value, std::uint32_t triangle) {
     std::uint32_t& held = triangles(column)[row];
-    if (held >= none) return doubt(column, row, value);
+    if (held >= kNone) return doubt(column, row, value);
     const Planes& planes = picture_.rays_.planes();
     const Float3 &o = picture_.station_.origin, d = direction(column, row);
     float own, other;
@@ -342,15 +344,15 @@ class Picture::StripDrawing {
     Ints8 ids;
     load(old, inverses);
     load(ids, held);
-    const Ints8 nearer = sure & (value > old * apart);
-    const Ints8 rest = possible & ~nearer & (value * apart >= old);
+    const Ints8 nearer = sure & (value > old * kApart);
+    const Ints8 rest = possible & ~nearer & (value * kApart >= old);
     old = nearer ? value : old;
     ids = nearer ? static_cast<std::int32_t>(triangle) - Ints8{} : ids;
     store(inverses, old);
     store(held, ids);
     if (!any(rest)) [[likely]]
       return;
-    for (std::int32_t k = 0; k < lanes; ++k) {
+    for (std::int32_t k = 0; k < kRowLanes; ++k) {
       if (rest[k] == 0) continue;
       if (sure[k] != 0) {
         settle(column, row + k, value[k], triangle);
@@ -367,7 +369,7 @@ class Picture::StripDrawing {
   [[gnu::always_inline]] void draw_span(const Outline& outline, std::uint32_t triangle, std::uint32_t column,
                                         const Rows& rows) {
     const std::int32_t begin = rows.begin[column], end = rows.end[column];
-    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+    for (std::int32_t row = begin & ~(kRowLanes - 1); row < end; row += kRowLanes) {
       Floats8 sines, cosines;
       load_zeniths(row, sines, cosines);
       const Floats8 value = rows.c[column] * sines + outline.inverse_z * cosines;
@@ -383,7 +385,7 @@ class Picture::StripDrawing {
     const float c = outline.inverse_x * cos_azimuth + outline.inverse_y * sin_azimuth;
     float a[3];
     for (std::uint32_t k = 0; k < 3; ++k) a[k] = outline.x[k] * cos_azimuth + outline.y[k] * sin_azimuth;
-    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+    for (std::int32_t row = begin & ~(kRowLanes - 1); row < end; row += kRowLanes) {
       Floats8 sines, cosines;
       load_zeniths(row, sines, cosines);
       const Ints8 at = Ints8{0, 1, 2, 3, 4, 5, 6, 7} + row;
@@ -402,9 +404,9 @@ class Picture::StripDrawing {
     const std::int32_t begin = rows.begin[column], end = rows.end[column];
     const std::int32_t sure_begin = seen.certain ? rows.sure_begin[column] : end, sure_end = rows.sure_end[column];
     const double scale = 1 / seen.height;
-    const float least = static_cast<float>(least_slope * scale) * (1 + 0x1p-20f), start = picture_.start_;
+    const float least = static_cast<float>(kLeastSlope * scale) * (1 + 0x1p-20f), start = picture_.start_;
     const Turn* const turn = turn_of(picture_.station_);
-    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+    for (std::int32_t row = begin & ~(kRowLanes - 1); row < end; row += kRowLanes) {
       Floats8 sines, z;
       load_zeniths(row, sines, z);
       Floats8 x = sines * columns_.cosine[column], y = sines * columns_.sine[column];
@@ -422,8 +424,8 @@ class Picture::StripDrawing {
       narrow((seen.normal.x * lx + seen.normal.y * ly + seen.normal.z * lz) * scale,
              (seen.normal.x * hx + seen.normal.y * hy + seen.normal.z * hz) * scale, value);
       const Ints8 at = Ints8{0, 1, 2, 3, 4, 5, 6, 7} + row, grazing = ~(value >= least);
-      const Ints8 possible = (at >= begin) & (at < end) & (grazing | (value <= start * apart));
-      const Ints8 sure = possible & (at >= sure_begin) & (at < sure_end) & ~grazing & (value * apart < start);
+      const Ints8 possible = (at >= begin) & (at < end) & (grazing | (value <= start * kApart));
+      const Ints8 sure = possible & (at >= sure_begin) & (at < sure_end) & ~grazing & (value * kApart < start);
       value = grazing ? item.nearest - Floats8{} : value;
       merge(column, row, item.triangle, value, possible, sure);
     }
@@ -440,14 +442,14 @@ class Picture::StripDrawing {
                  to = static_cast<std::int32_t>(std::clamp(end, 0.0 + row_begin, 0.0 + row_end));
       for (std::int32_t row = from; row < to; ++row) doubt(column, row, item.nearest);
     };
-    constexpr double pi = std::numbers::pi;
+    constexpr double kPi = std::numbers::pi;
     const Vec3 m = turned_back(turn_of(picture_.station_), band.normal);
     const double a = m.x * columns_.cosine[column] + m.y * columns_.sine[column], r = std::sqrt(a * a + m.z * m.z);
-    if (!(r > 2 * band.doubt)) return draw_between(0, pi);
+    if (!(r > 2 * band.doubt)) return draw_between(0, kPi);
     const double zero = fast_atan2(std::abs(m.z), m.z >= 0 ? -a : a), moved = 1.05 * band.doubt / r + 0x1p-20;
     draw_between(zero - moved, zero + moved);
-    draw_between(zero - moved - pi, zero + moved - pi);
-    draw_between(zero - moved + pi, zero + moved + pi);
+    draw_between(zero - moved - kPi, zero + moved - kPi);
+    draw_between(zero - moved + kPi, zero + moved + kPi);
   }
 
   const Picture& picture_;
@@ -461,8 +463,8 @@ class Picture::StripDrawing {
 inline void Picture::StripDrawing::draw(const Item& item) {
   const std::uint32_t first_column = std::max(item.column_begin, strip_.first) - strip_.first,
                       last_column = std::min(item.column_end, strip_.first + strip_.columns) - strip_.first;
-  std::uint32_t top = std::max(item.row_begin / block, tiles_.first),
-                bottom = std::min((item.row_end - 1) / block + 1, tiles_.end);  // tiles
+  std::uint32_t top = std::max(item.row_begin / kBlockRows, tiles_.first),
+                bottom = std::min((item.row_end - 1) / kBlockRows + 1, tiles_.end);  // tiles
   while (top < bottom && hidden(top, item.nearest)) ++top;
   while (bottom > top && hidden(bottom - 1, item.nearest)) --bottom;
   if (top == bottom) return;
@@ -474,8 +476,8 @@ inline void Picture::StripDrawing::draw(const Item& item) {
     const DrawnTriangle::Band band = seen.band();
     std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
     for (std::uint32_t j = first_column; j < last_column; ++j)
-      draw_band(band, item, j, static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
-                static_cast<std::int32_t>(std::min(item.row_end, bottom * block)));
+      draw_band(band, item, j, static_cast<std::int32_t>(std::max(item.row_begin, top * kBlockRows)),
+                static_cast<std::int32_t>(std::min(item.row_end, bottom * kBlockRows)));
     return;
   }
   Outline outline;
@@ -498,34 +500,35 @@ inline void Picture::StripDrawing::draw(const Item& item) {
     const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
     const double radius = tile_radius_ / seen.height;
     const auto nearest_in = [&](std::uint32_t tile) {
-      const double zenith = pattern.first_zenith + (tile * block + 0.5 * (block - 1)) * pattern.zenith_step;
+      const double zenith = pattern.first_zenith + (tile * kBlockRows + 0.5 * (kBlockRows - 1)) * pattern.zenith_step;
       const double s = std::sin(zenith);
       const double bound = plane.x * s * cosine + plane.y * s * sine + plane.z * std::cos(zenith) + radius;
       // Distances of grazing rays may differ from the plane's.
-      return bound * seen.height < 2 * least_slope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
+      return bound * seen.height < 2 * kLeastSlope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
     };
     while (top < bottom && hidden(top, nearest_in(top))) ++top;
     while (bottom > top && hidden(bottom - 1, nearest_in(bottom - 1))) --bottom;
     if (top == bottom) return;
   }
-  const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
-             row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * block));
-  const bool plain = seen.certain && item.nearest * apart < picture_.start_;
+  const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * kBlockRows)),
+             row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * kBlockRows));
+  const bool plain = seen.certain && item.nearest * kApart < picture_.start_;
   // The incidence within the triangle is least steep at the farthest corner.
-  const bool all_steep = seen.height > 1.01 * static_cast<double>(steep) * seen.farthest * (1 + 4 * seen.stretch);
+  const bool all_steep =
+      seen.height > 1.01 * static_cast<double>(kSteepCosine) * seen.farthest * (1 + 4 * seen.stretch);
   std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
-  if (plain && all_steep && row_end - row_begin <= few_rows) {
+  if (plain && all_steep && row_end - row_begin <= kFewRows) {
     for (std::uint32_t j = first_column; j < last_column; ++j) draw_few(outline, item.triangle, j, row_begin, row_end);
     return;
   }
   Rows rows;
-  for (std::uint32_t j = first_column & ~7u; j < last_column; j += lanes)
+  for (std::uint32_t j = first_column & ~7u; j < last_column; j += kRowLanes)
     find_rows(outline, columns_, j, first_, step_, row_begin, row_end, rows);
   for (std::uint32_t j = first_column; j < last_column; ++j) {
     const std::int32_t begin = rows.begin[j], end = rows.end[j];
     if (begin >= end) continue;
     const auto is_steep = [&](std::int32_t row) {
-      return rows.c[j] * sine()[row] + outline.inverse_z * cosine()[row] >= steep * outline.inverse_height;
+      return rows.c[j] * sine()[row] + outline.inverse_z * cosine()[row] >= kSteepCosine * outline.inverse_height;
     };
     if (plain && (all_steep || (is_steep(begin) && is_steep(end - 1)))) {
       draw_span(outline, item.triangle, j, rows);
@@ -540,12 +543,12 @@ namespace {
 // Traces those rays of a strip whose hit is in doubt, many at once.
 struct DoubtBundle {
   RayBundle rays;
-  std::uint32_t* hit[RayBundle::capacity];
+  std::uint32_t* hit[RayBundle::kCapacity];
 
   void trace(const RayCaster& caster) {
     caster.cast(rays);
     for (std::uint32_t k = 0; k < rays.size; ++k)
-      *hit[k] = rays.primitive[k] == RayBundle::no_hit ? Picture::none : rays.primitive[k];
+      *hit[k] = rays.primitive[k] == RayBundle::kNoHit ? Picture::kNone : rays.primitive[k];
     rays.size = 0;
   }
 };
@@ -562,10 +565,10 @@ void Picture::trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip
     if (strip.doubts_[tile] == 0) continue;
     for (std::uint32_t j = 0; j < strip.columns; ++j) {
       std::uint32_t* const triangles = strip.triangle_[j * strip.blocks_ + tile].of;
-      for (std::uint32_t r = 0; r < block; ++r) {
-        if ((triangles[r] & in_doubt) == 0) continue;
+      for (std::uint32_t r = 0; r < kBlockRows; ++r) {
+        if ((triangles[r] & kInDoubt) == 0) continue;
         RayBundle& rays = bundle.rays;
-        const std::uint32_t row = tile * block + r, column = strip.first + j;
+        const std::uint32_t row = tile * kBlockRows + r, column = strip.first + j;
         const float sine = pattern.sin_zenith[row];
         Float3 d{sine * pattern.cos_azimuth[column], sine * pattern.sin_azimuth[column], pattern.cos_zenith[row]};
         if (station_.turn) d = (*station_.turn)(d);
@@ -575,7 +578,7 @@ void Picture::trace_doubts(std::uint32_t index, const Tiles& tiles, Strip& strip
         rays.end[rays.size] = ends_.of(tile, index);
         bundle.hit[rays.size++] = &triangles[r];
         ++strip.traced;
-        if (rays.size == RayBundle::capacity) bundle.trace(rays_.caster());
+        if (rays.size == RayBundle::kCapacity) bundle.trace(rays_.caster());
       }
     }
   }
@@ -594,7 +597,7 @@ void Picture::draw(std::uint32_t index, const Tiles& tiles, Strip& strip) const 
 
 VANTAGE_TARGET_CLONES
 void Picture::fill(const Strip& strip, const RayTile& tile, RayBundle& rays) const {
-  alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
+  alignas(64) float x[RayBundle::kCapacity], y[RayBundle::kCapacity], z[RayBundle::kCapacity];
   for (std::uint32_t k = 0; k < rays.size; ++k) {
     x[k] = RayCaster::safe(rays.x[k]);
     y[k] = RayCaster::safe(rays.y[k]);
@@ -610,14 +613,15 @@ void Picture::fill(const Strip& strip, const RayTile& tile, RayBundle& rays) con
     const std::uint32_t triangle = rays.primitive[k];
     std::uint32_t end = k + 1;
     while (end < rays.size && rays.primitive[end] == triangle) ++end;
-    if (triangle == none) {
-      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::no_hit);
+    if (triangle == kNone) {
+      std::fill(rays.primitive + k, rays.primitive + end, RayBundle::kNoHit);
       std::fill(rays.t + k, rays.t + end, std::numeric_limits<float>::infinity());
       k = end;
       continue;
     }
     const Planes::Seen plane = planes.seen(triangle, o);
-    for (; k + lanes <= end; k += lanes) planes.distances<lanes>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
+    for (; k + kRowLanes <= end; k += kRowLanes)
+      planes.distances<kRowLanes>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
     for (; k < end; ++k) planes.distances<1>(plane, triangle, o, x + k, y + k, z + k, rays.t + k);
   }
 }

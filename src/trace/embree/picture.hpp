@@ -17,9 +17,9 @@ namespace vantage {
 
 class Picture {
  public:
-  static constexpr std::uint32_t none = 0x7FFFFFFFu;     // no hit, among a strip's triangles
-  static constexpr std::uint32_t wide = RayTile::side;   // columns of a strip
-  static constexpr std::uint32_t block = RayTile::side;  // rows that are stored together
+  static constexpr std::uint32_t kNone = 0x7FFFFFFFu;             // no hit, among a strip's triangles
+  static constexpr std::uint32_t kStripColumns = RayTile::kSide;  // columns of a strip
+  static constexpr std::uint32_t kBlockRows = RayTile::kSide;     // rows that are stored together
 
   // Returns true if drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
@@ -36,9 +36,9 @@ class Picture {
 
   template <class Value>
   struct alignas(64) Block {
-    Value of[block];
+    Value of[kBlockRows];
   };
-  // A column of tiles: `wide` columns of rays, with all rows. Kept for reuse.
+  // A column of tiles: `kStripColumns` columns of rays, with all rows. Kept for reuse.
   struct Strip {
     std::uint32_t first = 0, columns = 0;  // of the pattern
     std::uint64_t rays = 0;                // drawn, within the ends
@@ -50,7 +50,7 @@ class Picture {
     friend class Picture;
     std::uint32_t blocks_ = 0;
     std::vector<Block<float>> inverse_;           // [column][row] of the distance of the nearest so far
-    std::vector<Block<std::uint32_t>> triangle_;  // [column][row] the nearest; `in_doubt` beside it unless certain
+    std::vector<Block<std::uint32_t>> triangle_;  // [column][row] the nearest; `kInDoubt` beside it unless certain
     std::vector<float> farthest_;                 // [tile] at most the least of its inverse_
     std::vector<std::uint8_t> stale_;             // [tile] farthest_ may be too small
     std::vector<std::uint8_t> doubts_;            // [tile] has rays in doubt

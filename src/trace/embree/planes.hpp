@@ -53,7 +53,7 @@ class Planes {
     }
     for (unsigned i = 0; i < n; ++i) {
       const double slope = plane.x * x[i] + plane.y * y[i] + plane.z * z[i], along = plane.height / slope;
-      const bool clear = std::abs(slope) >= grazing;
+      const bool clear = std::abs(slope) >= kGrazing;
       t[i] = static_cast<float>(clear ? along : within(triangle, o, {x[i], y[i], z[i]}, along));
     }
   }
@@ -66,7 +66,7 @@ class Planes {
     widen(z, lz, hz);
     const Doubles4 low = plane.x * lx + plane.y * ly + plane.z * lz, high = plane.x * hx + plane.y * hy + plane.z * hz;
     narrow(plane.height / low, plane.height / high, t);
-    const auto flat = ~((low >= grazing) | (low <= -grazing)) | ~((high >= grazing) | (high <= -grazing));
+    const auto flat = ~((low >= kGrazing) | (low <= -kGrazing)) | ~((high >= kGrazing) | (high <= -kGrazing));
     return (flat[0] | flat[1] | flat[2] | flat[3]) == 0;
   }
 
@@ -80,7 +80,7 @@ class Planes {
     const float cx = ball.x - o.x, cy = ball.y - o.y, cz = ball.z - o.z;
     for (unsigned i = 0; i < n; ++i) {
       const float dx = t[i] * x[i] - cx, dy = t[i] * y[i] - cy, dz = t[i] * z[i] - cz;
-      is_beside[i] = !(dx * dx + dy * dy + dz * dz <= ball.square + ball_doubt * (t[i] * t[i]));
+      is_beside[i] = !(dx * dx + dy * dy + dz * dz <= ball.square + kBallDoubt * (t[i] * t[i]));
     }
   }
   // Returns the largest distance of a hit from the middle of a triangle whose corners lie within `radius` of it and
@@ -95,7 +95,7 @@ class Planes {
   }
 
  private:
-  static constexpr double grazing = 0x1p-10;  // cosine
+  static constexpr double kGrazing = 0x1p-10;  // cosine
 
   double within(std::uint32_t triangle, const Float3& o, const Float3& d, double t) const;
 
@@ -105,7 +105,7 @@ class Planes {
   struct Ball {
     float x, y, z, square;  // middle of the corners; 1.5 times their largest distance from it, and a rounding, squared
   };
-  static constexpr float ball_doubt = 0x1p-34f;  // of a squared distance, for all roundings
+  static constexpr float kBallDoubt = 0x1p-34f;  // of a squared distance, for all roundings
 
   void fill(std::uint32_t first, std::uint32_t count);  // those triangles' planes
 

@@ -32,20 +32,20 @@ class RangeNoise {
 
   // Interpolates bilinearly in normalised distance and reflectivity, both clamped to [0, 1].
   float sigma(float t, float reflectivity) const {
-    constexpr std::uint32_t cells = NoiseModel::side - 1;
+    constexpr std::uint32_t kCells = NoiseModel::kSide - 1;
     const auto place = [](float normalised, std::uint32_t& cell) {
       const float clamped = normalised > 0.0f ? (normalised < 1.0f ? normalised : 1.0f) : 0.0f;
-      const float scaled = clamped * static_cast<float>(cells);
+      const float scaled = clamped * static_cast<float>(kCells);
       cell = static_cast<std::uint32_t>(scaled);
-      if (cell >= cells) cell = cells - 1;
+      if (cell >= kCells) cell = kCells - 1;
       return scaled - static_cast<float>(cell);
     };
     std::uint32_t column, row;
     const float across = place((t - model_->min_range) * model_->inverse_span, column);
     const float down = place(reflectivity, row);
-    const float* s = model_->sigma.data() + row * NoiseModel::side + column;
+    const float* s = model_->sigma.data() + row * NoiseModel::kSide + column;
     const float upper = s[0] + (s[1] - s[0]) * across;
-    const float lower = s[NoiseModel::side] + (s[NoiseModel::side + 1] - s[NoiseModel::side]) * across;
+    const float lower = s[NoiseModel::kSide] + (s[NoiseModel::kSide + 1] - s[NoiseModel::kSide]) * across;
     return upper + (lower - upper) * down;
   }
 
@@ -69,11 +69,11 @@ class RangeNoise {
     load(reflectivities, reflectivity);
     find_place((ts - model_->min_range) * model_->inverse_span, column, across);
     find_place(reflectivities, row, down);
-    const Ints8 first = row * static_cast<std::int32_t>(NoiseModel::side) + column;
+    const Ints8 first = row * static_cast<std::int32_t>(NoiseModel::kSide) + column;
     Floats4 corners[8];
     for (int k = 0; k < 8; ++k) {
       const float* const s = model_->sigma.data() + first[k];
-      corners[k] = Floats4{s[0], s[1], s[NoiseModel::side], s[NoiseModel::side + 1]};
+      corners[k] = Floats4{s[0], s[1], s[NoiseModel::kSide], s[NoiseModel::kSide + 1]};
     }
     Floats8 s[4];
     transpose(corners, s);
@@ -99,11 +99,11 @@ class RangeNoise {
  private:
   // Finds the cell, and the position in it, at which sigma() interpolates, for eight values.
   [[gnu::always_inline]] static void find_place(const Floats8& normalised, Ints8& cell, Floats8& part) {
-    constexpr std::int32_t cells = NoiseModel::side - 1;
+    constexpr std::int32_t kCells = NoiseModel::kSide - 1;
     const Floats8 below = normalised < 1.0f ? normalised : 1.0f - Floats8{};
-    const Floats8 scaled = (normalised > 0.0f ? below : Floats8{}) * static_cast<float>(cells);
+    const Floats8 scaled = (normalised > 0.0f ? below : Floats8{}) * static_cast<float>(kCells);
     const Ints8 whole = __builtin_convertvector(scaled, Ints8);
-    cell = whole >= cells ? cells - 1 - Ints8{} : whole;
+    cell = whole >= kCells ? kCells - 1 - Ints8{} : whole;
     part = scaled - __builtin_convertvector(cell, Floats8);
   }
   // Computes normal_from_bits() of eight. As a double, m has its highest bit e in the exponent, the lower bits follow.

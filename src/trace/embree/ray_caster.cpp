@@ -13,10 +13,10 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t packet = 8;
-constexpr std::uint32_t packets = RayBundle::capacity / packet;
+constexpr std::uint32_t kPacketRays = 8;
+constexpr std::uint32_t kBundlePackets = RayBundle::kCapacity / kPacketRays;
 
-constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
+constexpr float kBefore = 1 - RayCaster::kDoubt, kBeyond = 1 + RayCaster::kDoubt;
 
 struct Context {
   embree::Context rtc;  // first member: Embree passes its address to the filters
@@ -52,10 +52,10 @@ template <unsigned n, bool placed, bool changed, class Take>
     y = &RTCRayN_dir_y(args->ray, all, first);
     z = &RTCRayN_dir_z(args->ray, all, first);
   }
-  std::uint32_t primitive = RayBundle::no_hit;
+  std::uint32_t primitive = RayBundle::kNoHit;
   alignas(32) float t[n]{};
   alignas(32) std::int32_t beside[n]{};
-  if constexpr (changed) std::fill_n(beside, n, 1);  // for kInNone, which equals no_hit
+  if constexpr (changed) std::fill_n(beside, n, 1);  // for kInNone, which equals kNoHit
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
@@ -74,7 +74,7 @@ template <unsigned n, bool placed, bool changed, class Take>
       context.planes.beside<n>(primitive, origin, x, y, z, t, beside);
     }
     if (beside[k] == 0 && take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
-      RTCRayN_tfar(args->ray, all, i) = t[k] * beyond;
+      RTCRayN_tfar(args->ray, all, i) = t[k] * kBeyond;
     } else {
       args->valid[i] = 0;
     }
@@ -85,8 +85,8 @@ template <bool placed, bool changed, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Context& context,
                                          const Take& take) {
   unsigned first = 0;
-  for (; first + packet <= args->N; first += packet)
-    judge<packet, placed, changed>(args, first, context, context.origin, take);
+  for (; first + kPacketRays <= args->N; first += kPacketRays)
+    judge<kPacketRays, placed, changed>(args, first, context, context.origin, take);
   for (; first < args->N; ++first) judge<1, placed, changed>(args, first, context, context.origin, take);
 }
 
@@ -184,31 +184,31 @@ void RayCaster::take(Change change) noexcept {
 }
 
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
-  constexpr std::size_t stream = 64;
-  std::array<std::uint32_t, stream> hit;
-  std::array<float, stream> end, x, y, z;
-  alignas(64) std::array<RTCRay, stream> rays;
+  constexpr std::size_t kStreamRays = 64;
+  std::array<std::uint32_t, kStreamRays> hit;
+  std::array<float, kStreamRays> end, x, y, z;
+  alignas(64) std::array<RTCRay, kStreamRays> rays;
   const bool shared = scene_->shares();
-  for (std::size_t first = 0; first < probes.size(); first += stream) {
-    const std::size_t n = std::min(stream, probes.size() - first);
+  for (std::size_t first = 0; first < probes.size(); first += kStreamRays) {
+    const std::size_t n = std::min(kStreamRays, probes.size() - first);
     for (std::size_t i = 0; i < n; ++i) {
       const Probe& probe = probes[first + i];
       end[i] = probe.end;
       rays[i] = {origin.x,
                  origin.y,
                  origin.z,
-                 start * before,
+                 start * kBefore,
                  RayCaster::safe(probe.d.x),
                  RayCaster::safe(probe.d.y),
                  RayCaster::safe(probe.d.z),
                  0,
-                 probe.end * beyond,
+                 probe.end * kBeyond,
                  0xFFFFFFFFu,
                  static_cast<unsigned>(i),
                  0};
       if (shared) x[i] = rays[i].dir_x, y[i] = rays[i].dir_y, z[i] = rays[i].dir_z;
     }
-    hit.fill(RayBundle::no_hit);
+    hit.fill(RayBundle::kNoHit);
     Context context{{}, *planes_, &tree_, origin, start, end.data(), hit.data()};
     if (shared) context.x = x.data(), context.y = y.data(), context.z = z.data();
     context.changed = changed_;
@@ -228,7 +228,7 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
     if (added_) {
       std::size_t open = 0;
       for (std::size_t i = 0; i < n; ++i)
-        if (hit[i] == RayBundle::no_hit) rays[open++] = rays[i];
+        if (hit[i] == RayBundle::kNoHit) rays[open++] = rays[i];
       context.tree = added_.get();
       if (open > 0) trace(open);
     }
@@ -247,26 +247,26 @@ std::vector<RayCaster::Crossing> RayCaster::crossings(RayBundle& rays) const {
 
 void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
   if (rays.size == 0) return;
-  alignas(64) RTCRayHit8 hits[packets];
-  const std::uint32_t used = (rays.size + packet - 1) / packet;
-  for (std::uint32_t i = rays.size; i < used * packet; ++i) {
+  alignas(64) RTCRayHit8 hits[kBundlePackets];
+  const std::uint32_t used = (rays.size + kPacketRays - 1) / kPacketRays;
+  for (std::uint32_t i = rays.size; i < used * kPacketRays; ++i) {
     rays.x[i] = rays.y[i] = rays.z[i] = 1;
     rays.end[i] = -std::numeric_limits<float>::infinity();  // an end before the start disables the ray
   }
   for (std::uint32_t p = 0; p < used; ++p) {
     RTCRay8& ray = hits[p].ray;
-    for (std::uint32_t lane = 0; lane < packet; ++lane) {
-      const std::uint32_t i = p * packet + lane;
+    for (std::uint32_t lane = 0; lane < kPacketRays; ++lane) {
+      const std::uint32_t i = p * kPacketRays + lane;
       const Float3& origin = rays.origins && i < rays.size ? rays.origins[i] : rays.origin;
       ray.org_x[lane] = origin.x;
       ray.org_y[lane] = origin.y;
       ray.org_z[lane] = origin.z;
-      ray.tnear[lane] = rays.start * before;
+      ray.tnear[lane] = rays.start * kBefore;
       ray.dir_x[lane] = RayCaster::safe(rays.x[i]);
       ray.dir_y[lane] = RayCaster::safe(rays.y[i]);
       ray.dir_z[lane] = RayCaster::safe(rays.z[i]);
       ray.time[lane] = 0;
-      ray.tfar[lane] = rays.end[i] * beyond;
+      ray.tfar[lane] = rays.end[i] * kBeyond;
       ray.mask[lane] = 0xFFFFFFFFu;
       ray.id[lane] = i;
       ray.flags[lane] = 0;
@@ -274,13 +274,13 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
       hits[p].hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
   }
-  std::copy_n(rays.end, used * packet, rays.t);
-  std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
+  std::copy_n(rays.end, used * kPacketRays, rays.t);
+  std::fill_n(rays.primitive, used * kPacketRays, RayBundle::kNoHit);
 
   Context context{{}, *planes_, &tree_, rays.origin, rays.start, rays.t, rays.primitive, all};
-  alignas(64) float x[RayBundle::capacity], y[RayBundle::capacity], z[RayBundle::capacity];
+  alignas(64) float x[RayBundle::kCapacity], y[RayBundle::kCapacity], z[RayBundle::kCapacity];
   if (scene_->shares()) {
-    for (std::uint32_t i = 0; i < used * packet; ++i)
+    for (std::uint32_t i = 0; i < used * kPacketRays; ++i)
       x[i] = safe(rays.x[i]), y[i] = safe(rays.y[i]), z[i] = safe(rays.z[i]);
     context.x = x, context.y = y, context.z = z;
   }
@@ -303,11 +303,12 @@ void RayCaster::cast(RayBundle& rays, std::vector<Crossing>* all) const {
 #else
     rtcInitIntersectContext(&context.rtc);
     context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersectNM(tree->get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
+    rtcIntersectNM(tree->get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), kPacketRays, used,
+                   sizeof(RTCRayHit8));
 #endif
   }
   for (std::uint32_t i = 0; i < rays.size; ++i) {
-    if (rays.primitive[i] == RayBundle::no_hit) rays.t[i] = std::numeric_limits<float>::infinity();
+    if (rays.primitive[i] == RayBundle::kNoHit) rays.t[i] = std::numeric_limits<float>::infinity();
   }
 }
 

@@ -16,20 +16,20 @@
 
 namespace vantage {
 
-// Up to `capacity` rays, mostly from a common origin. Neighbours should have similar directions.
+// Up to `kCapacity` rays, mostly from a common origin. Neighbours should have similar directions.
 struct RayBundle {
-  static constexpr std::uint32_t capacity = 256;
-  static constexpr std::uint32_t no_hit = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kCapacity = 256;
+  static constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
   Float3 origin;
   const Float3* origins = nullptr;  // one for each ray, in place of `origin`; slower
   float start = 0;                  // rays start at this multiple of their direction
   std::uint32_t size = 0;
-  alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
-  alignas(64) float end[capacity];
+  alignas(64) float x[kCapacity], y[kCapacity], z[kCapacity];  // directions
+  alignas(64) float end[kCapacity];
 
-  alignas(64) float t[capacity];                  // output: distance of the hit, by Planes
-  alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or no_hit
+  alignas(64) float t[kCapacity];                  // output: distance of the hit, by Planes
+  alignas(64) std::uint32_t primitive[kCapacity];  // output: scene triangle, or kNoHit
 };
 
 // Returns a bundle of one ray.
@@ -49,7 +49,7 @@ inline RayBundle one_ray(const Float3& origin, const Float3& d, float start, flo
 struct Probe {
   Float3 d;
   float end = 0;
-  std::uint32_t hit = RayBundle::no_hit;  // output: any triangle that the ray hits before its end
+  std::uint32_t hit = RayBundle::kNoHit;  // output: any triangle that the ray hits before its end
 };
 
 // Triangles of a scene in Embree's tree. Safe to use from any thread.
@@ -62,8 +62,8 @@ class RayCaster {
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
   // finds the ray to pass through and that the ray comes near (Planes::beside), whatever the other rays of the bundle.
   // Embree's own distance depends on the processor's maker, and its choice among coincident triangles on the order of
-  // visits; neither is used. Its tree is searched by `doubt` past the nearest hit and past both ends.
-  static constexpr float doubt = 0x1p-8f;
+  // visits; neither is used. Its tree is searched by `kDoubt` past the nearest hit and past both ends.
+  static constexpr float kDoubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
 
   // A triangle that a ray passes through.
@@ -79,8 +79,8 @@ class RayCaster {
   // Returns a direction's component as given to Embree. Embree replaces one below 1e-18 by +1e-18 but keeps its sign;
   // such a ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by
   // less than 1e-13 m.
-  static constexpr float least_component = 1e-16f;
-  static float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
+  static constexpr float kLeastComponent = 1e-16f;
+  static float safe(float component) { return std::abs(component) < kLeastComponent ? 0.0f : component; }
 
   // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;

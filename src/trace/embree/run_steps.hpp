@@ -19,7 +19,7 @@ namespace vantage {
 
 class RunSteps {
  public:
-  static constexpr std::uint32_t step = 8;  // rows
+  static constexpr std::uint32_t kStep = 8;  // rows
 
   // Borrows all.
   RunSteps(const StationRays& rays, const TraceStation& station, const Picture& picture)
@@ -27,16 +27,16 @@ class RunSteps {
     // Two hits without glass before them do not exclude glass between.
     if (rays.glass()) return;
     const std::uint32_t rows = rays.pattern().rows();
-    sines_.resize((rows + step - 1) / step + lanes);
+    sines_.resize((rows + kStep - 1) / kStep + kLanes);
     cosines_.resize(sines_.size());
-    for (std::uint32_t row = 0, k = 0; row < rows; row += step, ++k) {
+    for (std::uint32_t row = 0, k = 0; row < rows; row += kStep, ++k) {
       sines_[k] = picture.sines()[row];
       cosines_[k] = picture.cosines()[row];
     }
   }
 
   // Returns true if a run of so many rays may be counted by steps.
-  bool pay(std::uint32_t rays) const { return rays >= 3 * step && !sines_.empty(); }
+  bool pay(std::uint32_t rays) const { return rays >= 3 * kStep && !sines_.empty(); }
 
   // Goes along rows `row` to `end` of a column, whose rays all hit this facet's triangle. Calls settled(point, rays)
   // for rays in a row whose points all lie in the voxel of `point`, and rest(from, to) for rows to be computed one by
@@ -47,10 +47,10 @@ class RunSteps {
                                     const Rest& rest) const {
     const float cosine = rays_.pattern().cos_azimuth[column], sine = rays_.pattern().sin_azimuth[column];
     std::uint32_t from = row;  // all rows before it are done
-    std::uint32_t first = (row + step - 1) / step;
-    const std::uint32_t last = (end - 1) / step;
-    for (; first + 2 <= last; first = std::min(last, first + (most - 1))) {
-      const std::uint32_t samples = std::min(last - first + 1, most);
+    std::uint32_t first = (row + kStep - 1) / kStep;
+    const std::uint32_t last = (end - 1) / kStep;
+    for (; first + 2 <= last; first = std::min(last, first + (kMost - 1))) {
+      const std::uint32_t samples = std::min(last - first + 1, kMost);
       Bounds bounds;
       if (!find_bounds(first, first + samples - 1, cosine, sine, triangle, plane, facet, bounds)) continue;
       Samples found;
@@ -61,9 +61,9 @@ class RunSteps {
                found.z[same] == found.z[k])
           ++same;
         if (--same > k) {
-          const std::uint32_t begin = (first + k) * step;
+          const std::uint32_t begin = (first + k) * kStep;
           if (from < begin) rest(from, begin);
-          from = (first + same) * step;
+          from = (first + same) * kStep;
           settled(Float3{found.px[k], found.py[k], found.pz[k]}, from - begin);
           k = same;
         } else {
@@ -75,7 +75,7 @@ class RunSteps {
   }
 
  private:
-  static constexpr std::uint32_t lanes = 8, most = 32;
+  static constexpr std::uint32_t kLanes = 8, kMost = 32;
   // Largest distance of a hit from a voxel's side at which it may leave the voxel: along any axis, in voxels.
   struct Bounds {
     float reach;   // by noise along the ray; its share counts on each axis
@@ -83,8 +83,8 @@ class RunSteps {
   };
   // Voxels of hits, by axis, and the hits. A hit that may leave its voxel gets a unique voxel.
   struct Samples {
-    alignas(32) std::array<std::int32_t, most + lanes> x, y, z;
-    alignas(32) std::array<float, most + lanes> px, py, pz;
+    alignas(32) std::array<std::int32_t, kMost + kLanes> x, y, z;
+    alignas(32) std::array<float, kMost + kLanes> px, py, pz;
   };
 
   // Bounds the hits from one row to another. On an arc of less than half a turn, the cosine of incidence is least, and
@@ -93,7 +93,7 @@ class RunSteps {
                                           std::uint32_t triangle, const Planes::Seen& plane, const Facet& facet,
                                           Bounds& bounds) const {
     // A lower slope is near that of rays that nearly lie in the plane (Planes::distances()).
-    constexpr double flat = 0x1p-8;
+    constexpr double kFlat = 0x1p-8;
     double least = 1, farthest = 0, apart[3] = {};
     bool up[2] = {};
     for (int k = 0; k < 2; ++k) {
@@ -101,7 +101,7 @@ class RunSteps {
       Float3 d{sines_[at] * cosine, sines_[at] * sine, cosines_[at]};
       if (station_.turn) d = (*station_.turn)(d);
       const double slope = plane.x * d.x + plane.y * d.y + plane.z * d.z, t = plane.height / slope;
-      if (!(std::abs(slope) >= flat) || !(t > 0)) return false;
+      if (!(std::abs(slope) >= kFlat) || !(t > 0)) return false;
       up[k] = slope > 0;
       least = std::min(least, std::abs(slope));
       farthest = std::max(farthest, t);
@@ -128,7 +128,7 @@ class RunSteps {
     const VoxelGrid& grid = rays_.grid();
     const float inverse = grid.inverse_size(), cells = static_cast<float>(1u << grid.depth());
     const Float3 origin = station_.origin;
-    for (std::uint32_t k = 0; k < samples; k += lanes) {
+    for (std::uint32_t k = 0; k < samples; k += kLanes) {
       Floats8 sines, x, y, z, t;
       load(sines, sines_.data() + first + k);
       load(z, cosines_.data() + first + k);

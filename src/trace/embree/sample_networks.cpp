@@ -21,8 +21,8 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t block = SampledVoxelCounter::block;
-constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
+constexpr std::size_t kBlock = SampledVoxelCounter::kBlock;
+constexpr std::size_t kPairsAtOnce = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
 
 // Bounds coordinates in sight, relative or absolute. Returns a power of two, so that most calls keep the last call's
 // sample.
@@ -87,9 +87,9 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
                                                                 job.sample, pad, reach, reach + triangle_margin(pad));
                                          });
 
-  const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
-  const std::size_t at_once = std::clamp<std::size_t>(pairs_at_once / std::max<std::size_t>(n, 1), 1,
-                                                      std::max<std::size_t>(networks.size(), 1));
+  const std::size_t n = voxels.size(), blocks = (n + kBlock - 1) / kBlock;
+  const std::size_t at_once =
+      std::clamp<std::size_t>(kPairsAtOnce / std::max<std::size_t>(n, 1), 1, std::max<std::size_t>(networks.size(), 1));
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t chunk = 32 * threads;
   std::vector<std::uint32_t> counts(at_once * n);
@@ -124,7 +124,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
     };
     // Uses the rays of the first network that has the station.
     const auto count_shared = [&](SampledVoxelCounter& counter, std::size_t start, std::size_t many) {
-      std::array<std::uint32_t, block> points{};
+      std::array<std::uint32_t, kBlock> points{};
       for (const SharedStation& one : shared) {
         const std::uint64_t before = counter.traced();
         std::fill_n(points.begin(), many, 0u);
@@ -147,7 +147,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
       parallel::for_all(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
         SampledVoxelCounter counter(scanners, voxels, pad);
         for (std::size_t task = range.begin(); task < range.end(); ++task) {
-          const std::size_t start = task % blocks * block, many = std::min(block, n - start);
+          const std::size_t start = task % blocks * kBlock, many = std::min(kBlock, n - start);
           if (shared.empty())
             count_network(counter, task / blocks, start, many);
           else

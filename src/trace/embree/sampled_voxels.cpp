@@ -83,7 +83,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     };
     std::vector<ExactPlane> own;
     std::vector<std::pair<std::size_t, std::uint32_t>> of;  // plane and triangle
-    for (std::uint32_t k = first; k < end && own.size() <= most_planes; ++k) {
+    for (std::uint32_t k = first; k < end && own.size() <= kMostPlanes; ++k) {
       const Corners corners = corners_of(k);
       const ExactPlane plane = plane_of(corners);
       // Merges planes so close that no hit in the cube moves by a noticeable part of the pad, at any slant.
@@ -100,7 +100,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
       all.diffuse = std::min(all.diffuse, scene.meshes[scene.mesh_of(lists.triangle[k])].diffuse);
       all.tilt = std::max(all.tilt, tilt_of(scene, lists.triangle[k], all.normal));
     }
-    if (own.size() > most_planes) own.clear();
+    if (own.size() > kMostPlanes) own.clear();
 
     for (std::size_t axis = 0; axis < 3; ++axis) cells_[axis][i] = static_cast<std::int32_t>(cell[axis]);
     Box around;
@@ -133,11 +133,11 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     std::copy_n(planes.begin() + lists.offset[i], count, planes.begin() + offset_[i]);
   }
   planes_.assign(planes.begin(), planes.begin() + offset_[n]);
-  for (std::size_t level = 0; level < group_sizes.size(); ++level)
-    for (std::size_t first = 0; first < n; first += group_sizes[level]) {
+  for (std::size_t level = 0; level < kGroupSizes.size(); ++level)
+    for (std::size_t first = 0; first < n; first += kGroupSizes[level]) {
       Cells& cells = groups_[level].emplace_back();
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto of = std::span(cells_[axis]).subspan(first, std::min(group_sizes[level], n - first));
+        const auto of = std::span(cells_[axis]).subspan(first, std::min(kGroupSizes[level], n - first));
         cells.low[axis] = std::ranges::min(of), cells.high[axis] = std::ranges::max(of);
       }
     }

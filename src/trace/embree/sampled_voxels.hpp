@@ -14,7 +14,7 @@ namespace vantage {
 // Voxels of a sample, each with the surveyed triangles that can be hit in it. Immutable.
 class SampledVoxels {
  public:
-  static constexpr std::size_t most_planes = 16;  // most planes of a voxel for which tests pay
+  static constexpr std::size_t kMostPlanes = 16;  // most planes of a voxel for which tests pay
   // Part of a plane covered by a triangle, relative to the middle of the voxel's cube. Valid only for that cube.
   struct Piece {
     struct Edge {
@@ -46,7 +46,7 @@ class SampledVoxels {
   struct Cells {
     std::array<std::int32_t, 3> low, high;
   };
-  static constexpr std::array<std::size_t, 3> group_sizes{512, 64, 8};
+  static constexpr std::array<std::size_t, 3> kGroupSizes{512, 64, 8};
 
   // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: largest distance of a
   // triangle's hit from its voxel's cube if its point still counts there. Metres.
@@ -67,7 +67,7 @@ class SampledVoxels {
   const Piece& piece(std::size_t k) const { return pieces_[k]; }
   const Cell& cells() const { return cells_; }
   const Around& around(std::size_t i) const { return around_[i]; }
-  // Returns group k of group_sizes[level] voxels.
+  // Returns group k of kGroupSizes[level] voxels.
   const Cells& group(std::size_t level, std::size_t k) const { return groups_[level][k]; }
 
  private:
@@ -78,7 +78,7 @@ class SampledVoxels {
   std::vector<Piece> pieces_;
   Cell cells_;
   std::vector<Around> around_;
-  std::array<std::vector<Cells>, group_sizes.size()> groups_;
+  std::array<std::vector<Cells>, kGroupSizes.size()> groups_;
 };
 
 }  // namespace vantage

@@ -33,9 +33,9 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
     fill(Tracer::position, chunk.position, Float3{});
     fill(Tracer::normal, chunk.normal, Float3{});
     fill(Tracer::reflectivity, chunk.reflectivity, 0.0f);
-    fill(Tracer::primitive, chunk.primitive, RayBundle::no_hit);
+    fill(Tracer::primitive, chunk.primitive, RayBundle::kNoHit);
     fill(Tracer::barycentric, chunk.barycentric, Float2{});
-    fill(Tracer::voxel, chunk.voxel, no_voxel);
+    fill(Tracer::voxel, chunk.voxel, kNoVoxel);
   }
 }
 
@@ -43,20 +43,20 @@ void clear(const RayTile& tile, const StationRays& rays, const Wanted& wanted) {
 // `counts`: true if a point meets all limits. Overwrites the bundle's hits.
 void find_points(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, RayBundle& rays,
                  Hits& points, bool* counts) {
-  std::array<Passed, RayBundle::capacity> passed;
+  std::array<Passed, RayBundle::kCapacity> passed;
   bool behind_glass = false;
   if (station_rays.glass()) {
     RayBundle beams = rays;
     beams.start = 0;
     for (std::uint32_t slot = 0; slot < rays.size; ++slot)
-      if (rays.primitive[slot] != RayBundle::no_hit) beams.end[slot] = rays.t[slot];
+      if (rays.primitive[slot] != RayBundle::kNoHit) beams.end[slot] = rays.t[slot];
     behind_glass = station_rays.glass()->follow(beams, passed);
   }
-  std::array<bool, RayBundle::capacity> returned{};  // reflected by a pane
+  std::array<bool, RayBundle::kCapacity> returned{};  // reflected by a pane
   if (behind_glass)
     for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
       const Passed& way = passed[slot];
-      if (way.pane == RayBundle::no_hit || way.t < station_rays.pattern().min_range) continue;
+      if (way.pane == RayBundle::kNoHit || way.t < station_rays.pattern().min_range) continue;
       rays.primitive[slot] = way.pane;
       rays.t[slot] = way.t;
       returned[slot] = true;
@@ -65,7 +65,7 @@ void find_points(const StationRays& station_rays, const TraceStation& station, c
   std::uint32_t slot = 0;
   for (std::uint32_t row = tile.row; row < tile.row + tile.rows; ++row)
     for (std::uint32_t column = tile.column; column < tile.column + tile.columns; ++column, ++slot)
-      if (rays.primitive[slot] != RayBundle::no_hit) points.add(rays, slot, station_rays.ray(row, column));
+      if (rays.primitive[slot] != RayBundle::kNoHit) points.add(rays, slot, station_rays.ray(row, column));
   std::fill_n(counts, points.size, true);
   if (!station_rays.limited() || (!behind_glass && station_rays.all_count(points))) return;
 
@@ -112,10 +112,10 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   Tracer::RawChunk& chunk = wanted.chunk;
   clear(tile, station_rays, wanted);
   Hits points;
-  bool counts[RayBundle::capacity];
+  bool counts[RayBundle::kCapacity];
   find_points(station_rays, station, tile, rays, points, counts);
   if (points.size == 0) return;
-  std::uint64_t at[RayBundle::capacity];  // in the chunk
+  std::uint64_t at[RayBundle::kCapacity];  // in the chunk
   for (std::uint32_t k = 0; k < points.size; ++k) at[k] = points.ray(k) - wanted.first_ray;
 
   if (outputs & (Tracer::normal | Tracer::reflectivity | Tracer::barycentric))
@@ -129,7 +129,7 @@ void fill_tile(const StationRays& station_rays, const TraceStation& station, con
   if (outputs & Tracer::position)
     for (std::uint32_t k = 0; k < points.size; ++k) chunk.position[at[k]] = points.point(station.origin, k);
   if ((outputs & Tracer::voxel) == 0) return;
-  std::uint64_t counted[RayBundle::capacity];  // in the chunk
+  std::uint64_t counted[RayBundle::kCapacity];  // in the chunk
   std::uint32_t many = 0;
   voxels.clear();
   for (std::uint32_t k = 0; k < points.size; ++k) {

@@ -50,7 +50,7 @@ class SeenTriangle {
     height_ *= sign;
     edge_ = {cross(a, b) * sign, cross(b, c) * sign, cross(c, a) * sign};
     const double longest = longest_square(a, b, c), far = std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c)}));
-    tolerance_ = edge_doubt * far * std::sqrt(longest);
+    tolerance_ = kEdgeDoubt * far * std::sqrt(longest);
     slope_doubt_ = kNormalDoubt * longest;
     distance_doubt_ = slope_doubt_ * far / height_ + kRounding;
     least_slope_ = distance_doubt_ < kMostDoubt ? slope_doubt_ / (kMostDoubt - distance_doubt_) : kNever;
@@ -119,7 +119,7 @@ class SeenTriangle {
 
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight
   // roundings of 2^−24 of their product. The bound is eight times that.
-  static constexpr double edge_doubt = 0x1p-18;
+  static constexpr double kEdgeDoubt = 0x1p-18;
   // Returns the longest edge squared over twice the area; 1.15 for an equilateral triangle.
   static double slenderness(const Vec3& a, const Vec3& b, const Vec3& c, double twice_area) {
     return longest_square(a, b, c) / twice_area;

@@ -75,10 +75,10 @@ void SharedStations::put_in_order() {
 }
 
 SharedStations::Use SharedStations::next(std::size_t network, std::size_t station) {
-  if (last_ != never && wanted(last_) == never) drop(last_);
+  if (last_ != kNever && wanted(last_) == kNever) drop(last_);
   const std::size_t id = last_ = ids_[network][station];
   ++left_[id];
-  return {.id = id, .again = wanted(id) != never, .points = kept_[id] ? &*kept_[id] : nullptr};
+  return {.id = id, .again = wanted(id) != kNever, .points = kept_[id] ? &*kept_[id] : nullptr};
 }
 
 void SharedStations::keep(std::size_t id, StationPoints points) {

@@ -39,19 +39,19 @@ class SharedStations {
   void keep(std::size_t id, StationPoints points);
 
  private:
-  static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
   void put_in_order();
   void drop(std::size_t id);
   // Returns the position of the next network that has the station, or never.
-  std::size_t wanted(std::size_t id) const { return left_[id] < uses_[id].size() ? uses_[id][left_[id]] : never; }
+  std::size_t wanted(std::size_t id) const { return left_[id] < uses_[id].size() ? uses_[id][left_[id]] : kNever; }
 
   std::vector<std::vector<std::size_t>> ids_;  // stations of each network
   std::vector<std::size_t> order_;
   std::vector<std::vector<std::size_t>> uses_;  // per station, positions in the order, ascending
   std::vector<std::size_t> left_;               // per station, the first position still to come
   std::vector<std::optional<StationPoints>> kept_;
-  std::size_t last_ = never;  // station returned last
+  std::size_t last_ = kNever;  // station returned last
   std::size_t bytes_ = 0, most_bytes_;
 };
 

@@ -12,16 +12,19 @@ namespace vantage {
 // Calls f(number, first word, end of words).
 template <class F>
 void StationPoints::each_chunk(const F& f) const {
-  constexpr std::size_t words = chunk / word;
-  parallel::for_all(std::size_t{0}, (seen_.size() + words - 1) / words,
-                    [&](std::size_t c) { f(c, c * words, std::min(seen_.size(), (c + 1) * words)); });
+  constexpr std::size_t kChunkWords = kChunkVoxels / kWordVoxels;
+  parallel::for_all(std::size_t{0}, (seen_.size() + kChunkWords - 1) / kChunkWords,
+                    [&](std::size_t c) { f(c, c * kChunkWords, std::min(seen_.size(), (c + 1) * kChunkWords)); });
 }
 
 StationPoints::StationPoints(std::span<const std::uint32_t> counts, const StationTotals& totals)
-    : totals_(totals), seen_((counts.size() + word - 1) / word), first_((counts.size() + chunk - 1) / chunk) {
+    : totals_(totals),
+      seen_((counts.size() + kWordVoxels - 1) / kWordVoxels),
+      first_((counts.size() + kChunkVoxels - 1) / kChunkVoxels) {
   each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t w = begin; w < end; ++w) {
-      const std::span<const std::uint32_t> own = counts.subspan(w * word, std::min(word, counts.size() - w * word));
+      const std::span<const std::uint32_t> own =
+          counts.subspan(w * kWordVoxels, std::min(kWordVoxels, counts.size() - w * kWordVoxels));
       for (std::size_t k = 0; k < own.size(); ++k) seen_[w] |= std::uint64_t{own[k] > 0} << k;
       first_[c] += static_cast<std::size_t>(std::popcount(seen_[w]));
     }
@@ -31,13 +34,14 @@ StationPoints::StationPoints(std::span<const std::uint32_t> counts, const Statio
   few_.resize(sum);
   each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
     std::uint8_t* few = few_.data() + first_[c];
-    for (std::size_t voxel_index = begin * word; voxel_index < std::min(end * word, counts.size()); ++voxel_index)
+    for (std::size_t voxel_index = begin * kWordVoxels; voxel_index < std::min(end * kWordVoxels, counts.size());
+         ++voxel_index)
       if (counts[voxel_index] > 0)
-        *few++ = static_cast<std::uint8_t>(std::min<std::uint32_t>(counts[voxel_index], more));
+        *few++ = static_cast<std::uint8_t>(std::min<std::uint32_t>(counts[voxel_index], kMany));
   });
-  if (std::find(few_.begin(), few_.end(), more) == few_.end()) return;
+  if (std::find(few_.begin(), few_.end(), kMany) == few_.end()) return;
   for (std::uint32_t voxel_index = 0; voxel_index < counts.size(); ++voxel_index)
-    if (counts[voxel_index] >= more) many_.emplace_back(voxel_index, counts[voxel_index]);
+    if (counts[voxel_index] >= kMany) many_.emplace_back(voxel_index, counts[voxel_index]);
 }
 
 std::uint32_t StationPoints::count_of(std::uint32_t voxel_index) const {
@@ -50,8 +54,8 @@ void StationPoints::add_to(PassField& field, std::uint64_t bit) const {
     const std::uint8_t* few = few_.data() + first_[c];
     for (std::size_t w = begin; w < end; ++w) {
       for (std::uint64_t left = seen_[w]; left != 0; left &= left - 1, ++few) {
-        const std::size_t voxel_index = w * word + static_cast<std::size_t>(std::countr_zero(left));
-        const std::uint32_t points = *few == more ? count_of(static_cast<std::uint32_t>(voxel_index)) : *few;
+        const std::size_t voxel_index = w * kWordVoxels + static_cast<std::size_t>(std::countr_zero(left));
+        const std::uint32_t points = *few == kMany ? count_of(static_cast<std::uint32_t>(voxel_index)) : *few;
         add_saturating(field.count[voxel_index], points);
         if (masks) field.stations[voxel_index] |= bit;
       }

@@ -22,8 +22,8 @@ class StationPoints {
   void add_to(PassField& field, std::uint64_t bit) const;
 
  private:
-  static constexpr std::size_t word = 64, chunk = 1024 * word;  // voxels; a chunk is a task
-  static constexpr std::uint8_t more = 255;                     // the count is in `many_`
+  static constexpr std::size_t kWordVoxels = 64, kChunkVoxels = 1024 * kWordVoxels;  // voxels; a chunk is a task
+  static constexpr std::uint8_t kMany = 255;                                         // the count is in `many_`
 
   template <class F>
   void each_chunk(const F& f) const;

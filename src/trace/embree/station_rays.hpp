@@ -22,12 +22,12 @@
 
 namespace vantage {
 
-// Rays that are traced together: at most `side` rows and columns, or as many rows of a list.
+// Rays that are traced together: at most `kSide` rows and columns, or as many rows of a list.
 struct RayTile {
-  static constexpr std::uint32_t side = 16;
-  static_assert(side * side <= RayBundle::capacity);
+  static constexpr std::uint32_t kSide = 16;
+  static_assert(kSide * kSide <= RayBundle::kCapacity);
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
-  static std::uint32_t rows_of(const RayPattern& pattern) { return pattern.list ? side * side : side; }
+  static std::uint32_t rows_of(const RayPattern& pattern) { return pattern.list ? kSide * kSide : kSide; }
 };
 
 // The scene, common to all scanners.

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-std::uint32_t tiles_across(std::uint32_t rays, std::uint32_t side = RayTile::side) { return (rays + side - 1) / side; }
+std::uint32_t tiles_across(std::uint32_t rays, std::uint32_t side = RayTile::kSide) { return (rays + side - 1) / side; }
 std::uint32_t tiles_down(const RayPattern& pattern) { return tiles_across(pattern.rows(), RayTile::rows_of(pattern)); }
 
 void raise(float& value, float to) {
@@ -24,9 +24,9 @@ void raise(float& value, float to) {
 
 RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b) {
   const std::uint32_t rows = RayTile::rows_of(pattern);
-  RayTile tile{a * rows, b * RayTile::side, 0, 0};
+  RayTile tile{a * rows, b * RayTile::kSide, 0, 0};
   tile.rows = std::min(rows, pattern.rows() - tile.row);
-  tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
+  tile.columns = std::min(RayTile::kSide, pattern.columns() - tile.column);
   return tile;
 }
 
@@ -68,8 +68,8 @@ TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station)
       const auto end = static_cast<float>((std::sqrt(dot(far, far)) + reach) * stretch);
       for (const RayRanges::Range& columns : seen.columns) {
         if (columns.empty()) continue;
-        for (std::uint32_t a = seen.rows.begin / RayTile::side; a <= (seen.rows.end - 1) / RayTile::side; ++a) {
-          for (std::uint32_t b = columns.begin / RayTile::side; b <= (columns.end - 1) / RayTile::side; ++b)
+        for (std::uint32_t a = seen.rows.begin / RayTile::kSide; a <= (seen.rows.end - 1) / RayTile::kSide; ++a) {
+          for (std::uint32_t b = columns.begin / RayTile::kSide; b <= (columns.end - 1) / RayTile::kSide; ++b)
             raise(ends[std::size_t{a} * wide + b], end);
         }
       }

@@ -28,8 +28,8 @@
 namespace vantage {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t rays_at_once = 2048;
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kRaysAtOnce = 2048;
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel are probed one by one for an occluder while at least this many are left and each probe hides at least
 // this many. Fewer rays are traced as fast as one is probed.
@@ -57,7 +57,7 @@ Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - 
 
 SampledVoxelCounter::SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad)
     : scanners_(scanners), voxels_(voxels), pad_(pad) {
-  listed_.resize(rays_at_once + RayBatch::capacity);
+  listed_.resize(kRaysAtOnce + RayBatch::kCapacity);
   batch_.x.fill(1);
   batch_.y.fill(1);
   batch_.z.fill(1);
@@ -97,7 +97,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       const RayRanges window = window_of(k);
       if (window.empty()) continue;
       // An occluder of the middle mostly hides more than the middle.
-      const Tiles tiles = each.occluder != RayBundle::no_hit ? find_hidden(each, window) : Tiles();
+      const Tiles tiles = each.occluder != RayBundle::kNoHit ? find_hidden(each, window) : Tiles();
       list_rays({each, window, 0, counts_[each.voxel], tiles}, wanted(each.voxel));
     }
     settle();
@@ -107,7 +107,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
       for (Rest& rest : again_) {
         const std::uint32_t i = rest.look.voxel;
         if (full(i)) continue;
-        if (times == kMore && counts_[i] == rest.count && rest.look.occluder == RayBundle::no_hit)
+        if (times == kMore && counts_[i] == rest.count && rest.look.occluder == RayBundle::kNoHit)
           rest.tiles = find_hidden(rest.look, rest.window);
         list_rays(rest, static_cast<std::uint32_t>(std::min<std::uint64_t>(times * wanted(i), kAll)));
       }
@@ -121,12 +121,12 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
 void SampledVoxelCounter::find_open(std::size_t n) {
   met_.clear();
   for (std::uint32_t i = 0; i < n; ++i) open_[i] = !full(i);
-  for (std::size_t level = 0; level < SampledVoxels::group_sizes.size(); ++level) drop_hidden_groups(level, n);
+  for (std::size_t level = 0; level < SampledVoxels::kGroupSizes.size(); ++level) drop_hidden_groups(level, n);
 }
 
 void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
   const RayPattern& pattern = rays_->pattern();
-  const std::size_t size = SampledVoxels::group_sizes[level];
+  const std::size_t size = SampledVoxels::kGroupSizes[level];
   for (std::size_t first = 0; first < n; first += size) {
     const std::span<bool> open = std::span(open_).subspan(first, std::min(size, n - first));
     if (std::ranges::none_of(open, std::identity())) continue;
@@ -134,7 +134,7 @@ void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
     const Vec3 to_nearest{std::max({box.min.x, -box.max.x, 0.0}), std::max({box.min.y, -box.max.y, 0.0}),
                           std::max({box.min.z, -box.max.z, 0.0})};
     const double nearest = std::sqrt(dot(to_nearest, to_nearest));
-    if (nearest > (pattern.max_range + reach_) * (1 + trust)) {
+    if (nearest > (pattern.max_range + reach_) * (1 + kTrust)) {
       std::ranges::fill(open, false);
       continue;
     }
@@ -142,10 +142,10 @@ void SampledVoxelCounter::drop_hidden_groups(std::size_t level, std::size_t n) {
     bool hidden = is_hidden(SeenBox(box));
     if (!hidden) {
       const Vec3 middle = (box.min + box.max) * 0.5, d = middle * (1 / std::sqrt(dot(middle, middle)));
-      Probe probe{narrow(d), static_cast<float>(nearest * (1 - trust))};
+      Probe probe{narrow(d), static_cast<float>(nearest * (1 - kTrust))};
       rays_->caster().any_hits(bundle_.origin, bundle_.start, {&probe, 1});
       ++traced_;
-      if (probe.hit != RayBundle::no_hit) {
+      if (probe.hit != RayBundle::kNoHit) {
         meet(probe.hit);
         hidden = hides(probe.hit, box);
       }
@@ -259,14 +259,14 @@ void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube
   RayBatch& batch = batch_;
   const std::uint32_t n = (batch.size + 7) / 8 * 8;  // whole vectors; the surplus is never read
   if (station_->turn) turn_all(*station_->turn, batch.x.data(), batch.y.data(), batch.z.data(), batch.size);
-  const auto trusted = static_cast<float>(1 - trust), pad = static_cast<float>(2 * pad_);
+  const auto trusted = static_cast<float>(1 - kTrust), pad = static_cast<float>(2 * pad_);
   const float cx = cube.centre.x, cy = cube.centre.y, cz = cube.centre.z, half = cube.half + pad,
-              nearest_of_all = cube.nearest * trusted, slack = float_doubt * cube.farthest;
-  std::fill_n(batch.nearest.data(), n, planes.empty() ? nearest_of_all : infinity);
+              nearest_of_all = cube.nearest * trusted, slack = kFloatDoubt * cube.farthest;
+  std::fill_n(batch.nearest.data(), n, planes.empty() ? nearest_of_all : kFloatInfinity);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const SampledVoxels::Plane& plane = *planes[k].plane;
     const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = planes[k].height,
-                sure = steep * plane.slenderness, graze = grazing * plane.slenderness;
+                sure = kSteep * plane.slenderness, graze = kGrazing * plane.slenderness;
     std::uint32_t any = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       const float slope = nx * batch.x[i] + ny * batch.y[i] + nz * batch.z[i], cosine = std::abs(slope),
@@ -279,13 +279,13 @@ void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube
       batch.pz[i] = pz;
       batch.slant[i] = slant;
       any |= beyond <= half ? 1u : 0u;
-      batch.candidate[i] = t * (cosine < sure ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
-      batch.nearest[i] = std::min(batch.nearest[i], nearest_of_all + (cosine >= graze ? infinity : 0.0f));
+      batch.candidate[i] = t * (cosine < sure ? trusted : kSteepPart) - pad + (beyond <= half ? 0.0f : kFloatInfinity);
+      batch.nearest[i] = std::min(batch.nearest[i], nearest_of_all + (cosine >= graze ? kFloatInfinity : 0.0f));
     }
     if (any == 0) continue;
     for (std::uint32_t p = plane.first; p < plane.end; ++p) {
       const SampledVoxels::Piece& piece = voxels_.piece(p);
-      const float doubt = edge_doubt * (cube.farthest + cube.half + piece.longest);
+      const float doubt = kEdgeDoubt * (cube.farthest + cube.half + piece.longest);
       const auto &a = piece.edge[0], &b = piece.edge[1], &c = piece.edge[2];
       const float ax = a.inwards.x, ay = a.inwards.y, az = a.inwards.z, ao = a.offset, ad = doubt * a.ratio;
       const float bx = b.inwards.x, by = b.inwards.y, bz = b.inwards.z, bo = b.offset, bd = doubt * b.ratio;
@@ -295,7 +295,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube
         const float outside = std::max(
             std::max(ao - ad * slant - (ax * px + ay * py + az * pz), bo - bd * slant - (bx * px + by * py + bz * pz)),
             eo - ed * slant - (ex * px + ey * py + ez * pz));
-        batch.nearest[i] = std::min(batch.nearest[i], batch.candidate[i] + (outside <= 0 ? 0.0f : infinity));
+        batch.nearest[i] = std::min(batch.nearest[i], batch.candidate[i] + (outside <= 0 ? 0.0f : kFloatInfinity));
       }
     }
   }
@@ -305,7 +305,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const Ahead> planes, const Cube
 bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   const RayPattern& pattern = rays_->pattern();
   const double half = rays_->grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
-  const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
+  const double first = (pattern.min_range - reach_) * (1 - kTrust), last = (pattern.max_range + reach_) * (1 + kTrust);
   if (distance_[i] + corner < first || distance_[i] - corner > last) return false;
   // Hits whose points count lie within the noise's reach of the cube.
   const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
@@ -317,7 +317,7 @@ bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
                static_cast<float>(distance_[i] + corner + reach + 2 * pad_)};
   look.sure = !planes.empty();
   for (const SampledVoxels::Plane& plane : planes)
-    look.sure &= std::abs(height_over(plane, i)) >= sure_height * plane.slenderness * look.cube.farthest;
+    look.sure &= std::abs(height_over(plane, i)) >= kSureHeight * plane.slenderness * look.cube.farthest;
   look.reach = reach;
   look.hits = hits_of(look);
   return !look.hits.empty();
@@ -399,7 +399,7 @@ void SampledVoxelCounter::drop_hidden_boxes() {
     if (is_hidden(SeenBox(look.hits))) continue;
     const Vec3 middle = (look.hits.min + look.hits.max) * 0.5;
     const double inverse = 1 / std::max(std::sqrt(dot(middle, middle)), std::numeric_limits<double>::min());
-    probes_.push_back({narrow(middle * inverse), look.cube.nearest * static_cast<float>(1 - trust)});
+    probes_.push_back({narrow(middle * inverse), look.cube.nearest * static_cast<float>(1 - kTrust)});
     looks_[kept++] = look;
   }
   looks_.resize(kept);
@@ -408,7 +408,7 @@ void SampledVoxelCounter::drop_hidden_boxes() {
   kept = 0;
   for (std::size_t k = 0; k < looks_.size(); ++k) {
     const std::uint32_t by = probes_[k].hit;
-    if (by != RayBundle::no_hit && hides(by, looks_[k].hits)) continue;
+    if (by != RayBundle::kNoHit && hides(by, looks_[k].hits)) continue;
     looks_[kept] = looks_[k];
     looks_[kept++].occluder = by;
   }
@@ -438,15 +438,15 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
   const Cube& cube = look.cube;
   const std::span<const Ahead> planes = planes_of(look);
   // The batch is processed in whole vectors, since testing fewer rays does not pay.
-  std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
+  std::uint32_t worth = std::min(RayBatch::kCapacity, (std::min(enough, RayBatch::kCapacity) + 7) / 8 * 8);
   std::uint32_t found = 0;
 
   VoxelRays rays{.voxel = i,
                  .begin = listed_size_,
-                 .farthest = std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
+                 .farthest = std::min(cube.farthest * static_cast<float>(1 + kTrust), pattern.max_range),
                  .occluder = look.occluder};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  static_assert(SpreadUnits::kUnit == RayBatch::step);
+  static_assert(SpreadUnits::kUnit == RayBatch::kStep);
   const SpreadUnits all(rest.window, stop_at_ != 0);
   std::uint32_t& units = rest.units;
   const bool first = units == 0 && stop_at_ != 0;
@@ -468,13 +468,13 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
       batch_.row[size + k] = row;
       batch_.column[size + k] = column + k;
     };
-    if (column + RayBatch::step <= pattern.columns()) {
-      for (std::uint32_t k = 0; k < RayBatch::step; ++k) put(k);
+    if (column + RayBatch::kStep <= pattern.columns()) {
+      for (std::uint32_t k = 0; k < RayBatch::kStep; ++k) put(k);
     } else {
       for (std::uint32_t k = 0; k < many; ++k) put(k);
     }
     batch_.size += many;
-    if (batch_.size + RayBatch::step <= worth) continue;
+    if (batch_.size + RayBatch::kStep <= worth) continue;
     fill_nearest(planes, cube);
     found += list_batch(rays);
     if (full(i)) return;
@@ -483,7 +483,7 @@ void SampledVoxelCounter::list_rays(Rest rest, std::uint32_t enough) {
       rest_.push_back(rest);
       return;
     }
-    worth = std::min(2 * worth, RayBatch::capacity);
+    worth = std::min(2 * worth, RayBatch::kCapacity);
   }
   fill_nearest(planes, cube);
   list_batch(rays);
@@ -497,7 +497,7 @@ void SampledVoxelCounter::list_directions(std::size_t k) {
   const std::span<const Ahead> planes = planes_of(look);
   VoxelRays rays{.voxel = look.voxel,
                  .begin = listed_size_,
-                 .farthest = std::min(look.cube.farthest * static_cast<float>(1 + trust), pattern.max_range),
+                 .farthest = std::min(look.cube.farthest * static_cast<float>(1 + kTrust), pattern.max_range),
                  .occluder = look.occluder};
   const auto list_some = [&] {
     fill_nearest(planes, look.cube);
@@ -510,7 +510,7 @@ void SampledVoxelCounter::list_directions(std::size_t k) {
       const std::uint32_t slot = batch_.size++;
       batch_.x[slot] = d.x, batch_.y[slot] = d.y, batch_.z[slot] = d.z;
       batch_.row[slot] = ray, batch_.column[slot] = 0;
-      if (batch_.size == RayBatch::capacity) list_some();
+      if (batch_.size == RayBatch::kCapacity) list_some();
     }
   });
   list_some();
@@ -522,12 +522,12 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   Ray* next = listed_.data() + listed_size_;
   for (std::uint32_t k = 0; k < batch_.size; ++k) {
     *next = {{batch_.x[k], batch_.y[k], batch_.z[k]}, batch_.nearest[k], batch_.row[k], batch_.column[k]};
-    next += batch_.nearest[k] < infinity;  // branch-free, since the branch is unpredictable
+    next += batch_.nearest[k] < kFloatInfinity;  // branch-free, since the branch is unpredictable
   }
   const auto size = static_cast<std::uint32_t>(next - listed_.data()), added = size - listed_size_;
   listed_size_ = size;
   batch_.size = 0;
-  if (listed_size_ < rays_at_once) return added;
+  if (listed_size_ < kRaysAtOnce) return added;
   end_rays(rays);
   settle();
   rays.begin = 0;
@@ -537,7 +537,7 @@ std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
 // Ends a list: all rays of a voxel, or as many as are traced at once.
 void SampledVoxelCounter::end_rays(VoxelRays& rays) {
   rays.end = listed_size_;
-  if (rays.occluder != RayBundle::no_hit) drop_hidden(rays, rays.occluder);
+  if (rays.occluder != RayBundle::kNoHit) drop_hidden(rays, rays.occluder);
   listed_size_ = rays.end;
   if (rays.end == rays.begin) return;
   voxel_rays_.push_back(rays);
@@ -575,16 +575,16 @@ void SampledVoxelCounter::settle() {
     const SceneData& scene = rays_->scene();
     const bool stored = !scene.shares();
     for (const Probe& probe : probes_) {
-      if (stored && probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
+      if (stored && probe.hit != RayBundle::kNoHit) __builtin_prefetch(&scene.triangles[probe.hit]);
     }
     for (const Probe& probe : probes_) {
-      if (!stored || probe.hit == RayBundle::no_hit) continue;
+      if (!stored || probe.hit == RayBundle::kNoHit) continue;
       for (const std::uint32_t corner : scene.triangles[probe.hit]) __builtin_prefetch(&scene.positions[corner]);
     }
     std::size_t kept = 0;
     for (std::size_t k = 0; k < voxel_rays_.size(); ++k) {
       VoxelRays rays = voxel_rays_[k];
-      if (probes_[k].hit == RayBundle::no_hit) {
+      if (probes_[k].hit == RayBundle::kNoHit) {
         rays.probed = true;
         visible_.push_back(rays);
         continue;
@@ -639,7 +639,7 @@ void SampledVoxelCounter::cast(VoxelRays& rays, std::uint32_t many) {
     bundle_.end[slot] = rays.farthest;
     cast_ray_[slot] = rays.begin;
     cast_voxel_[slot] = rays.voxel;
-    if (bundle_.size == RayBundle::capacity) finish();
+    if (bundle_.size == RayBundle::kCapacity) finish();
   }
 }
 
@@ -650,12 +650,12 @@ void SampledVoxelCounter::finish() {
   hits_.size = 0;
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
     const std::uint32_t triangle = bundle_.primitive[slot];
-    if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;
+    if (triangle == RayBundle::kNoHit || !surface.surveyed(triangle)) continue;
     const Ray& ray = listed_[cast_ray_[slot]];
     hits_.add(bundle_, slot, rays_->ray(ray.row, ray.column));
   }
   rays_->find_ranges(*station_, hits_, true);
-  std::array<Passed, RayBundle::capacity> passed;
+  std::array<Passed, RayBundle::kCapacity> passed;
   const bool behind_glass = rays_->glass() && rays_->glass()->follow(bundle_.origin, hits_, nullptr, passed);
   for (std::uint32_t k = 0; k < hits_.size; ++k) {
     const std::uint32_t slot = hits_.slot[k], i = cast_voxel_[slot];

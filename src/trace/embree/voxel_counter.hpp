@@ -24,7 +24,7 @@ inline double triangle_margin(double pad) { return 64 * pad; }
 // at once. Not thread-safe.
 class SampledVoxelCounter {
  public:
-  static constexpr std::uint32_t block = BoxBatch::capacity;
+  static constexpr std::uint32_t kBlock = BoxBatch::kCapacity;
 
   // `scanners`: indexed by TraceStation::scanner. `pad`: rounding_pad() of everything in sight. Borrows both.
   SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad);
@@ -32,7 +32,7 @@ class SampledVoxelCounter {
   // Counts voxels first, first + 1, …: points of all stations (saturating), and a bit for each station with a point
   // there. Unless `stop_at` is 0, counting stops once a voxel has that many points and its stations are known. `masks`
   // and `leave_out` are empty or as long as `counts`; voxels with a byte other than 0 in `leave_out` are not counted.
-  // REQUIRES: at most `block` voxels; counts and masks are 0.
+  // REQUIRES: at most `kBlock` voxels; counts and masks are 0.
   void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
              std::span<std::uint32_t> counts, std::span<std::uint64_t> masks,
              std::span<const std::uint8_t> leave_out = {});
@@ -48,12 +48,12 @@ class SampledVoxelCounter {
   };
   // Some of the rays that may cross a cube, as arrays.
   struct RayBatch {
-    static constexpr std::uint32_t capacity = 64, step = 8;  // step: rays written at a time, even if fewer are needed
+    static constexpr std::uint32_t kCapacity = 64, kStep = 8;  // step: rays written at a time, even if fewer are needed
     std::uint32_t size = 0;
-    alignas(64) std::array<float, capacity + step> x, y, z;
-    alignas(64) std::array<std::uint32_t, capacity + step> row, column;
-    alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
-    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the current plane
+    alignas(64) std::array<float, kCapacity + kStep> x, y, z;
+    alignas(64) std::array<std::uint32_t, kCapacity + kStep> row, column;
+    alignas(64) std::array<float, kCapacity> nearest;  // no hit that counts is nearer; infinity: there is none
+    alignas(64) std::array<float, kCapacity> px, py, pz, slant, candidate;  // of the current plane
   };
   // Facts about one voxel of the block, known before its rays are listed.
   struct Look {
@@ -62,7 +62,7 @@ class SampledVoxelCounter {
     double reach = 0;                            // largest movement of its hits by noise
     Box hits;                                    // holds every hit that counts, relative to the head
     bool sure = false;                           // every hit that counts lies on a plane that crosses the voxel
-    std::uint32_t occluder = RayBundle::no_hit;  // triangle before the voxel that hides some of it
+    std::uint32_t occluder = RayBundle::kNoHit;  // triangle before the voxel that hides some of it
   };
   // A plane, and the head's height over it.
   struct Ahead {
@@ -89,7 +89,7 @@ class SampledVoxelCounter {
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
     bool probed = false;  // its first ray was probed
-    std::uint32_t occluder = RayBundle::no_hit;
+    std::uint32_t occluder = RayBundle::kNoHit;
   };
   struct Ray {
     Float3 d;
@@ -150,13 +150,13 @@ class SampledVoxelCounter {
   std::span<const std::uint8_t> leave_out_;
   std::uint64_t traced_ = 0;
 
-  BoxBatch boxes_;                                              // around the points that count, of looks_
-  alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
-  std::array<bool, block> open_;  // by voxel of the block: true if the current station must check it
+  BoxBatch boxes_;                                               // around the points that count, of looks_
+  alignas(64) std::array<double, kBlock> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
+  std::array<bool, kBlock> open_;  // by voxel of the block: true if the current station must check it
   std::vector<std::pair<std::uint32_t, SeenTriangle>> met_;
   RayBatch batch_;
   std::vector<SeenTriangle> hiders_;                      // of tiles of the current window
-  std::array<Ahead, SampledVoxels::most_planes> planes_;  // of the current voxel
+  std::array<Ahead, SampledVoxels::kMostPlanes> planes_;  // of the current voxel
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
   std::vector<Look> looks_;
@@ -164,8 +164,8 @@ class SampledVoxelCounter {
   std::vector<VoxelRays> voxel_rays_, visible_;
   std::vector<Probe> probes_;
   RayBundle bundle_;
-  Hits hits_;                                                             // of the bundle
-  std::array<std::uint32_t, RayBundle::capacity> cast_ray_, cast_voxel_;  // of the bundle
+  Hits hits_;                                                              // of the bundle
+  std::array<std::uint32_t, RayBundle::kCapacity> cast_ray_, cast_voxel_;  // of the bundle
 };
 
 }  // namespace vantage

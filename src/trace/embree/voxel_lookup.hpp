@@ -15,12 +15,12 @@ namespace vantage {
 // 16 bytes a brick. Immutable.
 class BrickPrefixes {
  public:
-  static constexpr std::uint32_t words = 8;
+  static constexpr std::uint32_t kWords = 8;
 
   explicit BrickPrefixes(const VoxelGrid& grid) : before_(grid.bricks().size()) {
     parallel::for_all(std::size_t{0}, before_.size(), [&](std::size_t k) {
       int sum = 0;
-      for (std::uint32_t w = 0; w < words; ++w) {
+      for (std::uint32_t w = 0; w < kWords; ++w) {
         before_[k][w] = static_cast<std::uint16_t>(sum);
         sum += std::popcount(word(grid.bricks()[k], w));
       }
@@ -33,14 +33,14 @@ class BrickPrefixes {
   std::uint32_t before(std::uint32_t brick, std::uint32_t w) const { return before_[brick][w]; }
 
  private:
-  std::vector<std::array<std::uint16_t, words>> before_;
+  std::vector<std::array<std::uint16_t, kWords>> before_;
 };
 
 // VoxelGrid::index_of for the points of a bundle, step by step over all of them. Arithmetic uses vector registers, and
 // many loads are in flight at once: at practical resolutions neither hash table nor bricks fit into a cache.
 class VoxelLookup {
  public:
-  static constexpr std::uint32_t capacity = 256;
+  static constexpr std::uint32_t kCapacity = 256;
 
   VoxelLookup(const VoxelGrid& grid, const BrickPrefixes& prefixes)
       : prefixes_(prefixes),
@@ -52,7 +52,7 @@ class VoxelLookup {
         cells_(grid.slots().empty() ? 0.0f : static_cast<float>(1u << grid.depth())) {}
 
   void clear() { size_ = 0; }
-  // REQUIRES: at most `capacity` calls since clear().
+  // REQUIRES: at most `kCapacity` calls since clear().
   void add(const Float3& p) {
     x_[size_] = p.x;
     y_[size_] = p.y;
@@ -180,12 +180,12 @@ class VoxelLookup {
   std::array<float, 3> min_;
   float inverse_size_, cells_;
   std::uint32_t size_ = 0;
-  alignas(64) std::array<float, capacity> x_, y_, z_;
-  alignas(64) std::array<std::uint32_t, capacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
-  alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // slot by the hash; Morton code in the brick
-  alignas(64) std::array<std::uint32_t, capacity> changes_, brick_changes_;  // from the point before; 0: none
-  std::array<std::uint32_t, capacity + 1> begin_;                            // first point of each run in one cell
-  std::array<Run, capacity> runs_;
+  alignas(64) std::array<float, kCapacity> x_, y_, z_;
+  alignas(64) std::array<std::uint32_t, kCapacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
+  alignas(64) std::array<std::uint32_t, kCapacity> slot_, code_;  // slot by the hash; Morton code in the brick
+  alignas(64) std::array<std::uint32_t, kCapacity> changes_, brick_changes_;  // from the point before; 0: none
+  std::array<std::uint32_t, kCapacity + 1> begin_;                            // first point of each run in one cell
+  std::array<Run, kCapacity> runs_;
 };
 
 }  // namespace vantage

@@ -23,7 +23,7 @@ enum class RayQuestion : std::uint32_t {
 // Two slots of memory hold rays and answers, so that one can be filled and read while the other is at work.
 class RayFinder {
  public:
-  static constexpr std::size_t slots = 2;
+  static constexpr std::size_t kSlots = 2;
 
   virtual ~RayFinder() = default;
   virtual const EngineInfo& info() const = 0;

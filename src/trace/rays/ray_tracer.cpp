@@ -278,13 +278,13 @@ const Scene& RayTracer::scene() const noexcept { return impl_->scene; }
 const EngineInfo& RayTracer::engine() const noexcept { return impl_->engine; }
 
 RayHits RayTracer::nearest(const Rays& rays, const RayOptions& options, const Progress& progress) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const SceneData& data = *impl_->data;
   const std::size_t n = impl_->checked(rays, options);
   RayHits hits;
   // In parallel, since first writes to fresh memory take most of the time.
   tbb::task_group arrays;
-  arrays.run([&] { hits.position.assign(n, {nan, nan, nan}); });
+  arrays.run([&] { hits.position.assign(n, {kNan, kNan, kNan}); });
   arrays.run([&] { hits.normal.resize(n); });
   arrays.run([&] { hits.range_m.assign(n, kInfinity); });
   arrays.run([&] { hits.reflectivity.resize(n), hits.diffuse.resize(n); });

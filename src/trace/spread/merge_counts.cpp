@@ -23,8 +23,8 @@ void add_field(PassField& field, PassField&& part) {
     field = std::move(part);
     return;
   }
-  constexpr std::size_t grain = std::size_t{1} << 16;
-  parallel::for_all(tbb::blocked_range<std::size_t>(0, field.count.size(), grain), [&](const auto& range) {
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  parallel::for_all(tbb::blocked_range<std::size_t>(0, field.count.size(), kGrain), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       const std::uint32_t sum = field.count[k] + part.count[k];
       field.count[k] = sum < part.count[k] ? std::numeric_limits<std::uint32_t>::max() : sum;

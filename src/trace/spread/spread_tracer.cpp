@@ -16,7 +16,7 @@ namespace vantage {
 namespace {
 
 // Estimated cost of copying a field of counts and masks from a device and merging it, until measured.
-constexpr double first_merge_seconds_a_voxel = 1e-8;
+constexpr double kFirstMergeSecondsAVoxel = 1e-8;
 
 // "2 x NVIDIA H200", "NVIDIA H200, Intel Xeon (16 threads)".
 EngineInfo info_of_all(const std::vector<std::unique_ptr<Tracer>>& tracers) {
@@ -67,7 +67,7 @@ SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const T
       pool_(std::move(tracers), std::move(warn)),
       split_(options.split),
       population_(options.population),
-      merge_seconds_a_voxel_(first_merge_seconds_a_voxel) {}
+      merge_seconds_a_voxel_(kFirstMergeSecondsAVoxel) {}
 
 void SpreadTracer::set_goal_density(double goal) {
   Tracer::set_goal_density(goal);

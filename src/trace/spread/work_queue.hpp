@@ -24,8 +24,8 @@ void follow_rates(std::vector<double>& shares, std::span<const double> rates);
 // (factoring: Hummel, Schonberg, Flynn, 1992).
 class WorkQueue {
  public:
-  static constexpr double factored = 0.9;
-  explicit WorkQueue(std::size_t items, double of_rest = factored) : items_(items), of_rest_(of_rest) {}
+  static constexpr double kFactored = 0.9;
+  explicit WorkQueue(std::size_t items, double of_rest = kFactored) : items_(items), of_rest_(of_rest) {}
 
   bool empty() const { return next_ == items_ && returned_.empty(); }
   // Returns a chunk for a worker that does the part `share` of all work. `known`: true if its rate was measured;

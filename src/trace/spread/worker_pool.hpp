@@ -19,7 +19,7 @@ struct WorkerRates {
   std::vector<Rate> of_workers = {};
   std::vector<double> shares = {};  // of all work, from these rates
   // Part of the remaining items handed out in one round; 1 if all items cost the same, so that rates hold.
-  double of_rest = WorkQueue::factored;
+  double of_rest = WorkQueue::kFactored;
 };
 
 class WorkerPool {

@@ -122,7 +122,7 @@ DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device) 
     return std::find(extensions.begin(), extensions.end(), name) != extensions.end();
   };
   bool all_ray_query = true;
-  for (const char* name : ray_query_extensions)
+  for (const char* name : kRayQueryExtensions)
     if (!has(name)) {
       a.ray_query_lacks.emplace_back(name);
       all_ray_query = false;

@@ -21,11 +21,11 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, Where where, const char*
 
   VkMemoryRequirements requirements{};
   device.vk().vkGetBufferMemoryRequirements(device.handle(), buffer, &requirements);
-  constexpr VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  VkMemoryPropertyFlags wanted = visible;
+  constexpr VkMemoryPropertyFlags kVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkMemoryPropertyFlags wanted = kVisible;
   if (where == Where::device) wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   // Reading from uncached memory is slow; most devices offer a cached kind.
-  if (where == Where::download && device.has_memory_type(visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT))
+  if (where == Where::download && device.has_memory_type(kVisible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT))
     wanted |= VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   VkMemoryAllocateFlagsInfo flags{};
   flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;

@@ -10,10 +10,10 @@
 namespace vantage::vulkan {
 namespace {
 
-constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
 // Submissions take about a second; even a large structure takes a software device a minute at most.
-constexpr std::uint64_t wait_ns = 10'000'000'000;
-constexpr int most_waits = 60;
+constexpr std::uint64_t kWait_ns = 10'000'000'000;
+constexpr int kMostWaits = 60;
 
 }  // namespace
 
@@ -83,8 +83,8 @@ void Commands::wait() {
   const VolkDeviceTable& vk = device_.vk();
   const VkFence fence = fence_.get();
   VkResult result = VK_TIMEOUT;
-  for (int k = 0; k < most_waits && result == VK_TIMEOUT; ++k)
-    result = vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, wait_ns);
+  for (int k = 0; k < kMostWaits && result == VK_TIMEOUT; ++k)
+    result = vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, kWait_ns);
   if (result == VK_TIMEOUT) {
     device_.give_up();
     throw Error(Errc::device_failure,
@@ -100,7 +100,7 @@ void Commands::wait() {
 double Commands::run_and_download(const Record& record, std::span<const Download> wanted) {
   VkDeviceSize bytes = 0;
   for (const Download& d : wanted) bytes += d.bytes;
-  if (bytes > staging_bytes) {
+  if (bytes > kStagingBytes) {
     const double seconds = run(record);
     for (const Download& d : wanted) download(d.from, d.to, d.bytes);
     return seconds;
@@ -127,7 +127,7 @@ double Commands::run_and_download(const Record& record, std::span<const Download
 }
 
 void Commands::stage(VkDeviceSize bytes) {
-  const VkDeviceSize wanted = std::min(bytes, staging_bytes);
+  const VkDeviceSize wanted = std::min(bytes, kStagingBytes);
   if (!staging_up_ || staging_up_.size() < wanted)
     staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");
 }
@@ -162,7 +162,7 @@ void Commands::scatter(const Buffer& to, const void* values, VkDeviceSize size, 
 
 void Commands::download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset) {
   if (bytes == 0) return;
-  const VkDeviceSize wanted = std::min(bytes, staging_bytes);
+  const VkDeviceSize wanted = std::min(bytes, kStagingBytes);
   if (!staging_down_ || staging_down_.size() < wanted)
     staging_down_ = Buffer(device_, wanted, Buffer::Where::download, "staging down");
   for (VkDeviceSize done = 0; done < bytes; done += staging_down_.size()) {

@@ -9,9 +9,9 @@
 namespace vantage::vulkan {
 namespace {
 
-constexpr std::uint32_t most_stations = 64;
-// dispatch_bytes: of an indirect dispatch
-constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;
+constexpr std::uint32_t kMostStations = 64;
+// kDispatchBytes: of an indirect dispatch
+constexpr VkDeviceSize kWordBytes = sizeof(std::uint32_t), kDispatchBytes = 3 * kWordBytes;
 
 KernelVariant count_kernel(Kernel kernel, const DeviceScanner& scanner, bool turned,
                            const Tracer::CountOptions& options) {
@@ -97,19 +97,19 @@ class VulkanTracer::ExactCount {
       if (std::ranges::any_of(stations_, [&](const TraceStation& one) { return one.turn.has_value() == turned; }))
         t_.kernels_.compile(t_.count_kernels(*scanner_, turned, options_));
     if (!options_.skip) return;
-    t_.ensure(t_.tiles_.far, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
+    t_.ensure(t_.tiles_.far, std::uint64_t{schedule_->tiles()} * CountSchedule::kStationsPerSubmission * kWordBytes,
               "tile far");
-    t_.ensure(t_.tiles_.list, schedule_->list_words() * word, "tile list");
+    t_.ensure(t_.tiles_.list, schedule_->list_words() * kWordBytes, "tile list");
     if (tile_pass_) t_.ensure(t_.tiles_.starts, schedule_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
   }
 
   void ensure_buffers() {
-    t_.ensure(t_.sums_.counts, voxels_ * word, "counts");
+    t_.ensure(t_.sums_.counts, voxels_ * kWordBytes, "counts");
     if (mask_words_) t_.ensure(t_.sums_.masks, masks_bytes(), "station masks");
     t_.ensure(t_.sums_.station_counters, sizeof counters_, "station counters");
     t_.ensure_totals(1, 1, stride_);
     if (!options_.skip) return;
-    t_.ensure(t_.tiles_.dispatch, CountSchedule::parts_per_submission * dispatch_bytes, "tile dispatch",
+    t_.ensure(t_.tiles_.dispatch, CountSchedule::kPartsPerSubmission * kDispatchBytes, "tile dispatch",
               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     t_.ensure(t_.tiles_.rays, sizeof tile_rays_, "tile rays");
   }
@@ -128,7 +128,7 @@ class VulkanTracer::ExactCount {
     };
     std::vector<Commands::Download> wanted;
     if (last) {
-      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * kWordBytes});
       wanted.push_back({t_.sums_.station_counters, counters_.data(), sizeof counters_});
       if (options_.skip) wanted.push_back({t_.tiles_.rays, &tile_rays_, sizeof tile_rays_});
     }
@@ -136,7 +136,7 @@ class VulkanTracer::ExactCount {
   }
 
   void record_start(const Recorder& r) {
-    r.zero(t_.sums_.counts, 0, voxels_ * word);
+    r.zero(t_.sums_.counts, 0, voxels_ * kWordBytes);
     if (mask_words_) r.zero(t_.sums_.masks, 0, masks_bytes());
     r.zero(t_.sums_.station_counters);
     if (options_.skip) r.zero(t_.tiles_.rays);
@@ -170,7 +170,7 @@ class VulkanTracer::ExactCount {
     const BoundPipeline pipeline = pipeline_of(Kernel::count, part);
     const CountPush push = count_push(part, k);
     if (options_.skip) {
-      r.dispatch_indirect(pipeline, push, t_.tiles_.dispatch, k * dispatch_bytes);
+      r.dispatch_indirect(pipeline, push, t_.tiles_.dispatch, k * kDispatchBytes);
     } else {
       r.dispatch(pipeline, push, groups_of(scanner_->pattern().columns(), block_columns),
                  groups_of(part.row_count, scanner_->rows_of_group()));
@@ -193,9 +193,9 @@ class VulkanTracer::ExactCount {
   // `k`: index of the part in its submission.
   TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
-    push.tile_far = t_.tiles_.far.address() + std::uint64_t{part.slot} * schedule_->tiles() * word;
-    push.tile_list = t_.tiles_.list.address() + part.list * word;
-    push.dispatch = t_.tiles_.dispatch.address() + k * dispatch_bytes;
+    push.tile_far = t_.tiles_.far.address() + std::uint64_t{part.slot} * schedule_->tiles() * kWordBytes;
+    push.tile_list = t_.tiles_.list.address() + part.list * kWordBytes;
+    push.dispatch = t_.tiles_.dispatch.address() + k * kDispatchBytes;
     push.rays = t_.tiles_.rays.address();
     if (tile_pass_) push.starts = t_.tiles_.starts.address() + part.list * tile_pass_->bytes_per_tile;
     const Float3& origin = stations_[part.station].origin;
@@ -210,7 +210,7 @@ class VulkanTracer::ExactCount {
     const TraceStation& station = stations_[part.station];
     CountPush push{};
     push.counts = t_.sums_.counts.address();
-    push.masks = mask_words_ ? t_.sums_.masks.address() + std::uint64_t{station.bit() / 32} * voxels_ * word : 0;
+    push.masks = mask_words_ ? t_.sums_.masks.address() + std::uint64_t{station.bit() / 32} * voxels_ * kWordBytes : 0;
     push.counters = t_.sums_.station_counters.address();
     push.origin = {station.origin.x, station.origin.y, station.origin.z};
     set_turn(push.turn, station);
@@ -255,7 +255,7 @@ class VulkanTracer::ExactCount {
 
   void read_field(PassField& field) {
     field.count.resize(voxels_);
-    t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * word);
+    t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * kWordBytes);
     field.stations.resize(options_.masks ? voxels_ : 0);
     constexpr std::uint32_t kTogether = 1 << 22;  // voxels whose masks are in transfer at once
     std::array<std::vector<std::uint32_t>, 2> bits;
@@ -263,8 +263,8 @@ class VulkanTracer::ExactCount {
       const std::uint32_t count = std::min(kTogether, voxels_ - first);
       for (std::uint32_t w = 0; w < mask_words_; ++w) {
         bits[w].resize(count);
-        t_.commands_.download(t_.sums_.masks, bits[w].data(), count * word,
-                              (std::uint64_t{w} * voxels_ + first) * word);
+        t_.commands_.download(t_.sums_.masks, bits[w].data(), count * kWordBytes,
+                              (std::uint64_t{w} * voxels_ + first) * kWordBytes);
       }
       parallel::for_all(std::uint32_t{0}, count, [&](std::uint32_t v) {
         field.stations[first + v] = bits[0][v] | (mask_words_ > 1 ? std::uint64_t{bits[1][v]} << 32 : 0);
@@ -272,7 +272,7 @@ class VulkanTracer::ExactCount {
     }
   }
 
-  VkDeviceSize masks_bytes() const { return std::uint64_t{voxels_} * mask_words_ * word; }
+  VkDeviceSize masks_bytes() const { return std::uint64_t{voxels_} * mask_words_ * kWordBytes; }
 
   VulkanTracer& t_;
   std::vector<std::vector<TraceStation>> stations_by_scanner_;
@@ -288,7 +288,7 @@ class VulkanTracer::ExactCount {
   std::optional<Traversal::TilePass> tile_pass_;
   // Read back from the device.
   std::vector<std::uint32_t> totals_;
-  std::array<std::uint64_t, std::size_t{station_counters} * most_stations> counters_{};  // of every place
+  std::array<std::uint64_t, std::size_t{station_counters} * kMostStations> counters_{};  // of every place
   std::uint64_t tile_rays_ = 0;
 };
 

@@ -23,9 +23,9 @@ std::vector<CountPart> CountSchedule::next(double rays) {
   const double tile_rows = std::floor(rays / (static_cast<double>(columns_) * tile_side));
   const auto at_once = static_cast<std::uint32_t>(
       std::clamp(tile_rows * tile_side, double{tile_side}, static_cast<double>(rows_per_part_)));
-  while (!finished() && (parts.empty() || scheduled < rays) && parts.size() < parts_per_submission) {
+  while (!finished() && (parts.empty() || scheduled < rays) && parts.size() < kPartsPerSubmission) {
     const bool same_station = !parts.empty() && parts.back().station == station_;
-    if (!same_station && slots == stations_per_submission) break;
+    if (!same_station && slots == kStationsPerSubmission) break;
     if (!same_station) ++slots;
     parts.push_back({station_, row_, std::min(at_once, rows_ - row_), slots - 1, list});
     list += 1 + tiles_of(parts.back());
@@ -51,7 +51,7 @@ std::uint32_t CountSchedule::tiles_of(const CountPart& part) const {
   return groups_of(part.row_count, tile_side) * tiles_in_row();
 }
 std::uint64_t CountSchedule::list_words() const {
-  return std::uint64_t{tiles()} * stations_per_submission + parts_per_submission;
+  return std::uint64_t{tiles()} * kStationsPerSubmission + kPartsPerSubmission;
 }
 
 bool CountHeadroom::clamp_before(std::uint64_t rays) {

@@ -18,7 +18,7 @@ struct CountPart {
 // Cuts all rows of all stations into parts, and parts into submissions, in order.
 class CountSchedule {
  public:
-  static constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
+  static constexpr std::uint32_t kStationsPerSubmission = 16, kPartsPerSubmission = 256;
 
   // REQUIRES: rows_per_part is a multiple of tile_side, so that no tile belongs to two parts.
   CountSchedule(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);

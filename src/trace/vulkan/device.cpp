@@ -44,8 +44,8 @@ Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, co
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   if (ray_query) {
-    info.enabledExtensionCount = static_cast<std::uint32_t>(ray_query_extensions.size());
-    info.ppEnabledExtensionNames = ray_query_extensions.data();
+    info.enabledExtensionCount = static_cast<std::uint32_t>(kRayQueryExtensions.size());
+    info.ppEnabledExtensionNames = kRayQueryExtensions.data();
   }
   check(vk.vkCreateDevice(physical, &info, nullptr, &device_), "vkCreateDevice");
   vk_ = instance_->functions_of(device_);

@@ -14,25 +14,26 @@
 namespace vantage::vulkan {
 namespace {
 
-constexpr double word_bytes = 4, vertex = 12, triangle = 12;
-constexpr double most_staging = 1 << 25;  // commands.cpp
+constexpr double kBytesOfWord = 4, kBytesOfVertex = 12, kBytesOfTriangle = 12;
+constexpr double kMostStaging = 1 << 25;  // commands.cpp
 // Per triangle, measured (docs/evidence/reliability.md): nodes of our tree, most of whose leaves hold two triangles;
 // bytes of a driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
-constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
+constexpr double kTreeNodes = 0.6, kBytesOfStructure = 112, kBytesOfScratch = 64;
 
 // Returns the bytes of a tree of our own, which glass has on every engine.
 double tree(const DeviceLoad& load) {
-  constexpr double own = tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle);
+  constexpr double kBytesOfTree = kTreeNodes * sizeof(BvhNode) + sizeof(BvhTriangle);
   if (load.engine == Engine::compute_bvh)
-    return load.triangles * own + load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
-  return load.triangles * (word_bytes + structure) + load.runs * (sizeof(QueryInstance) + structure) + load.glass * own;
+    return load.triangles * kBytesOfTree + load.runs * (sizeof(BvhPlacement) + sizeof(BvhNode) + sizeof(BvhTriangle));
+  return load.triangles * (kBytesOfWord + kBytesOfStructure) + load.runs * (sizeof(QueryInstance) + kBytesOfStructure) +
+         load.glass * kBytesOfTree;
 }
 
 double places(const DeviceLoad& load) { return load.runs * (sizeof(TriangleRun) + sizeof(MeshTransform)); }
 
 double build_only(const DeviceLoad& load) {
   if (load.engine == Engine::compute_bvh) return 0;
-  return load.vertices * vertex + load.triangles * (triangle + (load.software ? 0 : scratch));
+  return load.vertices * kBytesOfVertex + load.triangles * (kBytesOfTriangle + (load.software ? 0 : kBytesOfScratch));
 }
 
 double grid(const DeviceLoad& load) {
@@ -42,35 +43,35 @@ double grid(const DeviceLoad& load) {
 
 // Returns the bytes of corners, for a sample; with shading, also of normals and per-triangle data.
 double surfaces(const DeviceLoad& load) {
-  const double neighbours = load.engine == Engine::compute_bvh ? 3 * word_bytes : 0;
-  const double corners = load.vertices * vertex + load.triangles * (triangle + neighbours);
+  const double neighbours = load.engine == Engine::compute_bvh ? 3 * kBytesOfWord : 0;
+  const double corners = load.vertices * kBytesOfVertex + load.triangles * (kBytesOfTriangle + neighbours);
   if (!load.shaded) return corners;
-  return corners + load.vertices * (load.normals ? vertex : 0) +
-         (load.runs > 0 ? load.runs : load.triangles) * 2 * word_bytes;
+  return corners + load.vertices * (load.normals ? kBytesOfVertex : 0) +
+         (load.runs > 0 ? load.runs : load.triangles) * 2 * kBytesOfWord;
 }
 
 double tiles(const DeviceLoad& load) {
   if (load.rows == 0 || load.columns == 0) return 0;
   const CountSchedule schedule(1, load.rows, load.columns, tile_side);
   const double starts = load.engine == Engine::compute_bvh ? tile_starts * sizeof(TileStart) : 0;
-  return static_cast<double>(schedule.list_words()) * (word_bytes + starts) +
-         double{CountSchedule::stations_per_submission} * schedule.tiles() * word_bytes;
+  return static_cast<double>(schedule.list_words()) * (kBytesOfWord + starts) +
+         double{CountSchedule::kStationsPerSubmission} * schedule.tiles() * kBytesOfWord;
 }
 
 double lists(const DeviceLoad& load) {
   const SampleRoom room = sample_room(load.software, 0);
   return static_cast<double>(room.pairs) * sizeof(SamplePair) + static_cast<double>(room.rays) * sizeof(SampleRay) +
-         static_cast<double>(room.parts) * (word_bytes + sizeof(SampleItem));
+         static_cast<double>(room.parts) * (kBytesOfWord + sizeof(SampleItem));
 }
 
 }  // namespace
 
 double device_bytes(const DeviceLoad& load) {
   const double mask_words = load.stations > 32 ? 2 : 1;
-  const double counts = load.voxels * word_bytes * (1 + mask_words);
-  const double largest_upload =
-      std::max({load.triangles * sizeof(BvhTriangle), load.vertices * vertex, load.bricks * sizeof(VoxelBrick)});
-  const double kept = tree(load) + std::min(largest_upload, most_staging);
+  const double counts = load.voxels * kBytesOfWord * (1 + mask_words);
+  const double largest_upload = std::max(
+      {load.triangles * sizeof(BvhTriangle), load.vertices * kBytesOfVertex, load.bricks * sizeof(VoxelBrick)});
+  const double kept = tree(load) + std::min(largest_upload, kMostStaging);
   return kept +
          std::max(build_only(load), grid(load) + places(load) + surfaces(load) + counts + tiles(load) + lists(load));
 }

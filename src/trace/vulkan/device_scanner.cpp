@@ -19,7 +19,7 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       set_(device, block_, structure) {
   const RayPattern& pattern = *scanner.pattern;
-  if ((!listed() && pattern.rows() > most_groups * block_rows) || longest_walk() >= std::uint64_t{1} << 31)
+  if ((!listed() && pattern.rows() > kMostGroups * block_rows) || longest_walk() >= std::uint64_t{1} << 31)
     throw Error(
         Errc::invalid_argument,
         listed()

@@ -23,7 +23,7 @@ namespace {
 
 // Share of the distances involved. A ray that is moved into the mesh's frame is rounded by some 2^-22 of them, times
 // the condition of the place; so are placed corners, and the way to them.
-constexpr double doubt_of_place = 0x1p-20;
+constexpr double kDoubtOfPlace = 0x1p-20;
 
 MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
   const MeshPlace& place = scene.places[k];
@@ -46,7 +46,7 @@ MeshTransform mesh_transform(const SceneData& scene, std::size_t k) {
           .normal_x = column(place.normal_x),
           .normal_y = column(place.normal_y),
           .normal_z = column(place.normal_z),
-          .doubt = static_cast<float>(doubt_of_place * matrix.condition()),
+          .doubt = static_cast<float>(kDoubtOfPlace * matrix.condition()),
           .size = static_cast<float>(size(farthest) + length(matrix.origin())),
           .mirrored = place.mirrored ? 1u : 0u};
 }

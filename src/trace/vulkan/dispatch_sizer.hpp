@@ -18,15 +18,15 @@ class DispatchSizer {
     if (!(seconds > 0)) return;
     if (rays >= std::min(telling_, 0.5 * rays_))
       // A fast small submission allows only a limited step.
-      rays_ = std::clamp(rays / seconds * seconds_, least_, std::min(most, step * std::max(rays_, rays)));
+      rays_ = std::clamp(rays / seconds * seconds_, least_, std::min(kMost, kStep * std::max(rays_, rays)));
     else if (seconds > seconds_)
-      rays_ = std::max(least_, rays_ * std::max(seconds_ / seconds, 1 / step));
-    else if (seconds < seconds_ / step)
+      rays_ = std::max(least_, rays_ * std::max(seconds_ / seconds, 1 / kStep));
+    else if (seconds < seconds_ / kStep)
       rays_ = std::max(rays_, std::min(2 * rays_, first_));
   }
 
  private:
-  static constexpr double step = 8, most = 1e12;
+  static constexpr double kStep = 8, kMost = 1e12;
   double seconds_, first_, least_, telling_, rays_;
 };
 

@@ -8,9 +8,9 @@
 
 namespace vantage::vulkan {
 
-inline constexpr std::array ray_query_extensions{VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                                 VK_KHR_RAY_QUERY_EXTENSION_NAME,
-                                                 VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+inline constexpr std::array kRayQueryExtensions{VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                                VK_KHR_RAY_QUERY_EXTENSION_NAME,
+                                                VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
 // Chain of features, for query and creation alike.
 struct Features {

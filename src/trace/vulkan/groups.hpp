@@ -8,7 +8,7 @@
 
 namespace vantage::vulkan {
 
-inline constexpr std::uint32_t most_groups = 0xFFFF;  // per dimension, on every device
+inline constexpr std::uint32_t kMostGroups = 0xFFFF;  // per dimension, on every device
 
 inline std::uint32_t groups_of(std::uint64_t threads, std::uint32_t size = group_size) {
   return static_cast<std::uint32_t>((threads + size - 1) / size);

@@ -10,7 +10,7 @@
 namespace vantage::vulkan {
 namespace {
 
-constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 bool loader_present() {
   static const bool present = volkInitialize() == VK_SUCCESS;
@@ -59,7 +59,7 @@ Instance::Instance(bool validation) {
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
   const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-  const char* layer = validation_layer;
+  const char* layer = kValidationLayer;
   VkDebugUtilsMessengerCreateInfoEXT messenger{};
   messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
   messenger.messageSeverity =

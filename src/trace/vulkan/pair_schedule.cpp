@@ -42,8 +42,8 @@ SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch) {
   if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
   // Most parts have no ray, or few rays, that are not known to be stopped.
   const auto room = static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, sample_part));
-  constexpr std::uint32_t rays_of_pair = 8, rays_of_part = 8;
-  return {room / rays_of_pair, room, room / rays_of_part};
+  constexpr std::uint32_t kRaysOfPair = 8, kRaysOfPart = 8;
+  return {room / kRaysOfPair, room, room / kRaysOfPart};
 }
 
 PairSchedule::PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room)
@@ -52,9 +52,9 @@ PairSchedule::PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint3
 }
 
 std::vector<SampleChunk> PairSchedule::next(double rays, const PairsSeen& seen, double at_once) {
-  constexpr double safety = 1.25;
+  constexpr double kSafety = 1.25;
   const double most_rays = std::min(at_once, static_cast<double>(room_.rays));
-  const double most = std::min(most_rays / (seen.rays * safety), room_.pairs / (seen.open * safety));
+  const double most = std::min(most_rays / (seen.rays * kSafety), room_.pairs / (seen.open * kSafety));
   // Every pair may be probed, and no dispatch traces more rays than the list holds.
   const auto most_pairs = static_cast<std::uint64_t>(std::clamp(most, 1.0, static_cast<double>(room_.rays)));
   std::vector<SampleChunk> chunks;

@@ -11,9 +11,9 @@ void Recorder::zero(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize byte
 }
 
 void Recorder::update(const Buffer& buffer, const void* data, VkDeviceSize bytes) const {
-  constexpr VkDeviceSize most = 65536;  // limit of one command
-  for (VkDeviceSize done = 0; done < bytes; done += most)
-    vk_.vkCmdUpdateBuffer(commands_, buffer.handle(), done, std::min(most, bytes - done),
+  constexpr VkDeviceSize kMostBytes = 65536;  // limit of one command
+  for (VkDeviceSize done = 0; done < bytes; done += kMostBytes)
+    vk_.vkCmdUpdateBuffer(commands_, buffer.handle(), done, std::min(kMostBytes, bytes - done),
                           static_cast<const std::byte*>(data) + done);
 }
 

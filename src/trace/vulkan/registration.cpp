@@ -49,7 +49,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.mask_words = of.mask_words;
   push.heads_stride = most;
   push.sums_stride = stride;
-  push.units = static_cast<float>(patch_weight_units / job.patches->largest);
+  push.units = static_cast<float>(kPatchWeightUnits / job.patches->largest);
   push.noise_min_range = registration_.uploaded_noise->min_range;
   push.noise_inverse_span = registration_.uploaded_noise->inverse_span;
   const DeviationErrors errors = deviation_errors(job.scanners.front(), deviation);

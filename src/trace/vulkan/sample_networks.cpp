@@ -60,7 +60,7 @@ class VulkanTracer::SampledCount {
         stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
         room_(tracer.room_for_sample()),
         batch_size_(static_cast<std::size_t>(
-            std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
+            std::clamp<std::uint64_t>(kEntriesPerBatch / std::max(voxels_, 1u), 1, networks.size()))),
         groups_(std::max(job.groups, 1u)),
         rays_(networks.size()),
         totals_(networks.size() * groups_ * stride_) {}
@@ -87,8 +87,8 @@ class VulkanTracer::SampledCount {
   }
 
  private:
-  static constexpr std::uint64_t entries_per_batch = std::uint64_t{1} << 25;  // in counts, and in masks
-  static constexpr VkDeviceSize word = sizeof(std::uint32_t);
+  static constexpr std::uint64_t kEntriesPerBatch = std::uint64_t{1} << 25;  // in counts, and in masks
+  static constexpr VkDeviceSize kWordBytes = sizeof(std::uint32_t);
 
   // Slots of one scanner, all turned or all upright.
   struct Run {
@@ -114,10 +114,10 @@ class VulkanTracer::SampledCount {
     const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
     t_.ensure(t_.sample_.pairs, std::uint64_t{room_.pairs} * sizeof(SamplePair), "sample pairs");
     t_.ensure(t_.sample_.rays, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
-    t_.ensure(t_.sample_.sights, room_.parts * word, "sample sights");
+    t_.ensure(t_.sample_.sights, room_.parts * kWordBytes, "sample sights");
     t_.ensure(t_.sample_.items, std::uint64_t{room_.parts} * sizeof(SampleItem), "sample items");
-    t_.ensure(t_.sums_.counts, entries * word, "counts");
-    if (mask_words_) t_.ensure(t_.sums_.masks, entries * mask_words_ * word, "station masks");
+    t_.ensure(t_.sums_.counts, entries * kWordBytes, "counts");
+    if (mask_words_) t_.ensure(t_.sums_.masks, entries * mask_words_ * kWordBytes, "station masks");
     t_.ensure_totals(networks_.size(), groups_, stride_);
   }
 
@@ -190,8 +190,8 @@ class VulkanTracer::SampledCount {
   std::uint64_t place_along_curve(const Float3& head) const {
     const Box& bounds = t_.scene_.scene->local_bounds;
     const auto cell = [](float at, double low, double high) {
-      constexpr double last = (1 << 16) - 1;
-      return high > low ? static_cast<std::uint32_t>(std::clamp((at - low) / (high - low), 0.0, 1.0) * last) : 0;
+      constexpr double kLast = (1 << 16) - 1;
+      return high > low ? static_cast<std::uint32_t>(std::clamp((at - low) / (high - low), 0.0, 1.0) * kLast) : 0;
     };
     return morton_encode(cell(head.x, bounds.min.x, bounds.max.x), cell(head.y, bounds.min.y, bounds.max.y),
                          cell(head.z, bounds.min.z, bounds.max.z));
@@ -204,7 +204,7 @@ class VulkanTracer::SampledCount {
 
   void hand_out_points(const Batch& batch) {
     std::vector<std::uint32_t> points(std::size_t{voxels_} * batch.size());
-    t_.commands_.download(t_.sums_.counts, points.data(), points.size() * word);
+    t_.commands_.download(t_.sums_.counts, points.data(), points.size() * kWordBytes);
     for (std::size_t n = 0; n < batch.size(); ++n)
       job_.points(batch.first + n, std::span(points).subspan(n * voxels_, voxels_));
   }
@@ -212,7 +212,7 @@ class VulkanTracer::SampledCount {
   std::vector<std::uint64_t> masks_of(const Batch& batch) {
     const std::size_t of_network = std::size_t{voxels_} * mask_words_;
     std::vector<std::uint32_t> words(of_network * batch.size());
-    t_.commands_.download(t_.sums_.masks, words.data(), words.size() * word);
+    t_.commands_.download(t_.sums_.masks, words.data(), words.size() * kWordBytes);
     std::vector<std::uint64_t> masks(std::size_t{voxels_} * batch.size());
     parallel::for_all(std::size_t{0}, batch.size(), [&](std::size_t n) {
       const std::uint32_t* low = words.data() + n * of_network;
@@ -231,7 +231,7 @@ class VulkanTracer::SampledCount {
     const auto station_counts = station_counts_.subspan(batch.first, batch.size());
     const Run& run = batch.runs.front();
     const bool usual = batch.runs.size() == 1 && run.scanner == &t_.scanners_.front() && !run.turned;
-    if (!job.groups && voxels_ <= patches_in_64_bits && usual) {
+    if (!job.groups && voxels_ <= kPatchesIn64Bits && usual) {
       auto sums = t_.sum_registration(job, {networks, station_counts, voxels_, mask_words_});
       for (RegistrationSums& one : sums) registration_.push_back({std::move(one)});
       return;
@@ -248,17 +248,17 @@ class VulkanTracer::SampledCount {
   std::pair<std::vector<SampleTally>, double> submit(const Batch& batch, const Submission& submission) {
     const std::vector<SampleChunk>& chunks = submission.chunks;
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
-    t_.ensure(t_.sample_.control, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    std::vector<Commands::Download> wanted{{t_.sample_.control, control.data(), control.size() * word}};
+    t_.ensure(t_.sample_.control, control.size() * kWordBytes, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    std::vector<Commands::Download> wanted{{t_.sample_.control, control.data(), control.size() * kWordBytes}};
     if (submission.last)
       wanted.push_back({t_.sample_.slot_rays, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
     if (submission.last && batch.end == networks_.size())
-      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * kWordBytes});
     const auto record = [&](const Recorder& r) {
       if (submission.first) record_start(r, batch);
       r.zero(t_.sample_.control);
       if (submission.last) {
-        const VkDeviceSize of_network = std::uint64_t{groups_} * stride_ * word;
+        const VkDeviceSize of_network = std::uint64_t{groups_} * stride_ * kWordBytes;
         r.zero(t_.sums_.totals, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
@@ -315,7 +315,7 @@ class VulkanTracer::SampledCount {
   // Probes, lists and traces one chunk; its control words are number k of the submission.
   void record_chunk(const Recorder& r, const Run& run, const SampleChunk& chunk, std::size_t k) const {
     const auto pipeline = [&](Kernel kernel) { return t_.kernels_.get(run.scanner->set(), variant(run, kernel)); };
-    const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
+    const VkDeviceSize dispatch = (k * control_words + control_dispatch) * kWordBytes;
     SamplePush push = push_of(chunk, k);
     // Dispatches one thread for each item that the control word counts at that time.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
@@ -346,7 +346,7 @@ class VulkanTracer::SampledCount {
     push.rays = t_.sample_.rays.address();
     push.sights = t_.sample_.sights.address();
     push.items = t_.sample_.items.address();
-    push.control = t_.sample_.control.address() + k * control_words * word;
+    push.control = t_.sample_.control.address() + k * control_words * kWordBytes;
     push.counts = t_.sums_.counts.address();
     push.masks = mask_words_ ? t_.sums_.masks.address() : 0;
     push.slot_rays = t_.sample_.slot_rays.address();
@@ -397,12 +397,12 @@ class VulkanTracer::SampledCount {
   }
 
   void learn_of_pairs(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
-    constexpr std::uint64_t telling = 1000;  // fewer pairs say little about the rest
+    constexpr std::uint64_t kTellingPairs = 1000;  // fewer pairs say little about the rest
     const auto learn = [](double& seen, double now) { seen = 0.5 * (seen + now); };
     for (std::size_t k = chunks.size(); k-- > 0;) {
       const auto pairs = static_cast<double>(chunks[k].pairs());
       const SampleTally& tally = tallies[k];
-      if (chunks[k].pairs() <= telling) continue;
+      if (chunks[k].pairs() <= kTellingPairs) continue;
       learn(t_.pairs_seen_.open, tally.pairs / pairs);
       if (tally.pairs <= room_.pairs)
         learn(t_.pairs_seen_.rays, (static_cast<double>(tally.probed) + tally.rays) / pairs);

@@ -46,7 +46,7 @@ class VulkanRayFinder final : public RayFinder {
   TraceSet set_;
   std::map<RayQuestion, ComputePipeline> pipelines_;  // compiled when first asked for
   std::size_t room_ = 0;
-  std::array<Slot, slots> slots_;
+  std::array<Slot, kSlots> slots_;
   Buffer rays_, answers_;  // of the slot at work
   double device_seconds_ = 0;
 };

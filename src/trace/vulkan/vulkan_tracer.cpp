@@ -8,11 +8,11 @@ namespace vantage::vulkan {
 
 namespace {
 
-constexpr double seconds_per_exact_submission = 0.25;  // often enough for progress, and to stop in time
+constexpr double kSecondsPerExactSubmission = 0.25;  // often enough for progress, and to stop in time
 // A sampled population is one submission unless it takes longer than this, half of the shortest usual watchdog limit.
-constexpr double seconds_per_sampled_submission = 1;
+constexpr double kSecondsPerSampledSubmission = 1;
 // The first dispatch of an exact submission has this share of the limit, to measure the device's speed.
-constexpr double first_share = 1.0 / 16;
+constexpr double kFirstShare = 1.0 / 16;
 
 // Returns true if two scenes have the same triangles with the same attributes, except for their corners' places.
 bool differ_by_places_alone(const SceneData& one, const SceneData& other) {
@@ -52,9 +52,9 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       device_scene_(device_, commands_, scene_, *traversal_, scanners_),
       kernels_(device_, info_.software, *traversal_, scanners_.front().set(), weakens_through_glass(scene_),
                scene_.scene->shares()),
-      exact_sizer_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
+      exact_sizer_(kSecondsPerExactSubmission, kFirstShare * static_cast<double>(rays_per_dispatch()), 1,
                    static_cast<double>(rays_per_dispatch())),
-      sampled_sizer_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {}
+      sampled_sizer_(kSecondsPerSampledSubmission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {}
 
 std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& engine) {
   const SceneData& scene = *scene_.scene;

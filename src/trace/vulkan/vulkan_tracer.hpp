@@ -34,8 +34,8 @@
 namespace vantage::vulkan {
 
 // Chosen so that a dispatch takes a fraction of a watchdog's limit even on a slow device of its kind.
-inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
-                               software_rays_per_dispatch = std::uint64_t{1} << 19;
+inline constexpr std::uint64_t kHardwareRaysPerDispatch = std::uint64_t{1} << 26,
+                               kSoftwareRaysPerDispatch = std::uint64_t{1} << 19;
 
 // A sample in the kernels' format.
 struct DeviceSample {
@@ -105,7 +105,7 @@ class VulkanTracer final : public Tracer {
   bool limited() const { return scanners_.front().limits(); }  // either all scanners are limited or none
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
-    return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
+    return info_.software ? kSoftwareRaysPerDispatch : kHardwareRaysPerDispatch;
   }
   // Returns the sum of point weights that fills a voxel.
   std::uint64_t goal_point_weight() const {
@@ -126,7 +126,7 @@ class VulkanTracer final : public Tracer {
   std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
     const std::uint64_t rows = rays_per_dispatch() / pattern.columns() / tile_side * tile_side;
     return static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{most_groups} * block_rows));
+        std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{kMostGroups} * block_rows));
   }
 
   // Sets rows in the kernels' format; upright stations need none.

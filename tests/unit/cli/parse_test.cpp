@@ -34,8 +34,8 @@ TEST(Parse, NumbersAreFinite) {
 }
 
 TEST(Parse, RefusalsNameOptionValueAndInterval) {
-  EXPECT_EQ(refusal([] { parse_number("0", "--step", positive); }), "--step: '0' must be above 0");
-  EXPECT_EQ(refusal([] { parse_number("-1", "--height", not_negative); }), "--height: '-1' must be at least 0");
+  EXPECT_EQ(refusal([] { parse_number("0", "--step", kPositive); }), "--step: '0' must be above 0");
+  EXPECT_EQ(refusal([] { parse_number("-1", "--height", kNotNegative); }), "--height: '-1' must be at least 0");
   EXPECT_EQ(refusal([] { parse_number("361", "--horizontal", {.low = 0, .high = 360, .low_included = false}); }),
             "--horizontal: '361' must be above 0 and at most 360");
 }

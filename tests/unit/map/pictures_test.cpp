@@ -224,10 +224,10 @@ TEST(Pictures, TheFrontHasADotForEveryNetwork) {
     const PlanResult result = test::sample_result(problem, 2, 9, networks, 1000);
     draw_front(folder / "front.png", result);
     const test::Drawn front(folder / "front.png");
-    EXPECT_EQ(front.patches(style::orange, 2 * kDot).size(), problem == "coverage-fix" ? 0u : 2u)
+    EXPECT_EQ(front.patches(style::kOrange, 2 * kDot).size(), problem == "coverage-fix" ? 0u : 2u)
         << problem << ": a ring around the answer, and the legend's";
     if (problem != "coverage-overlap-min") {
-      EXPECT_EQ(front.patches(style::blue, kDot).size(), networks + 1) << problem;
+      EXPECT_EQ(front.patches(style::kBlue, kDot).size(), networks + 1) << problem;
       continue;
     }
     for (std::size_t n = 2; n <= 9; ++n) {
@@ -243,7 +243,7 @@ TEST(Pictures, TheHypervolumeIsACurveOverAllIterations) {
   const test::TemporaryFolder folder;
   const PlanResult result = test::sample_result("coverage-overlap-fix", 4, 4, 12);
   draw_hypervolume(folder / "curve.png", result);
-  const auto patches = test::Drawn(folder / "curve.png").patches(style::blue, kDot);
+  const auto patches = test::Drawn(folder / "curve.png").patches(style::kBlue, kDot);
   ASSERT_FALSE(patches.empty());
   const auto longest = std::max_element(patches.begin(), patches.end(),
                                         [](const auto& a, const auto& b) { return a.columns < b.columns; });
@@ -256,8 +256,8 @@ TEST(Pictures, TheHistoryEndsWithTheLastFront) {
   const PlanResult result = test::sample_result("coverage-overlap-fix", 4, 4, 12);
   draw_history_fronts(folder / "history.png", result);
   const test::Drawn history(folder / "history.png");
-  EXPECT_EQ(history.patches(mix({1, 1, 1}, style::blue, 0.85), 60, 6).size(), 12u);
-  EXPECT_EQ(history.patches(style::blue, 60).size(), 1u) << "the legend";
+  EXPECT_EQ(history.patches(mix({1, 1, 1}, style::kBlue, 0.85), 60, 6).size(), 12u);
+  EXPECT_EQ(history.patches(style::kBlue, 60).size(), 1u) << "the legend";
 }
 
 TEST(Pictures, DrawResultsThatHoldLittle) {
@@ -332,7 +332,7 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   EXPECT_GE(plan.patches(number, spot).size(), 5u) << "and the spot that two stand on";
   EXPECT_EQ(none.patches(number, disc).size(), 1u);
   EXPECT_EQ(none.patches(skipped, disc).size(), 0u);
-  EXPECT_GT(plan.near(style::orange, 40), unlinked.near(style::orange, 40) + 200) << "the link, the only one";
+  EXPECT_GT(plan.near(style::kOrange, 40), unlinked.near(style::kOrange, 40) + 200) << "the link, the only one";
   // The map is room and search area: 640 units high at two pixels each, nearly as wide.
   EXPECT_GT(none.ink(), 1'000'000u);
   EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
@@ -347,7 +347,7 @@ TEST(Pictures, PlanViewNamesTheRoomsOfItsFloor) {
       data->rooms.push_back({.name = name, .storey = "", .box = {{x - 1, -2, z}, {x + 1, 2, z + 2.5}}});
     Site site = site_of(Scene(std::shared_ptr<const SceneData>(std::move(data))), floor_of_room());
     draw_plan_view(folder / "plan.png", site, {}, {}, "Rooms");
-    return test::Drawn(folder / "plan.png").near(style::faint, 30);
+    return test::Drawn(folder / "plan.png").near(style::kFaint, 30);
   };
   EXPECT_GT(ink(0), ink(3) + 100) << "above the floor that is shown, they have no name on it";
 }

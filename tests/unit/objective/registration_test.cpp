@@ -373,7 +373,7 @@ TEST(RegistrationError, CountsRangeNoiseByTheRaysOfAFreeView) {
   m.one({10.5, 0, 0}, X, 0.01, 3);
   m.one({-9.5, 0, 0}, X, 0.01, 3);
   NoiseModel noise;
-  noise.sigma.assign(NoiseModel::side * NoiseModel::side, 0.004f);
+  noise.sigma.assign(NoiseModel::kSide * NoiseModel::kSide, 0.004f);
   noise.inverse_span = 0.01f;
   const double points = 0.01 / (100 * 1e-6);  // area / (r² Δh Δv)
   const double s2 = 0.004 * 0.004 / points + model.rho_m * model.rho_m * model.patch_m * model.patch_m / 0.01;
@@ -440,18 +440,18 @@ TEST(RegistrationError, StandardErrorsHold) {
     SCOPED_TRACE(size);
     std::vector<Estimate> estimates(trials);
     tbb::parallel_for(0, trials, [&](int trial) {
-      const auto ranks = voxel_sample(m.masks.size(), size, static_cast<std::uint64_t>(trial) + 1);
+      const auto sample = voxel_sample(m.masks.size(), size, static_cast<std::uint64_t>(trial) + 1);
       Patches some = all;
       some.patches.clear();
       std::vector<std::uint64_t> masks;
-      for (const std::uint32_t rank : ranks) {
-        some.patches.push_back(all.patches[rank]);
-        masks.push_back(m.masks[rank]);
+      for (const std::uint32_t voxel : sample) {
+        some.patches.push_back(all.patches[voxel]);
+        masks.push_back(m.masks[voxel]);
       }
       const auto sums = sum_patches(some, scanner_with({}), m.stations(), 6, masks, 20);
       NetworkCounts counts;
       counts.stations = 6;
-      counts.voxels = ranks.size();
+      counts.voxels = sample.size();
       take_registration(counts, sums);
       estimates[static_cast<std::size_t>(trial)] = registration_estimate(counts, m.masks.size(), options);
     });

@@ -202,7 +202,8 @@ TEST(Candidates, TellWhatIsAttainable) {
   const Simulator& simulator = site.simulator();
   const Candidates found = find_candidates(site, {.first = 8, .most = 64, .sample_voxels = every_voxel});
   double front = 0;
-  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) front += simulator.voxel_centre(rank).x < 5.5;
+  for (std::uint64_t voxel = 0; voxel < simulator.voxel_count(); ++voxel)
+    front += simulator.voxel_centre(voxel).x < 5.5;
   const double share = front / static_cast<double>(simulator.voxel_count());
   EXPECT_GT(share, 0.5);
   EXPECT_LT(share, 0.8);

@@ -39,16 +39,16 @@ struct Walls {
     config.user_size_m = 0.5;
     config.point_spacing_m = 0.1;
     site.emplace(test::site_of(Simulator(quads.scene(), scanner, config)));
-    ranks.resize(simulator().voxel_count());
-    std::iota(ranks.begin(), ranks.end(), 0u);
-    patches = simulator().voxel_patches(ranks);
+    voxels.resize(simulator().voxel_count());
+    std::iota(voxels.begin(), voxels.end(), 0u);
+    patches = simulator().voxel_patches(voxels);
   }
 
   Simulator& simulator() { return site->simulator(); }
 
   Scanner scanner;
   std::optional<Site> site;
-  std::vector<std::uint32_t> ranks;
+  std::vector<std::uint32_t> voxels;
   std::vector<VoxelPatch> patches;
   std::vector<PlacedStation> candidates{at({0, 0, 0}), at({0.2, 0.2, 0})};
 };
@@ -72,8 +72,8 @@ TEST(VoxelPatches, LieOnTheirSurfaces) {
 
 TEST(WhyMissed, TellsEachReason) {
   Walls walls;
-  const std::vector<std::uint32_t> none(walls.ranks.size());
-  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.ranks, none);
+  const std::vector<std::uint32_t> none(walls.voxels.size());
+  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.voxels, none);
   const std::array<WhyMissed, 5> expected{WhyMissed::not_chosen, WhyMissed::hidden, WhyMissed::far, WhyMissed::flat,
                                           WhyMissed::sparse};
   const double face = walls.simulator().voxel_size_m() * walls.simulator().voxel_size_m();
@@ -127,12 +127,12 @@ TEST(WhyMissed, DarkSurfacesAndGlass) {
     EXPECT_FALSE(clash.sees({0, 0, 0}, {2.9, 0, 0}));
     EXPECT_TRUE(clash.ray_passes({0, 0, 0}, {2.9, 0, 0}));
     EXPECT_FALSE(clash.ray_passes({0, 0, 0}, {3.1, 0, 0}));
-    std::vector<std::uint32_t> ranks(site.simulator().voxel_count());
-    std::iota(ranks.begin(), ranks.end(), 0u);
+    std::vector<std::uint32_t> voxels(site.simulator().voxel_count());
+    std::iota(voxels.begin(), voxels.end(), 0u);
     const std::vector<PlacedStation> candidates{at({0, 0, 0})};
-    const std::vector<std::uint32_t> none(ranks.size());
+    const std::vector<std::uint32_t> none(voxels.size());
     std::vector<WhyMissed> why;
-    for (const VoxelStatus& status : why_missed(site, candidates, ranks, none)) why.push_back(status.why);
+    for (const VoxelStatus& status : why_missed(site, candidates, voxels, none)) why.push_back(status.why);
     EXPECT_EQ(std::ranges::count(why, WhyMissed::hidden), 0);
     EXPECT_EQ(std::ranges::count(why, WhyMissed::dark), dark ? std::ssize(why) : 0);
     EXPECT_GT(why.size(), 20u);
@@ -142,16 +142,16 @@ TEST(WhyMissed, DarkSurfacesAndGlass) {
 TEST(WhyMissed, KnowsWhatIsCaptured) {
   Walls walls;
   const auto enough = static_cast<std::uint32_t>(std::ceil(walls.simulator().goal_density()));
-  std::vector<std::uint32_t> points(walls.ranks.size(), enough);
+  std::vector<std::uint32_t> points(walls.voxels.size(), enough);
   points[0] = enough - 1;
-  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.ranks, points);
+  const std::vector<VoxelStatus> status = why_missed(*walls.site, walls.candidates, walls.voxels, points);
   EXPECT_NE(status[0].why, WhyMissed::captured);
   EXPECT_TRUE(
       std::all_of(status.begin() + 1, status.end(), [](const VoxelStatus& s) { return s.why == WhyMissed::captured; }));
-  const std::vector<MissedShare> shares = missed_by_node(walls.simulator(), walls.ranks, status);
+  const std::vector<MissedShare> shares = missed_by_node(walls.simulator(), walls.voxels, status);
   ASSERT_EQ(shares.size(), 6u);
-  EXPECT_EQ(shares[0].voxels, walls.ranks.size());
-  const double part = points[0] / walls.simulator().goal_density(), voxels = static_cast<double>(walls.ranks.size());
+  EXPECT_EQ(shares[0].voxels, walls.voxels.size());
+  const double part = points[0] / walls.simulator().goal_density(), voxels = static_cast<double>(walls.voxels.size());
   EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - (1 - part) / voxels, 1e-6);
   for (const MissedShare& share : shares)
     EXPECT_NEAR(std::accumulate(share.shares.begin(), share.shares.end(), 0.0), 1, 1e-6) << share.node;
@@ -165,9 +165,9 @@ TEST(WhyMissed, KnowsWhatIsCaptured) {
 
 TEST(WhyMissed, RefusesWhatDoesNotFit) {
   Walls walls;
-  const std::vector<std::uint32_t> none(walls.ranks.size()), one(1), outside{0xFFFFFFF0u};
-  EXPECT_THROW(why_missed(*walls.site, walls.candidates, walls.ranks, one), Error);
-  EXPECT_THROW(why_missed(*walls.site, {}, walls.ranks, none), Error);
+  const std::vector<std::uint32_t> none(walls.voxels.size()), one(1), outside{0xFFFFFFF0u};
+  EXPECT_THROW(why_missed(*walls.site, walls.candidates, walls.voxels, one), Error);
+  EXPECT_THROW(why_missed(*walls.site, {}, walls.voxels, none), Error);
   EXPECT_THROW(why_missed(*walls.site, walls.candidates, outside, one), Error);
 }
 

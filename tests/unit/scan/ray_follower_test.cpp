@@ -51,7 +51,7 @@ TEST(Mirrors, AFlatMirrorShowsTheWallBehindIt) {
     }
     ++ghosts;
     EXPECT_NEAR(points.position[k].x, 10, 1e-5) << "3 + 7";
-    EXPECT_EQ(points.voxel[k], no_voxel);
+    EXPECT_EQ(points.voxel[k], kNoVoxel);
     EXPECT_NEAR(points.normal[k][0], -1, 1e-6);
     const double cosine = points.position[k].x / static_cast<double>(points.range_m[k]);
     EXPECT_NEAR(static_cast<double>(points.reflectivity[k]), 0.5 * cosine, 1e-5);

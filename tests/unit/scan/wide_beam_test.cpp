@@ -256,10 +256,10 @@ class VoxelsByCentre {
       : first_(simulator.voxel_centre(0)), size_(simulator.voxel_size_m()) {
     for (std::uint64_t k = 0; k < simulator.voxel_count(); ++k) places_[place(simulator.voxel_centre(k))] = k;
   }
-  // no_voxel if none holds the point.
+  // kNoVoxel if none holds the point.
   std::uint64_t at(const Vec3& point) const {
     const auto found = places_.find(place(point));
-    return found == places_.end() ? no_voxel : found->second;
+    return found == places_.end() ? kNoVoxel : found->second;
   }
 
  private:
@@ -288,7 +288,7 @@ TEST(WideBeam, CountsOfANetworkAreThoseOfItsScans) {
       const ScanSummary scanned =
           simulator.scan(network[k], {.outputs = scan_voxel, .place = k, .beam = beam}, [&](const ScanChunk& chunk) {
             for (const std::uint32_t voxel : chunk.voxel) {
-              if (voxel == no_voxel) continue;
+              if (voxel == kNoVoxel) continue;
               ++points[voxel];
               stations[voxel] |= std::uint64_t{1} << k;
             }
@@ -325,12 +325,12 @@ TEST(WideBeam, MixedPointsInVoxelsOfOtherSurfacesDoNotCount) {
     const double off = std::min(std::abs(p.x - 10), std::abs(p.x - 10.2));
     if (scan.mesh[k] == 2 || off <= 0.005) continue;
     ++expected.points;
-    expected.counted += scan.voxel[k] != no_voxel ? 1 : 0;
+    expected.counted += scan.voxel[k] != kNoVoxel ? 1 : 0;
     const std::uint64_t in = voxels.at(p);
-    if (in == no_voxel) {
-      EXPECT_EQ(scan.voxel[k], no_voxel);
+    if (in == kNoVoxel) {
+      EXPECT_EQ(scan.voxel[k], kNoVoxel);
     } else if (off >= simulator.voxel_size_m()) {  // in none of the walls' voxels, where echoes come from
-      (scan.voxel[k] == no_voxel ? expected.wrong_voxel : of_the_plate) += 1;
+      (scan.voxel[k] == kNoVoxel ? expected.wrong_voxel : of_the_plate) += 1;
     }
   }
   const auto near = [&](std::uint64_t found, std::uint64_t wanted, double part) {

@@ -24,7 +24,7 @@ inline std::uint32_t nearest_hit(const RayCaster& caster, const Float3& origin, 
 inline bool is_stopped(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end) {
   Probe probe{d, end};
   caster.any_hits(origin, start, {&probe, 1});
-  return probe.hit != RayBundle::no_hit;
+  return probe.hit != RayBundle::kNoHit;
 }
 
 }  // namespace vantage::test

@@ -109,7 +109,7 @@ TEST(FieldCounts, WeightsAndGoalsCountInCoverageAlone) {
   const NetworkCounts weighted = reduce_field(field.count, field.stations, 15, 37.3, demands);
   test::expect_equal_counts(weighted, test::reference_counts(field, 15, 37.3, demands));
   for (std::size_t k = 0; k < field.count.size(); ++k)
-    demands.point_weights.push_back(densest_point_weight + static_cast<std::uint32_t>(random.bits() % (1u << 20)));
+    demands.point_weights.push_back(kDensestPointWeight + static_cast<std::uint32_t>(random.bits() % (1u << 20)));
   const NetworkCounts valued = reduce_field(field.count, field.stations, 15, 370.3, demands);
   test::expect_equal_counts(valued, test::reference_counts(field, 15, 370.3, demands));
   EXPECT_GT(valued.saturated, 0u);

@@ -30,7 +30,7 @@ void expect_ranges_as_one_by_one(const SceneData& made) {
   RandomStream random(5);
   const auto hits = std::make_unique<Hits>();
   const auto rays = std::make_unique<RayBundle>();
-  for (const std::uint32_t size : {0u, 1u, 7u, 8u, 9u, 100u, RayBundle::capacity}) {
+  for (const std::uint32_t size : {0u, 1u, 7u, 8u, 9u, 100u, RayBundle::kCapacity}) {
     hits->size = 0;
     const std::vector<std::uint32_t> triangles =
         in_runs(random, size, static_cast<std::uint32_t>(scene->triangles.size()));
@@ -91,7 +91,7 @@ TEST(Hits, RangesForVoxelsLeadToTheVoxelsOfAllRanges) {
     some->size = all->size = 0;
     // Neighbours in a row, beyond the edges of the plane too, some of which the grid does not hold.
     const double up = static_cast<double>(test::between(random, -0.8, 0.8)), from = test::between(random, -1, 0.9);
-    for (std::uint32_t k = 0; k < RayBundle::capacity; ++k) {
+    for (std::uint32_t k = 0; k < RayBundle::kCapacity; ++k) {
       const Vec3 d{from + 4e-4 * k, 1, up};
       const Float3 unit = narrow(d * (1 / std::sqrt(dot(d, d))));
       rays->x[k] = unit.x, rays->y[k] = unit.y, rays->z[k] = unit.z;
@@ -101,7 +101,7 @@ TEST(Hits, RangesForVoxelsLeadToTheVoxelsOfAllRanges) {
     }
     find_ranges(surface, noise, origin, 4, *some, &grid);
     find_ranges(surface, noise, origin, 4, *all);
-    for (std::uint32_t k = 0; k < RayBundle::capacity; ++k) {
+    for (std::uint32_t k = 0; k < RayBundle::kCapacity; ++k) {
       ASSERT_EQ(grid.cell_of(some->point(origin, k)), grid.cell_of(all->point(origin, k))) << round << ", " << k;
       ++(some->range[k] == all->range[k] ? moved : stayed);
     }

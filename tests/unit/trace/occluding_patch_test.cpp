@@ -53,7 +53,7 @@ TEST(OccludingPatches, WhatTheyHideNoRayReaches) {
     float t = 0;
     const Vec3 to = middle * (1 / std::sqrt(dot(middle, middle)));
     const std::uint32_t first = test::nearest_hit(caster, {}, narrow(to), 0.1f, 100, t);
-    if (first == RayBundle::no_hit) continue;
+    if (first == RayBundle::kNoHit) continue;
     // Half of all rays lead to edges; none within the doubt of a corner that was asked about.
     std::vector<Float3> rays;
     for (int r = 0; r < 400; ++r) {
@@ -83,7 +83,7 @@ TEST(OccludingPatches, WhatTheyHideNoRayReaches) {
         return std::sqrt(dot(off, off)) < corner.second;
       };
       if (std::ranges::any_of(doubtful, near)) continue;
-      ASSERT_NE(test::nearest_hit(caster, {}, d, 0.1f, 100, t), RayBundle::no_hit) << "wall " << k;
+      ASSERT_NE(test::nearest_hit(caster, {}, d, 0.1f, 100, t), RayBundle::kNoHit) << "wall " << k;
       EXPECT_LT(t * d.y, box.min.y);
     }
   }
@@ -100,7 +100,7 @@ TEST(OccludingPatches, AHoleHidesNothing) {
   const auto none_near = [](const Vec3&, double) { return false; };
   // The hole is the upper half of the cell from (0, 0) to (1.5, 1.5).
   const std::uint32_t beside = test::nearest_hit(caster, {}, narrow(Vec3{0.25, 1, 0.1}), 0.1f, 100, t);
-  ASSERT_NE(beside, RayBundle::no_hit);
+  ASSERT_NE(beside, RayBundle::kNoHit);
   EXPECT_FALSE(patches.hide(beside, {}, {{0.8, 8, 0.8}, {2.2, 9, 2.2}}, 0.1, none_near));
   EXPECT_TRUE(patches.hide(beside, {}, {{1.2, 8, 0.2}, {1.4, 8.2, 0.4}}, 0.1, none_near));
 }

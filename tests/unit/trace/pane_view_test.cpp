@@ -63,19 +63,19 @@ TEST(PaneView, FindsWhatTheTreeFinds) {
         hits.x[k] = unit.x, hits.y[k] = unit.y, hits.z[k] = unit.z;
         hits.t[k] = static_cast<float>(12 * random.uniform());
       }
-      std::array<Passed, RayBundle::capacity> expected{}, found{};
+      std::array<Passed, RayBundle::kCapacity> expected{}, found{};
       const bool by_tree = glass.follow(head, hits, nullptr, expected),
                  by_view = glass.follow(head, hits, view.get(), found);
       PaneView::Crossings crossings;
       view->find(hits, hits.t, crossings);
       for (std::uint32_t k = 0; k < hits.size; ++k) {
-        const Passed none{1, RayBundle::no_hit, 0}, a = by_tree ? expected[k] : none, b = by_view ? found[k] : none;
+        const Passed none{1, RayBundle::kNoHit, 0}, a = by_tree ? expected[k] : none, b = by_view ? found[k] : none;
         EXPECT_EQ(a.share, b.share);
         EXPECT_EQ(a.pane, b.pane);
         EXPECT_EQ(a.t, b.t);
         behind += a.share < 1 ? 1 : 0;
-        several += crossings.count[k] > 1 && crossings.count[k] <= PaneView::Crossings::most ? 1 : 0;
-        unsure += crossings.count[k] == PaneView::Crossings::unsure ? 1 : 0;
+        several += crossings.count[k] > 1 && crossings.count[k] <= PaneView::Crossings::kMost ? 1 : 0;
+        unsure += crossings.count[k] == PaneView::Crossings::kUnsure ? 1 : 0;
         ++rays;
       }
     }
@@ -91,7 +91,7 @@ TEST(PaneView, FindsWhatTheTreeFinds) {
 TEST(PaneView, IsNotMadeOfTooManyFaces) {
   test::QuadScene scene;
   scene.quad({50, -90, -90}, {0, 180, 0}, {0, 0, 180});
-  for (std::size_t k = 0; k <= PaneView::most_faces / 2; ++k)
+  for (std::size_t k = 0; k <= PaneView::kMostFaces / 2; ++k)
     scene.quad({3, static_cast<float>(k), 0}, {0, 1, 0}, {0, 0, 1}, Role::blocking);
   for (std::size_t m = 1; m < scene.data().meshes.size(); ++m) scene.data().meshes[m].glass = true;
   const auto data = std::make_shared<const SceneData>(scene.data());

@@ -42,16 +42,16 @@ Compared compare(const TraceScene& scene, const TraceStation& station, const Til
     compared.traced += strip.traced;
     compared.rays += strip.rays;
     for (std::uint32_t a = 0; a < ends.tall; ++a) {
-      RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
-      tile.rows = std::min(RayTile::side, rays.pattern().rows() - tile.row);
-      tile.columns = std::min(RayTile::side, rays.pattern().columns() - tile.column);
+      RayTile tile{a * RayTile::kSide, b * RayTile::kSide, 0, 0};
+      tile.rows = std::min(RayTile::kSide, rays.pattern().rows() - tile.row);
+      tile.columns = std::min(RayTile::kSide, rays.pattern().columns() - tile.column);
       rays.gather(station, tile, ends.of(a, b), *bundle);
       if (ends.of(a, b) > 0) rays.caster().cast(*bundle);
       for (std::uint32_t k = 0; k < bundle->size; ++k) {
         const std::uint32_t drawn = strip.triangles(k % tile.columns)[tile.row + k / tile.columns];
-        const std::uint32_t traced = ends.of(a, b) > 0 ? bundle->primitive[k] : RayBundle::no_hit;
-        compared.hits += drawn != Picture::none;
-        compared.differ += drawn != (traced == RayBundle::no_hit ? Picture::none : traced);
+        const std::uint32_t traced = ends.of(a, b) > 0 ? bundle->primitive[k] : RayBundle::kNoHit;
+        compared.hits += drawn != Picture::kNone;
+        compared.differ += drawn != (traced == RayBundle::kNoHit ? Picture::kNone : traced);
       }
     }
   }
@@ -280,8 +280,8 @@ TEST(Picture, ScansAreThoseOfTracing) {
           expect_same_bits(drawn.barycentric, traced.barycentric, "barycentric");
           expect_same_bits(drawn.voxel, traced.voxel, "voxel");
           for (const std::uint32_t triangle : drawn.primitive) {
-            points += triangle != RayBundle::no_hit;
-            on_glass += triangle != RayBundle::no_hit && triangle >= scene.scene->opaque_count();
+            points += triangle != RayBundle::kNoHit;
+            on_glass += triangle != RayBundle::kNoHit && triangle >= scene.scene->opaque_count();
           }
         }
       }

@@ -26,7 +26,7 @@ TEST(PointBuckets, EveryRankHasABucket) {
   for (const std::uint64_t voxels :
        {std::uint64_t{1}, std::uint64_t{256}, std::uint64_t{257}, std::uint64_t{4'000'000'000}}) {
     const PointBuckets buckets(voxels);
-    EXPECT_LT((voxels - 1) >> buckets.shift(), PointBuckets::count) << voxels;
+    EXPECT_LT((voxels - 1) >> buckets.shift(), PointBuckets::kBuckets) << voxels;
   }
 }
 

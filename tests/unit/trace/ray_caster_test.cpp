@@ -51,7 +51,7 @@ TEST(RayCaster, HitsDoNotDependOnTheBundle) {
   RandomStream random(11);
   std::size_t hits = 0;
   for (int k = 0; k < 200; ++k) {
-    const auto rays = cone(random, k % 2 ? 0.05 : 1.5, 1 + random.bits() % RayBundle::capacity, 100);
+    const auto rays = cone(random, k % 2 ? 0.05 : 1.5, 1 + random.bits() % RayBundle::kCapacity, 100);
     caster.cast(*rays);
     std::vector<Probe> probes;
     for (std::uint32_t i = 0; i < rays->size; ++i) probes.push_back({{rays->x[i], rays->y[i], rays->z[i]}, 100});
@@ -59,23 +59,23 @@ TEST(RayCaster, HitsDoNotDependOnTheBundle) {
     for (std::uint32_t i = 0; i < rays->size; ++i) {
       const Float3 d{rays->x[i], rays->y[i], rays->z[i]};
       float t = 0;
-      ASSERT_EQ(probes[i].hit == RayBundle::no_hit, rays->primitive[i] == RayBundle::no_hit);
+      ASSERT_EQ(probes[i].hit == RayBundle::kNoHit, rays->primitive[i] == RayBundle::kNoHit);
       ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, 0, 100, t), rays->primitive[i]);
       ASSERT_EQ(t, rays->t[i]);
-      ASSERT_EQ(test::is_stopped(caster, rays->origin, d, 0, 100), rays->primitive[i] != RayBundle::no_hit);
-      if (rays->primitive[i] == RayBundle::no_hit) continue;
+      ASSERT_EQ(test::is_stopped(caster, rays->origin, d, 0, 100), rays->primitive[i] != RayBundle::kNoHit);
+      if (rays->primitive[i] == RayBundle::kNoHit) continue;
       ++hits;
       // An end just behind the hit, or a start just before it, changes nothing; an end before it leaves no hit.
       float again = 0;
       ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, std::nextafter(t, 0.0f), std::nextafter(t, 1e9f), again),
                 rays->primitive[i]);
       ASSERT_EQ(again, t);
-      ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, 0, std::nextafter(t, 0.0f), again), RayBundle::no_hit);
+      ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, 0, std::nextafter(t, 0.0f), again), RayBundle::kNoHit);
       ASSERT_FALSE(test::is_stopped(caster, rays->origin, d, 0, std::nextafter(t, 0.0f)));
       probes[i].end = std::nextafter(t, 0.0f);
     }
     caster.any_hits(rays->origin, 0, probes);
-    for (const Probe& probe : probes) ASSERT_EQ(probe.hit, RayBundle::no_hit);
+    for (const Probe& probe : probes) ASSERT_EQ(probe.hit, RayBundle::kNoHit);
   }
   EXPECT_GT(hits, 1000u);
 }
@@ -110,14 +110,14 @@ TEST(RayCaster, RaysStartAndEndWhereToldTo) {
   }
   caster.cast(rays);
   EXPECT_LT(rays.primitive[0], 2u);
-  EXPECT_EQ(rays.primitive[1], RayBundle::no_hit);
+  EXPECT_EQ(rays.primitive[1], RayBundle::kNoHit);
   EXPECT_EQ(rays.t[1], std::numeric_limits<float>::infinity());
   EXPECT_LT(rays.primitive[2], 2u);
   rays.start = 2.1f;
   caster.cast(rays);
   EXPECT_GE(rays.primitive[0], 2u);
   EXPECT_LT(rays.primitive[0], 4u);
-  EXPECT_EQ(rays.primitive[2], RayBundle::no_hit);
+  EXPECT_EQ(rays.primitive[2], RayBundle::kNoHit);
 }
 
 // A component slightly below 0 must not lose the ray, or its neighbours in the packet.
@@ -141,7 +141,7 @@ TEST(RayCaster, TinyComponentsLoseNoRay) {
     }
     caster.cast(rays);
     for (std::uint32_t i = 0; i < rays.size; ++i) {
-      EXPECT_NE(rays.primitive[i], RayBundle::no_hit) << "component " << tiny << ", ray " << i;
+      EXPECT_NE(rays.primitive[i], RayBundle::kNoHit) << "component " << tiny << ", ray " << i;
       float t = 0;
       EXPECT_EQ(test::nearest_hit(caster, rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100, t),
                 rays.primitive[i]);
@@ -155,7 +155,7 @@ TEST(RayCaster, AnEmptySceneIsNeverHit) {
   RandomStream random(1);
   const auto rays = cone(random, 1, 100, 50);
   caster.cast(*rays);
-  for (std::uint32_t i = 0; i < rays->size; ++i) EXPECT_EQ(rays->primitive[i], RayBundle::no_hit);
+  for (std::uint32_t i = 0; i < rays->size; ++i) EXPECT_EQ(rays->primitive[i], RayBundle::kNoHit);
 }
 
 }  // namespace

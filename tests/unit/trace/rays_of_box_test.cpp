@@ -96,7 +96,7 @@ TEST(RaysOfBoxes, SayWhatOneBoxAloneSays) {
                               scanner_of(200, 180, 0.9, -170)};
   for (const Scanner& scanner : scanners) {
     const RayPattern pattern = make_pattern(scanner);
-    boxes->size = BoxBatch::capacity - 3;
+    boxes->size = BoxBatch::kCapacity - 3;
     for (std::uint32_t i = 0; i < boxes->size; ++i) {
       const double size = std::pow(10.0, -3 + 3 * random.uniform()), reach = i % 4 == 0 ? size : 2;
       boxes->x[i] = reach * (2 * random.uniform() - 1);

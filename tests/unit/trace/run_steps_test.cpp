@@ -34,14 +34,14 @@ void go_along(const TraceScene& scene, const TraceStation& station, Found& found
       for (std::uint32_t row = 0, end; row < pattern.rows(); row = end) {
         const std::uint32_t triangle = strip.triangles(j)[row];
         for (end = row + 1; end < pattern.rows() && strip.triangles(j)[end] == triangle;) ++end;
-        if (triangle == Picture::none || !steps.pay(end - row)) continue;
+        if (triangle == Picture::kNone || !steps.pay(end - row)) continue;
         const Planes::Seen plane = rays.planes().seen(triangle, station.origin);
         std::uint32_t next = row;
         const auto settled = [&](const Float3& point, std::uint32_t many) {
           const auto cell = rays.grid().cell_of(point);
           for (const std::uint32_t last = next + many; next < last;) {
             hits->size = 0;
-            for (; next < last && hits->size < RayBundle::capacity; ++next) {
+            for (; next < last && hits->size < RayBundle::kCapacity; ++next) {
               Float3 d{pattern.sin_zenith[next] * pattern.cos_azimuth[column],
                        pattern.sin_zenith[next] * pattern.sin_azimuth[column], pattern.cos_zenith[next]};
               if (station.turn) d = (*station.turn)(d);

@@ -64,14 +64,14 @@ Certainty certain_hits(std::vector<Float3> (*corners_of)(RandomStream&), std::ui
       const Vec3 unit = p * (1 / std::sqrt(dot(p, p)));
       const Float3 d{static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
       float t = 0;
-      const bool hit = test::nearest_hit(caster, {}, d, 0.1f, 200, t) != RayBundle::no_hit;
+      const bool hit = test::nearest_hit(caster, {}, d, 0.1f, 200, t) != RayBundle::kNoHit;
       found.hits += hit;
       const double nearest = seen.nearest_hit(widen(d)), farthest = seen.farthest_hit(widen(d));
       if (!seen.must_hit(widen(d)) || !(nearest > 0.1) || !(farthest < 200)) continue;
       ++found.certain;
       EXPECT_TRUE(hit) << "triangle " << k << ", ray " << r;
       // Before another hit that far, too, whatever Embree's own distance is.
-      EXPECT_NE(test::nearest_hit(caster, {}, d, 0.1f, static_cast<float>(farthest), t), RayBundle::no_hit)
+      EXPECT_NE(test::nearest_hit(caster, {}, d, 0.1f, static_cast<float>(farthest), t), RayBundle::kNoHit)
           << "triangle " << k << ", ray " << r;
       EXPECT_NEAR(t, (nearest + farthest) / 2, t * 0x1p-13);  // the bounds lie around the distance itself
       EXPECT_LE(nearest, t) << "triangle " << k << ", ray " << r;

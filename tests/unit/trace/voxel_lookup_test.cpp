@@ -24,12 +24,12 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
     std::size_t found = 0;
     for (int run = 0; run < 100; ++run) {
       lookup.clear();
-      std::array<std::uint32_t, VoxelLookup::capacity> voxel_of;
+      std::array<std::uint32_t, VoxelLookup::kCapacity> voxel_of;
       std::vector<std::uint32_t> expected, voxel_indices;
       const Float3 centre{test::between(random, -3.3, 3.3), test::between(random, -2.3, 2.3),
                           test::between(random, -0.3, 1.8)};
       const double spread = run % 3 == 0 ? 8 : 0.2;
-      for (std::uint32_t k = 0; k < VoxelLookup::capacity; ++k) {
+      for (std::uint32_t k = 0; k < VoxelLookup::kCapacity; ++k) {
         Float3 p{centre.x + test::between(random, -spread, spread), centre.y + test::between(random, -spread, spread),
                  centre.z + test::between(random, -spread, spread)};
         if (k % 50 == 7) p.x = std::numeric_limits<float>::quiet_NaN();
@@ -38,7 +38,7 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
         if (k % 50 == 10) p = {grid.min()[0], grid.min()[1], grid.min()[2]};
         lookup.add(p);
         voxel_of[k] = grid.index_of(p);
-        if (voxel_of[k] != no_voxel) expected.push_back(voxel_of[k]);
+        if (voxel_of[k] != kNoVoxel) expected.push_back(voxel_of[k]);
       }
       lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t k = begin; k < end; ++k) ASSERT_EQ(voxel_index, voxel_of[k]);

@@ -182,7 +182,7 @@ TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
         const double area = std::sqrt(dot(sum, sum));
         if (!(area > 0)) continue;
         if (extent <= side / 4) small += area;
-        if (std::abs(dot(sum, normal)) <= one_plane * area)
+        if (std::abs(dot(sum, normal)) <= kOnePlaneCosine * area)
           other += area;
         else if (std::abs(dot(moment * (1 / weight) - point, normal)) <= side / 8)
           within += area;
@@ -240,7 +240,7 @@ TEST(FlatWindows, HoldTheSmallTrianglesOfTheirNeighbours) {
       const double area = std::sqrt(dot(twice, twice)) / 2;
       if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > side / 2) continue;
       ++held;
-      if (std::abs(dot(twice, normal)) <= one_plane * 2 * area)
+      if (std::abs(dot(twice, normal)) <= kOnePlaneCosine * 2 * area)
         other += area;
       else if (std::abs(dot(off, normal)) <= side / 8)
         within += area;

@@ -75,9 +75,9 @@ TEST(PointWorths, AreThoseOfTheFinestMeshThatTouches) {
       if (const std::uint32_t mesh = scene.mesh_of(touching.triangle[k]); scene.meshes[mesh].role == Role::surveyed)
         finest = std::min(finest, spacings[mesh]);
     const double goal = std::max(std::pow(grid.voxel_size() / finest, 2), 1.0);
-    const double told = densest * densest_point_weight / (*weights_of_points)[voxel_index];
+    const double told = densest * kDensestPointWeight / (*weights_of_points)[voxel_index];
     ASSERT_LE(told, goal * (1 + 1e-12)) << "voxel " << voxel_index;
-    ASSERT_GE(told, goal * (1 - 1.0 / densest_point_weight)) << "voxel " << voxel_index;
+    ASSERT_GE(told, goal * (1 - 1.0 / kDensestPointWeight)) << "voxel " << voxel_index;
     ++met[finest == 0.008 ? 0 : finest == 0.03 ? 1 : 2];
   }
   for (const int count : met) EXPECT_GT(count, 100);

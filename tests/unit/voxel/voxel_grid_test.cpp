@@ -50,7 +50,7 @@ TEST(VoxelGrid, CountsWhatClippingCounts) {
         test::clipped_voxels(scene.positions, scene.triangles, {grid.min()[0], grid.min()[1], grid.min()[2]},
                              grid.voxel_size(), grid.depth());
     EXPECT_EQ(grid.size(), expected.size());
-    for (const auto& c : expected) EXPECT_NE(grid.find(morton_encode(c[0], c[1], c[2])), no_voxel);
+    for (const auto& c : expected) EXPECT_NE(grid.find(morton_encode(c[0], c[1], c[2])), kNoVoxel);
   }
 }
 
@@ -70,9 +70,9 @@ TEST(VoxelGrid, FindsNothingWhereNothingIsMarked) {
   const VoxelGrid grid = VoxelGrid::build(four_walls(), 1.0);
   std::uint64_t found = 0;
   const std::uint32_t n = 1u << grid.depth();
-  for (std::uint64_t key = 0; key < std::uint64_t{n} * n * n; ++key) found += grid.find(key) != no_voxel;
+  for (std::uint64_t key = 0; key < std::uint64_t{n} * n * n; ++key) found += grid.find(key) != kNoVoxel;
   EXPECT_EQ(found, grid.size());
-  EXPECT_EQ(grid.find(morton_encode(1u << 17, 3, 3)), no_voxel);
+  EXPECT_EQ(grid.find(morton_encode(1u << 17, 3, 3)), kNoVoxel);
 }
 
 TEST(VoxelGrid, HashTableIsAsTheShadersExpect) {
@@ -112,7 +112,7 @@ RC_GTEST_PROP(VoxelGrid, KeepsEquationTwoAndHoldsWhatIsSurveyed, ()) {
             min[2] < scene.local_bounds.min.z);
   RC_ASSERT(min[0] + side > scene.local_bounds.max.x && min[1] + side > scene.local_bounds.max.y &&
             min[2] + side > scene.local_bounds.max.z);
-  for (const Float3& p : scene.positions) RC_ASSERT(grid.index_of(p) != no_voxel);
+  for (const Float3& p : scene.positions) RC_ASSERT(grid.index_of(p) != kNoVoxel);
 }
 
 TEST(VoxelGrid, CellsAreHalfOpenAndOutsideIsEmpty) {
@@ -123,7 +123,7 @@ TEST(VoxelGrid, CellsAreHalfOpenAndOutsideIsEmpty) {
   EXPECT_FALSE(grid.cell_of({m[0] + 10.03f, m[1], m[2]}));
   EXPECT_FALSE(grid.cell_of({NAN, 0, 0}));
   EXPECT_FALSE(grid.cell_of({0, INFINITY, 0}));
-  EXPECT_EQ(grid.index_of({0, 0, 2}), no_voxel);  // inside the cube, but on no surface
+  EXPECT_EQ(grid.index_of({0, 0, 2}), kNoVoxel);  // inside the cube, but on no surface
 }
 
 TEST(VoxelGrid, OnlySurveyedMeshesMark) {
@@ -140,7 +140,7 @@ TEST(VoxelGrid, ASceneWithoutSurveyedMeshesHasNoVoxels) {
   test::add_patch(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1, Role::blocking);
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
   EXPECT_EQ(grid.size(), 0u);
-  EXPECT_EQ(grid.index_of({0.5f, 0.5f, 0}), no_voxel);
+  EXPECT_EQ(grid.index_of({0.5f, 0.5f, 0}), kNoVoxel);
 }
 
 TEST(VoxelGrid, RefusesSizesThatMakeNoSense) {

@@ -67,7 +67,7 @@ void expect_points_in_layer(const SceneData& scene, const VoxelGrid& grid, int a
         for (int ulp = 0; ulp < 2; ++ulp) c = std::nextafter(c, static_cast<float>(off * 1e9));
       else
         c = static_cast<float>(c + off);
-      ASSERT_NE(grid.index_of(q), no_voxel) << "axis " << axis << " at " << c;
+      ASSERT_NE(grid.index_of(q), kNoVoxel) << "axis " << axis << " at " << c;
       ASSERT_EQ((*grid.cell_of(q))[axis], layer) << "axis " << axis << " at " << c;
     }
   }

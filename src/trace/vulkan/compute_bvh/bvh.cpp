@@ -18,16 +18,16 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t max_leaf = 2;
-constexpr int bins = 32;
+constexpr std::uint32_t kMaxLeaf = 2;
+constexpr int kBins = 32;
 // From this depth on, items are halved by count.
-constexpr std::uint32_t max_sah_depth = 34;
+constexpr std::uint32_t kMaxSahDepth = 34;
 // Halving n items takes bit_width(n − 1) steps until each part is a leaf of one, and n < bvh_leaf_first_mask. An inner
-// node thus has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most one
+// node thus has fewer than kMaxSahDepth + kMostHalvings nodes above it. A traversal leaves on its stack at most one
 // child for each of these, one of the node's own, and an end mark.
-constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask);
-static_assert(max_leaf == 2 && max_sah_depth + most_halvings < bvh_stack_size);
-constexpr std::size_t parallel_grain = 8192;
+constexpr std::uint32_t kMostHalvings = std::bit_width(bvh_leaf_first_mask);
+static_assert(kMaxLeaf == 2 && kMaxSahDepth + kMostHalvings < bvh_stack_size);
+constexpr std::size_t kParallelGrain = 8192;
 
 struct Item {
   Bounds3 box;
@@ -49,7 +49,7 @@ class Builder {
     if (count == 1 && places(items_[begin]))
       return bvh_leaf_bit | bvh_placement_count << bvh_leaf_count_shift |
              (items_[begin].triangle - static_cast<std::uint32_t>(triangles_));
-    if (count <= max_leaf && std::none_of(at(begin), at(end), places))
+    if (count <= kMaxLeaf && std::none_of(at(begin), at(end), places))
       return bvh_leaf_bit | static_cast<std::uint32_t>(count - 1) << bvh_leaf_count_shift |
              static_cast<std::uint32_t>(begin);
     const std::size_t middle = split(begin, end, depth);
@@ -63,7 +63,7 @@ class Builder {
       for (std::size_t i = middle; i < end; ++i) right.extend(items_[i].box);
       right_word = build(middle, end, slot + static_cast<std::uint32_t>(middle - begin), depth + 1);
     };
-    if (count > parallel_grain) {
+    if (count > kParallelGrain) {
       parallel::both(build_left, build_right);
     } else {
       build_left();
@@ -83,7 +83,7 @@ class Builder {
     int bin;  // the last on the left
     float low, scale;
     int bin_of(const Item& item) const {
-      return std::clamp(static_cast<int>((item.centre(axis) - low) * scale), 0, bins - 1);
+      return std::clamp(static_cast<int>((item.centre(axis) - low) * scale), 0, kBins - 1);
     }
   };
   struct Bin {
@@ -102,7 +102,7 @@ class Builder {
     for (std::size_t i = begin; i < end; ++i)
       centres.extend(Float3{items_[i].centre(0), items_[i].centre(1), items_[i].centre(2)});
     std::optional<Cut> best;
-    for (std::size_t axis = 0; axis < 3 && depth < max_sah_depth; ++axis) {
+    for (std::size_t axis = 0; axis < 3 && depth < kMaxSahDepth; ++axis) {
       const std::optional<Cut> cut = cheapest_cut(begin, end, axis, centres);
       if (cut && (!best || cut->cost < best->cost)) best = cut;
     }
@@ -113,21 +113,21 @@ class Builder {
   std::optional<Cut> cheapest_cut(std::size_t begin, std::size_t end, std::size_t axis, const Bounds3& centres) const {
     const float extent = centres.max[axis] - centres.min[axis];
     if (!(extent > 0)) return std::nullopt;
-    Cut cut{std::numeric_limits<float>::infinity(), axis, -1, centres.min[axis], static_cast<float>(bins) / extent};
-    std::array<Bin, bins> filled;
+    Cut cut{std::numeric_limits<float>::infinity(), axis, -1, centres.min[axis], static_cast<float>(kBins) / extent};
+    std::array<Bin, kBins> filled;
     for (std::size_t i = begin; i < end; ++i) {
       Bin& bin = filled[static_cast<std::size_t>(cut.bin_of(items_[i]))];
       bin.box.extend(items_[i].box);
       ++bin.count;
     }
-    std::array<float, bins> right_cost{};  // of this bin and all to its right
+    std::array<float, kBins> right_cost{};  // of this bin and all to its right
     Bin side;
-    for (std::size_t b = bins - 1; b > 0; --b) {
+    for (std::size_t b = kBins - 1; b > 0; --b) {
       side.add(filled[b]);
       right_cost[b] = side.cost();
     }
     side = Bin();
-    for (std::size_t b = 0; b + 1 < bins; ++b) {
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
       side.add(filled[b]);
       if (side.count == 0 || side.count == end - begin) continue;
       const float cost = side.cost() + right_cost[b + 1];
@@ -223,14 +223,14 @@ struct WideBox {
 
 // Returns about a hundred boxes, or fewer, that together hold the tree. They fit a turned mesh better than one box.
 std::vector<WideBox> boxes_within(const Bvh& bvh) {
-  constexpr std::size_t enough = 128;
+  constexpr std::size_t kEnough = 128;
   std::vector<std::uint32_t> open{0};
   std::vector<WideBox> closed;
   for (std::size_t k = 0; k < open.size(); ++k) {
     const BvhNode& node = bvh.nodes[open[k]];
     const auto child = [&](std::uint32_t word, const vec3& centre, const vec3& half) {
       if (half.x < 0) return;
-      if (!(word & bvh_leaf_bit) && open.size() + closed.size() < k + enough)
+      if (!(word & bvh_leaf_bit) && open.size() + closed.size() < k + kEnough)
         open.push_back(word);
       else
         closed.push_back({{centre.x, centre.y, centre.z}, {half.x, half.y, half.z}});
@@ -255,12 +255,12 @@ WideBox box_of(const vulkan::MeshPlacement& place, std::span<const WideBox> boxe
 }
 
 Bounds3 bounds_of(const WideBox& box, double doubt) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Bounds3 bounds;
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    bounds.min[at] = std::nextafter(static_cast<float>(box.centre[k] - box.half[k] - doubt), -infinity);
-    bounds.max[at] = std::nextafter(static_cast<float>(box.centre[k] + box.half[k] + doubt), infinity);
+    bounds.min[at] = std::nextafter(static_cast<float>(box.centre[k] - box.half[k] - doubt), -kInfinity);
+    bounds.max[at] = std::nextafter(static_cast<float>(box.centre[k] + box.half[k] + doubt), kInfinity);
   }
   return bounds;
 }

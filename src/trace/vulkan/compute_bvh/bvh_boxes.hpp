@@ -44,9 +44,9 @@ struct Bounds3 {
  private:
   float middle(std::size_t axis) const { return empty() ? 0.0f : 0.5f * (min[axis] + max[axis]); }
   float half(std::size_t axis, float widening) const {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const float half = std::nextafter(std::max(max[axis] - middle(axis), middle(axis) - min[axis]), infinity);
-    return empty() ? -infinity : std::nextafter(half + widening, infinity);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const float half = std::nextafter(std::max(max[axis] - middle(axis), middle(axis) - min[axis]), kInfinity);
+    return empty() ? -kInfinity : std::nextafter(half + widening, kInfinity);
   }
   bool empty() const { return min[0] > max[0]; }
 };

@@ -30,14 +30,14 @@ double cost_of(const BvhNode& node) { return half_area(node.half0) + half_area(n
 
 // Returns a box that holds the child's original box, and exceeds it only by roundings.
 Bounds3 without_widening(const vec3& centre, const vec3& half, float widening) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Bounds3 box;
   if (is_empty(half)) return box;
   const std::array<float, 3> c{centre.x, centre.y, centre.z}, h{half.x, half.y, half.z};
   for (std::size_t k = 0; k < 3; ++k) {
     const double reach = double{h[k]} - double{widening};
-    box.min[k] = std::nextafter(static_cast<float>(c[k] - reach), -infinity);
-    box.max[k] = std::nextafter(static_cast<float>(c[k] + reach), infinity);
+    box.min[k] = std::nextafter(static_cast<float>(c[k] - reach), -kInfinity);
+    box.max[k] = std::nextafter(static_cast<float>(c[k] + reach), kInfinity);
   }
   return box;
 }

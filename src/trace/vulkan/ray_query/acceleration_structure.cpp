@@ -17,9 +17,9 @@ namespace vantage::vulkan {
 namespace {
 
 // Structures lie side by side in buffers of this size, since a device allows few allocations; larger ones lie alone.
-constexpr VkDeviceSize storage_bytes = VkDeviceSize{1} << 26, storage_alignment = 256;
+constexpr VkDeviceSize kStorageBytes = VkDeviceSize{1} << 26, kStorageAlignment = 256;
 
-constexpr VkBufferUsageFlags build_input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+constexpr VkBufferUsageFlags kBuildInput = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
 
 VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR structure) {
   VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
@@ -81,7 +81,7 @@ AccelerationStructure::Build AccelerationStructure::build_of(VkAccelerationStruc
   device_.vk().vkGetAccelerationStructureBuildSizesKHR(
       device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
 
-  build.bytes = (sizes.accelerationStructureSize + storage_alignment - 1) / storage_alignment * storage_alignment;
+  build.bytes = (sizes.accelerationStructureSize + kStorageAlignment - 1) / kStorageAlignment * kStorageAlignment;
   build.scratch = sizes.buildScratchSize;
   return build;
 }
@@ -89,7 +89,7 @@ AccelerationStructure::Build AccelerationStructure::build_of(VkAccelerationStruc
 UniqueAccelerationStructure AccelerationStructure::run(Build build, VkDeviceSize still, Buffer& scratch,
                                                        const char* name) {
   if (storage_.empty() || used_ + build.bytes > storage_.back().size()) {
-    storage_.emplace_back(device_, std::max(build.bytes, std::min(still, storage_bytes)), Buffer::Where::device,
+    storage_.emplace_back(device_, std::max(build.bytes, std::min(still, kStorageBytes)), Buffer::Where::device,
                           "acceleration structures", VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
     used_ = 0;
   }
@@ -122,14 +122,14 @@ void AccelerationStructure::build_parts(const TraversalScene& scene, std::span<c
                                         std::span<Part> parts, Over over) {
   Buffer vertices, indices, boxes;
   if (over == Over::triangles) {
-    vertices = make_device_buffer<Float3>(device_, commands_, scene.positions, "vertices of the build", build_input);
-    indices = make_device_buffer<Triangle>(device_, commands_, triangles, "indices of the build", build_input);
+    vertices = make_device_buffer<Float3>(device_, commands_, scene.positions, "vertices of the build", kBuildInput);
+    indices = make_device_buffer<Triangle>(device_, commands_, triangles, "indices of the build", kBuildInput);
   } else {
     std::vector<VkAabbPositionsKHR> around(triangles.size());
     for (const Part& part : parts)
       parallel::for_all(part.first, part.first + part.count,
                         [&](std::uint32_t k) { around[k] = box_around(scene, triangles[k], part.widening); });
-    boxes = make_device_buffer<VkAabbPositionsKHR>(device_, commands_, around, "boxes of the build", build_input);
+    boxes = make_device_buffer<VkAabbPositionsKHR>(device_, commands_, around, "boxes of the build", kBuildInput);
   }
   std::vector<Build> builds;
   VkDeviceSize still = 0;
@@ -237,7 +237,7 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
                      ? make_device_buffer<QueryInstance>(device, commands, records, "instances of shared meshes")
                      : make_device_buffer<BvhPlacement>(device, commands, placements, "placements of boxes");
   const Buffer instance_buffer =
-      make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", build_input);
+      make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", kBuildInput);
   VkAccelerationStructureGeometryKHR geometry{};
   geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
   geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;

@@ -31,11 +31,11 @@ TEST(CellGrid, CountsPointsWhereTheyAre) {
   for (const auto& [at, count] : counts) {
     const CellIndex index(std::get<0>(at), std::get<1>(at), std::get<2>(at));
     const std::uint32_t k = grid.find(index);
-    ASSERT_NE(k, CellGrid::none);
+    ASSERT_NE(k, CellGrid::kNone);
     EXPECT_EQ(grid[k].count, count);
     EXPECT_EQ(CellGrid::index_of(grid[k]), index);
   }
-  EXPECT_EQ(grid.find({1000, 0, 0}), CellGrid::none);
+  EXPECT_EQ(grid.find({1000, 0, 0}), CellGrid::kNone);
   EXPECT_FALSE(grid.add({1e7, 0, 0}, 0, Eigen::Vector3d::Zero()));
 }
 
@@ -43,7 +43,7 @@ TEST(CellGrid, KnowsWhichScanAloneSawACell) {
   CellGrid grid(Eigen::Vector3d::Zero(), 1);
   for (const std::uint16_t scan : {3, 3, 5}) grid.add({0.5, 0.5, 0.5}, scan, Eigen::Vector3d::Zero());
   grid.add({1.5, 0.5, 0.5}, 4, Eigen::Vector3d::Zero());
-  EXPECT_EQ(grid[grid.find({0, 0, 0})].scan, Cell::several);
+  EXPECT_EQ(grid[grid.find({0, 0, 0})].scan, Cell::kSeveralScans);
   EXPECT_EQ(grid[grid.find({1, 0, 0})].scan, 4);
 }
 
@@ -59,7 +59,7 @@ TEST(CellGrid, NeighboursGiveThePlaneOfTheirPoints) {
     grid.add(Eigen::Vector3d(50 + x, y, z) + noise(random) * normal, 0, Eigen::Vector3d::Zero());
   }
   const std::uint32_t k = grid.find(grid.in_cells({50, 0, 0}).array().floor().cast<int>());
-  ASSERT_NE(k, CellGrid::none);
+  ASSERT_NE(k, CellGrid::kNone);
   const auto plane = importer::plane_of(grid.around(k));
   EXPECT_GT(std::abs(plane.normal.dot(normal)), 0.9999);
   EXPECT_NEAR(plane.thickness, 0.001 / 0.03, 0.005);

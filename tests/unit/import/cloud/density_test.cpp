@@ -24,7 +24,7 @@ TEST(Density, CellsHoldEnoughPoints) {
   constexpr double kMuch = 1e12;
   // 6.67 points to a square centimetre of the cell's face: 0.02 m hold 6 at 16 700 a square metre.
   for (const auto& [per_m2, cell_m] : {std::pair{20'000.0, 0.02}, {9000.0, 0.03}, {3000.0, 0.05}, {100.0, 0.3}})
-    EXPECT_EQ(Density::sizes_m[choose_cell(floor_of(per_m2), kMuch, 100)], cell_m) << per_m2;
+    EXPECT_EQ(Density::kSizes_m[choose_cell(floor_of(per_m2), kMuch, 100)], cell_m) << per_m2;
   expect_refused_for("too thin", [&] { choose_cell(floor_of(5, 15), kMuch, 100); });
 }
 
@@ -37,7 +37,7 @@ TEST(Density, CellsAreCountedOnASampleOfThem) {
 
 TEST(Density, LittleMemoryTakesLargerCells) {
   const Density density = floor_of(20'000);
-  EXPECT_EQ(Density::sizes_m[choose_cell(density, 12'500 * 100.0, 100)], 0.05);
+  EXPECT_EQ(Density::kSizes_m[choose_cell(density, 12'500 * 100.0, 100)], 0.05);
   expect_refused_for("more memory", [&] { choose_cell(density, 100, 100); });
 }
 

@@ -54,7 +54,7 @@ void write_e57(const std::filesystem::path& path, const std::vector<E57TestScan>
   std::string header = "ASTM-E57";
   put(header, std::uint32_t{1}), put(header, std::uint32_t{0});
   put(header, file.physical_length()), put(header, address), put(header, static_cast<std::uint64_t>(xml.size()));
-  put(header, static_cast<std::uint64_t>(E57PagedFile::page_bytes));
+  put(header, static_cast<std::uint64_t>(E57PagedFile::kPageBytes));
   file.close(header);
 }
 

@@ -25,7 +25,7 @@ TEST(WorkQueue, HandsOutAllItemsOnce) {
   for (const std::size_t items : {1u, 2u, 3u, 17u, 250u, 1000u})
     for (const std::vector<double>& shares : {std::vector{0.5, 0.5}, {0.999, 0.001}, {0.25, 0.25, 0.25, 0.25}})
       for (const bool known : {false, true}) {
-        for (const double of_rest : {WorkQueue::factored, 1.0}) {
+        for (const double of_rest : {WorkQueue::kFactored, 1.0}) {
           WorkQueue queue(items, of_rest);
           EXPECT_EQ(taken(queue, items, shares, known), std::vector<int>(items, 1)) << items;
         }

@@ -58,8 +58,8 @@ TEST_P(CountSchedules, ASubmissionKeepsItsBounds) {
   while (!schedule.finished()) {
     const std::vector<CountPart> parts = schedule.next(shape.rays);
     ASSERT_FALSE(parts.empty());
-    EXPECT_LE(parts.size(), CountSchedule::parts_per_submission);
-    EXPECT_LT(parts.back().slot, CountSchedule::stations_per_submission);
+    EXPECT_LE(parts.size(), CountSchedule::kPartsPerSubmission);
+    EXPECT_LT(parts.back().slot, CountSchedule::kStationsPerSubmission);
     EXPECT_TRUE(parts.size() == 1 ||
                 static_cast<double>(schedule.rays_of(std::span(parts).first(parts.size() - 1))) < shape.rays)
         << "the last part begins below what was asked for";
