@@ -21,7 +21,8 @@ inline py::array_t<double> matrix_of(PairMatrix matrix) {
 }
 
 /// What the scans of an evaluation hold, as a dict; None if it is not known.
-py::object data_of(const Evaluation& e);
+using Data = Typed<"Optional[Dict[str, float]]">;
+Data data_of(const Evaluation& e);
 extern const char* const kData;  // its docstring
 
 }  // namespace vantage::python
