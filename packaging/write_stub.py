@@ -160,7 +160,7 @@ def class_lines(name, of, options):
         try:
             lines += member_lines(member, where, value, options)
         except TypeError as error:
-            raise TypeError(f"{where}: {error}") from None
+            raise TypeError(f"{member}: {error}") from None
     return ["", f"class {name}{'(' + ', '.join(bases) + ')' if bases else ''}:", *lines, ""]
 
 
@@ -170,10 +170,13 @@ def stub(module):
     for name, value in vars(module).items():
         if name.startswith("_"):
             continue
-        if inspect.isclass(value):
-            lines += class_lines(name, value, module._options)
-        else:
-            lines += function_lines(name, name, value, module._options)
+        try:
+            if inspect.isclass(value):
+                lines += class_lines(name, value, module._options)
+            else:
+                lines += function_lines(name, name, value, module._options)
+        except TypeError as error:
+            raise TypeError(f"{name}: {error}") from None
     return re.sub("\n{3,}", "\n\n", "\n".join([PREAMBLE, *lines])).rstrip("\n") + "\n"
 
 
@@ -181,6 +184,9 @@ if __name__ == "__main__":
     sys.path.insert(0, sys.argv[1])
     from vantage import _core
 
-    text = stub(_core)
+    try:
+        text = stub(_core)
+    except TypeError as error:
+        sys.exit(f"write_stub: {error}")
     with open(STUB, "w", encoding="utf-8") as file:
         file.write(text)

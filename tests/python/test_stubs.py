@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The stub is what the module says of itself, and every public thing has a docstring."""
+import difflib
 import inspect
 import os
 import re
@@ -24,8 +25,6 @@ def literals(kind):
 
 
 class Stubs(unittest.TestCase):
-    maxDiff = None
-
     def test_the_package_is_typed(self):
         for name in ("py.typed", "__init__.pyi"):
             self.assertTrue(os.path.exists(os.path.join(PACKAGE, name)), name)
@@ -33,8 +32,11 @@ class Stubs(unittest.TestCase):
     def test_the_stub_is_what_the_module_says(self):
         with open(write_stub.STUB, encoding="utf-8") as file:
             there = file.read()
-        folder = os.path.relpath(os.path.dirname(PACKAGE), SOURCE)
-        self.assertEqual(there, write_stub.stub(_core), f"write it anew: python3 packaging/write_stub.py {folder}")
+        said = write_stub.stub(_core)
+        if there != said:
+            folder = os.path.relpath(os.path.dirname(PACKAGE), SOURCE)
+            lines = difflib.unified_diff(there.splitlines(), said.splitlines(), "the stub", "the module", n=1, lineterm="")
+            self.fail("\n".join(["write it anew: python3 packaging/write_stub.py " + folder, *lines]))
         for name in write_stub.ALIASES.values():
             self.assertGreater(len(re.findall(rf"\b{name}\b", there)), 1, f"nothing is a {name}")
 
