@@ -36,7 +36,7 @@ class Stubs(unittest.TestCase):
         if there != said:
             folder = os.path.relpath(os.path.dirname(PACKAGE), SOURCE)
             lines = difflib.unified_diff(there.splitlines(), said.splitlines(), "the stub", "the module", n=1, lineterm="")
-            self.fail("\n".join(["write it anew: python3 packaging/write_stub.py " + folder, *lines]))
+            self.fail("\n".join([f"write it anew: {sys.executable} packaging/write_stub.py {folder}", *lines]))
         for name in write_stub.ALIASES.values():
             self.assertGreater(len(re.findall(rf"\b{name}\b", there)), 1, f"nothing is a {name}")
 
