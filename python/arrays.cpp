@@ -53,7 +53,8 @@ std::vector<PlacedStation> stations_of(const py::object& stations) {
     if (py::isinstance<PlacedStation>(first)) return all_of<PlacedStation>(stations);
     if (py::isinstance<Station>(first)) {
       for (const Station& one : all_of<Station>(stations))
-        placed.push_back({.position = one.position,
+        placed.push_back({.uv = {},
+                          .position = one.position,
                           .ground = one.position,
                           .status = one.active ? StationStatus::ok : StationStatus::clash,
                           .setup = one.setup});
@@ -61,7 +62,8 @@ std::vector<PlacedStation> stations_of(const py::object& stations) {
     }
   }
   const Doubles heads = doubles_of(stations, "stations");
-  for (const Vec3& head : rows_of<Vec3>(heads, "stations")) placed.push_back({.position = head, .ground = head});
+  for (const Vec3& head : rows_of<Vec3>(heads, "stations"))
+    placed.push_back({.uv = {}, .position = head, .ground = head});
   return placed;
 }
 
@@ -73,11 +75,12 @@ py::array_t<double> heads_of(std::span<const PlacedStation> stations) {
   return adopt(std::move(heads));
 }
 
-py::object from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
+Json from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
 
-py::dict to_dict(const Settings& settings) {
-  py::dict dict;
-  for (const Setting& setting : settings) dict[py::str(setting.name)] = from_json(setting.json);
+Json to_dict(const Settings& settings) {
+  const py::object loads = py::module_::import("json").attr("loads");
+  Json dict;
+  for (const Setting& setting : settings) dict[py::str(setting.name)] = loads(setting.json);
   return dict;
 }
 

@@ -79,9 +79,9 @@ Network network_of(const py::object& stations);
 /// The heads of stations, one row each.
 py::array_t<double> heads_of(std::span<const PlacedStation> stations);
 
-/// JSON text as Python's own values.
-py::object from_json(const std::string& text);
+/// The text of a JSON object as Python's own values.
+Json from_json(const std::string& text);
 /// Settings by their names.
-py::dict to_dict(const Settings& settings);
+Json to_dict(const Settings& settings);
 
 }  // namespace vantage::python

@@ -10,6 +10,7 @@ namespace vantage::python {
 namespace {
 
 using Chosen = std::vector<std::size_t>;
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 void check_candidates(const Chosen& chosen, std::size_t candidates) {
   for (const std::size_t k : chosen)
@@ -85,8 +86,7 @@ void add_matrix(py::module_& m) {
           "(value, standard error) of equation 8 for a network of these stations; None: of all.");
   m.def(
       "sample_coverage",
-      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
-         py::object progress) {
+      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels, Listener progress) {
         LongCall call(std::move(progress));
         return call.run([&] { return sample_coverage(self.simulator, stations, sample_voxels, call.progress()); });
       },
@@ -97,7 +97,7 @@ void add_matrix(py::module_& m) {
 void add_graph(py::module_& m) {
   py::class_<StationGraph>(m, "StationGraph",
                            "Overlap of each pair of candidates, and the pairs that exclude each other.")
-      .def(py::init([](const Doubles& overlaps, const std::vector<std::array<std::size_t, 2>>& excluded) {
+      .def(py::init([](const Doubles& overlaps, const Pairs& excluded) {
              if (overlaps.ndim() != 2 || overlaps.shape(0) != overlaps.shape(1))
                throw Error(
                    Errc::invalid_argument,
@@ -111,7 +111,7 @@ void add_graph(py::module_& m) {
              }
              return graph;
            }),
-           py::arg("overlaps"), py::arg("excluded") = std::vector<std::array<std::size_t, 2>>{},
+           py::arg("overlaps"), py::arg("excluded") = Pairs{},
            "overlaps: of each pair, (n, n) and symmetric. excluded: pairs that no network may have.")
       .def("__len__", &StationGraph::size)
       .def_property_readonly(
@@ -128,8 +128,7 @@ void add_graph(py::module_& m) {
           "Overlap of each pair: (n, n), a copy.");
   m.def(
       "overlap_graph",
-      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
-         py::object progress) {
+      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels, Listener progress) {
         LongCall call(std::move(progress));
         return call.run([&] { return overlap_graph(self.surroundings(), stations, sample_voxels, call.progress()); });
       },
@@ -152,8 +151,12 @@ void add_finding(py::module_& m) {
       .def_property_readonly("captured_matrix", &Candidates::captured_matrix,
                              "Coverage matrix of the share of what is attainable.")
       .def_property_readonly("change", &Candidates::change, "By what share the last doubling raised that.")
-      .def_property_readonly("ended", &Candidates::ended,
-                             "Why growth ended: 'enough', 'all', 'most', 'time' or 'cancelled'.")
+      .def_property_readonly(
+          "ended",
+          [](const Candidates& found) {
+            return Typed<"Literal['enough', 'all', 'most', 'time', 'cancelled']", py::str>(found.ended());
+          },
+          "Why growth ended: 'enough', 'all', 'most', 'time' or 'cancelled'.")
       .def_property_readonly("spacing_m", &Candidates::spacing_m, "Typical distance between neighbours.")
       .def("__len__", [](const Candidates& found) { return found.stations().size(); });
   const auto options =
@@ -172,7 +175,7 @@ void add_finding(py::module_& m) {
           .add("max_seconds", &CandidateConfig::max_seconds, "Time limit for growing; 0: none.");
   m.def(
       "find_candidates",
-      [options](GuardedSite& self, py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, Listener progress, const py::kwargs& given) {
         const CandidateConfig config = options.read(given);
         const auto lock = self.taken();
         LongCall call(std::move(progress));
@@ -217,11 +220,15 @@ void add_bounds(py::module_& m) {
   m.def(
       "max_cover",
       [of_coverage](const CoverageMatrix& matrix, std::size_t stations, const Chosen& existing,
-                    const StationGraph* graph, double link, py::object progress, const py::kwargs& given) {
+                    std::optional<std::reference_wrapper<const StationGraph>> graph, double link, Listener progress,
+                    const py::kwargs& given) {
         const BoundConfig config = of_coverage.read(given);
         LongCall call(std::move(progress));
-        const CoverProblem problem{
-            .matrix = matrix, .graph = graph, .existing = existing, .most = stations, .link = link};
+        const CoverProblem problem{.matrix = matrix,
+                                   .graph = graph ? &graph->get() : nullptr,
+                                   .existing = existing,
+                                   .most = stations,
+                                   .link = link};
         return call.run([&] { return max_cover(problem, config, call.progress()); });
       },
       py::arg("matrix"), py::arg("stations"), py::arg("existing") = Chosen{}, py::kw_only(),
@@ -233,7 +240,7 @@ void add_bounds(py::module_& m) {
           .c_str());
   m.def(
       "min_cover",
-      [of_number](const CoverageMatrix& matrix, double coverage, const Chosen& existing, py::object progress,
+      [of_number](const CoverageMatrix& matrix, double coverage, const Chosen& existing, Listener progress,
                   const py::kwargs& given) {
         const BoundConfig config = of_number.read(given);
         LongCall call(std::move(progress));
@@ -259,7 +266,7 @@ void add_choices(py::module_& m) {
       "chosen\ncandidates in order; fewer than `stations` if none adds anything.");
   m.def(
       "improve_by_swaps",
-      [](const CoverageMatrix& matrix, const Chosen& chosen, const Chosen& existing, py::object progress) {
+      [](const CoverageMatrix& matrix, const Chosen& chosen, const Chosen& existing, Listener progress) {
         check_candidates(chosen, matrix.candidates());
         if (chosen.size() < existing.size() || !std::equal(existing.begin(), existing.end(), chosen.begin()))
           throw Error(Errc::invalid_argument,
@@ -274,7 +281,7 @@ void add_choices(py::module_& m) {
   m.def(
       "min_connected_cover",
       [](const CoverageMatrix& matrix, double coverage, const StationGraph& graph, double link, const Chosen& existing,
-         std::optional<std::size_t> most, py::object progress) {
+         std::optional<std::size_t> most, Listener progress) {
         CoverProblem problem{
             .matrix = matrix, .graph = &graph, .existing = existing, .coverage = coverage, .link = link};
         if (most) problem.most = *most;
@@ -306,7 +313,7 @@ void add_greedy(py::module_& m) {
                "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
       "greedy_network",
-      [options](GuardedSite& self, std::size_t stations, py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, std::size_t stations, Listener progress, const py::kwargs& given) {
         GreedyConfig config = options.read(given);
         config.stations = stations;
         const auto lock = self.taken();
@@ -341,7 +348,7 @@ void add_exact(py::module_& m) {
           .add("existing", &ExactConfig::existing, "Heads of existing stations.");
   m.def(
       "exact_network",
-      [options](GuardedSite& self, std::size_t stations, py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, std::size_t stations, Listener progress, const py::kwargs& given) {
         ExactConfig config = options.read(given);
         config.stations = stations;
         const auto lock = self.taken();

@@ -54,7 +54,7 @@ const char* const kData =
     "estimated from\nthe surroundings, and `e57_bytes` and `las_bytes` of files with their reflectivity. None if it is "
     "not known.";
 
-py::object data_of(const Evaluation& e) {
+Data data_of(const Evaluation& e) {
   if (!e.data) return py::none();
   py::dict dict;
   dict["points"] = e.data->points, dict["e57_bytes"] = e.data->e57_bytes, dict["las_bytes"] = e.data->las_bytes;
@@ -63,8 +63,8 @@ py::object data_of(const Evaluation& e) {
 
 namespace {
 
-py::dict values_of(const Evaluation& e) {
-  py::dict dict = from_json(evaluation_json(e));
+Json values_of(const Evaluation& e) {
+  Json dict = from_json(evaluation_json(e));
   dict["points"] = e.counts.points;
   dict["points_on_surveyed"] = e.counts.points_on_surveyed;
   dict["trace_seconds"] = e.counts.trace_seconds;

@@ -20,8 +20,9 @@ inline py::array_t<double> matrix_of(PairMatrix matrix) {
   return py::array_t<double>(Shape{n, n}, data, owner);
 }
 
-/// Returns the data in the scans of an evaluation, as a dict; None if it is not known.
-py::object data_of(const Evaluation& e);
+using Data = Typed<"Optional[Dict[str, float]]">;
+/// Returns the data in the scans of an evaluation; None if it is not known.
+Data data_of(const Evaluation& e);
 extern const char* const kData;  // its docstring
 
 }  // namespace vantage::python

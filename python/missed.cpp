@@ -32,7 +32,7 @@ std::map<std::string, std::map<std::string, double>> shares_of(const MissedVoxel
   return shares;
 }
 
-py::list rooms_of(const MissedVoxels& missed) {
+Typed<"List[Dict[str, Any]]", py::list> rooms_of(const MissedVoxels& missed) {
   py::list rooms;
   for (const RoomShare& room : missed.rooms) {
     py::dict shares;
@@ -86,7 +86,7 @@ void add_missed(py::module_& m) {
   const auto options = missed_options();
   m.def(
       "why_missed",
-      [options](GuardedSite& self, const Evaluation& evaluation, py::object progress, const py::kwargs& given) {
+      [options](GuardedSite& self, const Evaluation& evaluation, Listener progress, const py::kwargs& given) {
         const MissedOptions how = options.read(given);
         const auto lock = self.taken();
         if (evaluation.field.count.empty() || evaluation.field.count.size() != self.site.simulator().voxel_count())

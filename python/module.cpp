@@ -14,14 +14,17 @@ void add_errors(py::module_& m) {
       "'invalid_argument', 'io', 'malformed_file', 'no_suitable_device', 'out_of_memory' or\n        "
       "'device_failure'.\n    details: a tuple of further lines, e.g. why each device was refused.",
       PyExc_RuntimeError, nullptr);
+  py::dict members;
+  members["code"] = type_text<Errc>(), members["details"] = type_text<Tuple<std::string>>();
+  py::handle(error).attr("__annotations__") = members;
   m.add_object("Error", error);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& e) {
       const py::object raised = py::handle(error)(e.what());
-      raised.attr("code") = name_of(e.code());
-      raised.attr("details") = py::tuple(py::cast(std::vector<std::string>(e.details().begin(), e.details().end())));
+      raised.attr("code") = e.code();
+      raised.attr("details") = Tuple<std::string>{{e.details().begin(), e.details().end()}};
       PyErr_SetObject(error, raised.ptr());
     }
   });
@@ -57,7 +60,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("__name__") = name;
 
   m.attr("__version__") = vantage::version();
-  py::dict defaults;
-  for (const auto& [call, options] : all_defaults()) defaults[py::str(call)] = options;
-  m.attr("_defaults") = defaults;
+  py::dict options;
+  for (const auto& [call, each] : all_options()) options[py::str(call)] = each;
+  m.attr("_options") = options;
 }

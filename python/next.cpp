@@ -21,12 +21,13 @@ NextConfig config_of(const py::kwargs& given) {
   return config;
 }
 
-std::optional<Next> next_of(GuardedSite& self, const std::filesystem::path& scans, const py::object& planned,
-                            std::vector<std::string> names, py::object progress, const py::kwargs& given) {
+std::optional<Next> next_of(GuardedSite& self, const std::filesystem::path& scans,
+                            const std::optional<Stations>& planned, std::vector<std::string> names, Listener progress,
+                            const py::kwargs& given) {
   Next next{nullptr, Day{.config = config_of(given)}};
   const auto lock = self.taken();
   Day& day = next.day;
-  if (!planned.is_none()) day.planned = placed_on(self.site, stations_of(planned));
+  if (planned) day.planned = placed_on(self.site, stations_of(*planned));
   if (!names.empty() && names.size() != day.planned.size())
     throw Error(Errc::invalid_argument, "planned_names: one for each planned station is wanted, " +
                                             std::to_string(names.size()) + " for " +

@@ -166,7 +166,7 @@ void add_on_site(py::module_& m) {
            "Ground points (x, y, z) of such a way; none if the search area does not connect them.")
       .def(
           "visit",
-          [](const OnSite& site, const py::object& given) {
+          [](const OnSite& site, const Stations& given) {
             const std::vector<PlacedStation> stations = stations_of(given);
             Visit visit = site.visit(stations);
             visit.day_min = site.options().day_min.value_or(0);

@@ -11,10 +11,10 @@
 
 namespace vantage::python {
 
-/// Defaults of every table by the name of its call or class, for the test of the stubs.
-inline std::vector<std::pair<std::string, py::dict>>& all_defaults() {
-  static auto* defaults = new std::vector<std::pair<std::string, py::dict>>;
-  return *defaults;
+/// Options of every call or class by its name: (type, default) by the name of each, for the stub.
+inline std::vector<std::pair<std::string, py::dict>>& all_options() {
+  static auto* options = new std::vector<std::pair<std::string, py::dict>>;
+  return *options;
 }
 
 template <class Struct>
@@ -29,18 +29,19 @@ class Options {
         name, [member](const Struct& s) { return s.*member; },
         [member](Struct& s, Value value) { s.*member = std::move(value); }, doc);
   }
+  /// `set` takes a Value; what `get` returns may be of another type.
   template <class Value, class Get, class Set>
   Options& add(const char* name, Get get, Set set, const char* doc) {
-    members_.push_back({name, doc,
-                        [get](const Struct& s) -> py::object {
-                          if constexpr (std::derived_from<Value, py::object>)
-                            return get(s);
-                          else
-                            return py::cast(get(s));
-                        },
-                        [set, where = name_ + ": " + name](Struct& s, const py::object& given) {
-                          set(s, value_of<Value>(given, where));
-                        }});
+    const auto take = [set, where = name_ + ": " + name](Struct& s, const Given<Value>& given) {
+      set(s, value_of<Value>(given.object, where));
+    };
+    members_.push_back({.name = name,
+                        .doc = doc,
+                        .type = &type_text<Value>,
+                        .get = [get](const Struct& s) -> py::object { return py::cast(get(s)); },
+                        .set = [take](Struct& s, const py::object& given) { take(s, {given}); },
+                        .getter = [get] { return py::cpp_function([get](const Struct& s) { return get(s); }); },
+                        .setter = [take] { return py::cpp_function(take); }});
     return *this;
   }
 
@@ -67,13 +68,13 @@ class Options {
   std::string doc() const {
     const Struct usual{};
     std::string text = "\n\nOptions:\n";
-    py::dict defaults;
+    py::dict options;
     for (const Member& member : members_) {
       const py::object value = member.get(usual);
-      defaults[py::str(member.name)] = value;
+      options[py::str(member.name)] = py::make_tuple(member.type(), value);
       text += "    " + member.name + ": " + member.doc + " Default: " + std::string(py::repr(value)) + ".\n";
     }
-    all_defaults().emplace_back(name_, defaults);
+    all_options().emplace_back(name_, options);
     return text;
   }
 
@@ -81,9 +82,7 @@ class Options {
   template <class... Extra>
   void attributes(py::class_<Struct, Extra...>& type) const {
     for (const Member& member : members_)
-      type.def_property(member.name.c_str(), py::cpp_function([get = member.get](const Struct& s) { return get(s); }),
-                        py::cpp_function([set = member.set](Struct& s, const py::object& value) { set(s, value); }),
-                        member.doc.c_str());
+      type.def_property(member.name.c_str(), member.getter(), member.setter(), member.doc.c_str());
   }
 
   /// The members' values by their names.
@@ -112,15 +111,17 @@ class Options {
  private:
   struct Member {
     std::string name, doc;
+    std::string (*type)();
     std::function<py::object(const Struct&)> get;
     std::function<void(Struct&, const py::object&)> set;
+    std::function<py::cpp_function()> getter, setter;
   };
 
   template <class Value>
   static Value value_of(const py::object& given, const std::string& where) {
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, true))
-      throw py::type_error(where + ": " + std::string(py::repr(given)) + " is no " + caster.name.text +
+      throw py::type_error(where + ": " + std::string(py::repr(given)) + " is no " + type_text<Value>() +
                            (std::unsigned_integral<Value> ? " of 0 or more" : ""));
     return py::detail::cast_op<Value>(std::move(caster));
   }

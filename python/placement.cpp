@@ -21,17 +21,6 @@ py::array_t<Result> for_each_row(const Doubles& rows, const char* what, const Of
 }
 
 Options<WalkableOptions> walkable_options() {
-  using Rings = std::vector<std::vector<std::array<double, 2>>>;
-  const auto regions = [](const std::vector<PlanRegion>& from) {
-    std::vector<Rings> to;
-    for (const PlanRegion& region : from) to.push_back(region.rings);
-    return to;
-  };
-  const auto of_rings = [](std::vector<Rings> from) {
-    std::vector<PlanRegion> to;
-    for (Rings& rings : from) to.push_back({std::move(rings)});
-    return to;
-  };
   return Options<WalkableOptions>("SearchArea")
       .add("max_slope_deg", &WalkableOptions::max_slope, "Steepest walkable ground.")
       .add("headroom_m", &WalkableOptions::headroom_m, "Clear height above walkable ground.")
@@ -43,14 +32,9 @@ Options<WalkableOptions> walkable_options() {
       .add("enter_closed", &WalkableOptions::enter_closed,
            "Whether large parts that something bars the way to are walkable, too, unless enter is given.")
       .add("levels", &WalkableOptions::levels, "Lowest and highest height of ground; None: any.")
-      .add<std::vector<Rings>>(
-          "within", [regions](const WalkableOptions& o) { return regions(o.within); },
-          [of_rings](WalkableOptions& o, std::vector<Rings> rings) { o.within = of_rings(std::move(rings)); },
-          "Regions, lists of rings of corners (x, y): only ground in one of these.")
-      .add<std::vector<Rings>>(
-          "without", [regions](const WalkableOptions& o) { return regions(o.without); },
-          [of_rings](WalkableOptions& o, std::vector<Rings> rings) { o.without = of_rings(std::move(rings)); },
-          "Regions: no ground in any of these.");
+      .add("within", &WalkableOptions::within,
+           "Regions, lists of rings of corners (x, y): only ground in one of these.")
+      .add("without", &WalkableOptions::without, "Regions: no ground in any of these.");
 }
 
 // (3, 3): rows of a rotation.
@@ -104,7 +88,7 @@ void add_stations(py::module_& m) {
       .def_readonly("position", &PlacedStation::position, "The scanner's head (x, y, z), survey frame, metres.")
       .def_readonly("ground", &PlacedStation::ground, "Ground below the tripod, survey frame, metres.")
       .def_property_readonly(
-          "status", [](const PlacedStation& s) { return to_string(s.status); },
+          "status", [](const PlacedStation& s) { return s.status; },
           "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
       .def_readonly("existing", &PlacedStation::existing, "Whether it is an existing station.")
       .def_readonly("setup", &PlacedStation::setup, "Setup of the scanner.")
@@ -157,7 +141,7 @@ void add_search_area(py::module_& m) {
           "Indices of vertices: (m, 3), read-only.")
       .def(
           "locate",
-          [](const SearchArea& area, const py::object& uvs) {
+          [](const SearchArea& area, const ArrayLike& uvs) {
             const Doubles rows = doubles_of(uvs, "uvs");
             std::vector<Vec3> found;
             for (const Uv& uv : rows_of<Uv>(rows, "uvs"))
@@ -167,7 +151,7 @@ void add_search_area(py::module_& m) {
           py::arg("uvs"), "Ground under each (u, v) of (n, 2), survey frame: (n, 3), metres; NaN in a hole.")
       .def(
           "project",
-          [](const SearchArea& area, const py::object& grounds) {
+          [](const SearchArea& area, const ArrayLike& grounds) {
             const Doubles rows = doubles_of(grounds, "grounds");
             std::vector<Uv> found;
             for (const Vec3& ground : rows_of<Vec3>(rows, "grounds"))
@@ -199,7 +183,7 @@ void add_clash(py::module_& m) {
            py::arg("scene"))
       .def(
           "clashes",
-          [](const ClashChecker& clash, const py::object& grounds, std::optional<double> height_m) {
+          [](const ClashChecker& clash, const ArrayLike& grounds, std::optional<double> height_m) {
             return for_each_row<bool, Vec3>(doubles_of(grounds, "grounds"), "grounds", [&](const Vec3& ground) {
               return height_m ? clash.clashes(ground, *height_m) : clash.clashes(ground);
             });
@@ -209,7 +193,8 @@ void add_clash(py::module_& m) {
           "With\nheight_m, that of the head above the ground, mast and head are kept clear too.")
       .def(
           "sees",
-          [](const ClashChecker& clash, const py::object& a, const py::object& b) -> py::object {
+          [](const ClashChecker& clash, const ArrayLike& a,
+             const ArrayLike& b) -> Typed<"Union[bool, numpy.ndarray[bool]]"> {
             const Doubles first = doubles_of(a, "a"), second = doubles_of(b, "b");
             const std::span<const Vec3> from = points_of(first, "a"), to = points_of(second, "b");
             std::vector<std::uint8_t> free = [&] {
@@ -226,7 +211,7 @@ void add_clash(py::module_& m) {
           "or of\none and a point: (n,).")
       .def(
           "distance",
-          [](const ClashChecker& clash, const py::object& points, double limit_m) {
+          [](const ClashChecker& clash, const ArrayLike& points, double limit_m) {
             return for_each_row<double, Vec3>(doubles_of(points, "points"), "points",
                                               [&](const Vec3& point) { return clash.distance(point, limit_m); });
           },

@@ -47,10 +47,14 @@ py::array_t<double> scaled_front(const Watched& now) {
   return table_of(rows);
 }
 
+using GivenProblem = Typed<"Union[None, str, vantage.SurveyProblem]">;
+
 // Takes the settings of a question and of a search, or `problem` in place of the former.
-std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
+std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const GivenProblem& problem,
                                 std::vector<Vec3> start, std::optional<std::filesystem::path> checkpoint,
-                                std::vector<Target> existing_targets, py::object progress, const py::kwargs& given) {
+                                std::vector<Target> existing_targets,
+                                Typed<"Optional[Callable[[vantage.PlanProgress], Any]]"> progress,
+                                const py::kwargs& given) {
   refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
   SurveyQuestion question;
   PlanConfig config;
@@ -87,7 +91,12 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
 
 void add_progress(py::module_& m) {
   py::class_<Watched>(m, "PlanProgress", "Progress of a search.")
-      .def_readonly("phase", &Watched::phase, "'look' (at attainable coverage), 'choose', 'search' or 'confirm'.")
+      .def_property_readonly(
+          "phase",
+          [](const Watched& now) {
+            return Typed<"Literal['look', 'choose', 'search', 'confirm']", py::str>(now.phase);
+          },
+          "'look' (at attainable coverage), 'choose', 'search' or 'confirm'.")
       .def_readonly("iteration", &Watched::iteration, "Number of the iteration, out of `iterations`.")
       .def_readonly("iterations", &Watched::iterations, "The requested number.")
       .def_readonly("evaluations", &Watched::evaluations, "Networks that were evaluated.")
@@ -168,7 +177,7 @@ void add_entries(py::module_& m) {
   refuse_pickle(type, "a PlanEntry refers to its PlanResult and is not pickled; take its stations and values");
 }
 
-py::list history_of(const Plan& plan) {
+Typed<"List[Dict[str, Any]]", py::list> history_of(const Plan& plan) {
   py::list lines;
   for (const PlanIteration& iteration : plan.result.history) {
     py::dict line;
@@ -183,7 +192,7 @@ py::list history_of(const Plan& plan) {
 }
 
 void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::optional<std::string>& title,
-                       py::object progress) {
+                       Listener progress) {
   const auto lock = plan.site->taken();
   Site& site = plan.site->site;
   const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
@@ -203,7 +212,7 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
 
 std::vector<std::string> write_folder(const Plan& plan, const std::filesystem::path& folder,
                                       const std::optional<std::string>& title, bool reports,
-                                      std::optional<double> max_seconds, bool doubles, py::object progress) {
+                                      std::optional<double> max_seconds, bool doubles, Listener progress) {
   const auto lock = plan.site->taken();
   LongCall call(std::move(progress));
   return call.run([&] {

@@ -49,6 +49,7 @@ Measured copy_of(const MeasuredNetwork& network, const std::optional<Registratio
   return copy;
 }
 
+using GivenMeasure = Typed<"Callable[[vantage.MeasuredNetwork], float]", py::function>;
 using Measure = std::function<double(const MeasuredNetwork&)>;
 
 // Searches copy and call objectives without holding the interpreter's lock.
@@ -66,10 +67,10 @@ Measure measure_of(const py::function& function, const std::optional<Registratio
   };
 }
 
-Objective objective_of(std::string name, const py::function& value, const Scale& scale, std::string label,
+Objective objective_of(std::string name, const GivenMeasure& value, const Scale& scale, std::string label,
                        std::string unit, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
                        bool meshes, const std::optional<RegistrationOptions>& registration,
-                       const std::optional<py::function>& standard_error, std::string parameters) {
+                       const std::optional<GivenMeasure>& standard_error, std::string parameters) {
   Objective made{.name = std::move(name),
                  .label = std::move(label),
                  .unit = std::move(unit),
@@ -150,7 +151,8 @@ void add_objectives(py::module_& m) {
       .def_readonly("scale", &Objective::scale, "From best to worst, in its unit.")
       .def("__repr__", [](const Objective& o) { return "<vantage.Objective '" + o.name + "'>"; });
   py::class_<Requirement>(m, "Requirement", "A bound on an objective.")
-      .def(py::init([](Objective objective, const std::string& bound, double limit) {
+      .def(py::init([](Objective objective, const Typed<"Literal['>=', '<=']", py::str>& given, double limit) {
+             const std::string bound = given;
              if (bound != ">=" && bound != "<=")
                throw Error(Errc::invalid_argument, "bound: '" + bound + "' is neither '>=' nor '<='");
              return Requirement{std::move(objective),
@@ -170,31 +172,26 @@ void add_objectives(py::module_& m) {
       "The built-in objectives.");
 }
 
-// Built-in ones by their names.
-std::vector<Objective> objectives_from(const py::iterable& given, const SurveyProblem& problem) {
-  std::vector<Objective> made;
-  for (const auto& each : given)
-    made.push_back(py::isinstance<py::str>(each) ? make_objective(each.cast<std::string>(), problem.settings())
-                                                 : each.cast<Objective>());
-  return made;
-}
-std::vector<Requirement> requirements_from(const py::iterable& given, const SurveyProblem& problem) {
-  std::vector<Requirement> made;
-  for (const auto& each : given)
-    made.push_back(py::isinstance<py::str>(each) ? make_requirement(each.cast<std::string>(), problem.settings())
-                                                 : each.cast<Requirement>());
-  return made;
+// Objectives or requirements, or texts of which `make` makes them with the problem's settings.
+template <class Made>
+using MadeOrText = Tuple<std::variant<std::string, Made>>;
+template <class Made, class Make>
+std::vector<Made> made_of(MadeOrText<Made> given, const SurveyProblem& problem, const Make& make) {
+  std::vector<Made> all;
+  for (auto& each : given.values) {
+    const auto* text = std::get_if<std::string>(&each);
+    all.push_back(text ? make(*text, problem.settings()) : std::get<Made>(std::move(each)));
+  }
+  return all;
 }
 
-// A list becomes a tuple: appending to a copy would be lost silently.
 template <class Value>
 auto tuple_of(std::vector<Value> SurveyProblem::*member) {
-  return [member](const SurveyProblem& p) { return py::tuple(py::cast(p.*member)); };
+  return [member](const SurveyProblem& p) { return Tuple<Value>{p.*member}; };
 }
 template <class Value>
-auto from_list(std::vector<Value> SurveyProblem::*member) {
-  return
-      [member](SurveyProblem& p, const py::iterable& given) { p.*member = py::list(given).cast<std::vector<Value>>(); };
+auto from_tuple(std::vector<Value> SurveyProblem::*member) {
+  return [member](SurveyProblem& p, Tuple<Value> given) { p.*member = std::move(given.values); };
 }
 
 Options<SurveyProblem> problem_options() {
@@ -202,15 +199,15 @@ Options<SurveyProblem> problem_options() {
       .add("name", &SurveyProblem::name, "For tables and pictures.")
       .add("stations_min", &SurveyProblem::stations_min, "Fewest stations to place.")
       .add("stations_max", &SurveyProblem::stations_max, "Most; if it differs from the fewest, the number is searched.")
-      .add<py::iterable>("existing", tuple_of(&SurveyProblem::existing), from_list(&SurveyProblem::existing),
-                         "Heads (x, y, z) of existing stations, survey frame, metres.")
-      .add<py::iterable>("existing_setups", tuple_of(&SurveyProblem::existing_setups),
-                         from_list(&SurveyProblem::existing_setups),
-                         "Their StationSetups, one each; none: upright, with the first scanner.")
-      .add<py::iterable>("existing_names", tuple_of(&SurveyProblem::existing_names),
-                         from_list(&SurveyProblem::existing_names), "Their names, one each, or none.")
-      .add<py::iterable>("scanners", tuple_of(&SurveyProblem::scanners), from_list(&SurveyProblem::scanners),
-                         "Scanners that each station chooses from, in their order; none: the site's first.")
+      .add<Tuple<Vec3>>("existing", tuple_of(&SurveyProblem::existing), from_tuple(&SurveyProblem::existing),
+                        "Heads (x, y, z) of existing stations, survey frame, metres.")
+      .add<Tuple<StationSetup>>("existing_setups", tuple_of(&SurveyProblem::existing_setups),
+                                from_tuple(&SurveyProblem::existing_setups),
+                                "Their StationSetups, one each; none: upright, with the first scanner.")
+      .add<Tuple<std::string>>("existing_names", tuple_of(&SurveyProblem::existing_names),
+                               from_tuple(&SurveyProblem::existing_names), "Their names, one each, or none.")
+      .add<Tuple<Scanner>>("scanners", tuple_of(&SurveyProblem::scanners), from_tuple(&SurveyProblem::scanners),
+                           "Scanners that each station chooses from, in their order; none: the site's first.")
       .add("every_echo", &SurveyProblem::every_echo,
            "Whether it is posed for scanners that detect every echo. The site's then do, unless `detection` says what "
            "they\ndetect.")
@@ -220,8 +217,8 @@ Options<SurveyProblem> problem_options() {
       .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: times of a round.")
       .add("targets", &SurveyProblem::targets,
            "Targets to propose; 0: none, None: as few as the registration takes, if `fewest`.")
-      .add<py::iterable>("existing_targets", tuple_of(&SurveyProblem::existing_targets),
-                         from_list(&SurveyProblem::existing_targets), "Targets and control points that are there.")
+      .add<Tuple<Target>>("existing_targets", tuple_of(&SurveyProblem::existing_targets),
+                          from_tuple(&SurveyProblem::existing_targets), "Targets and control points that are there.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
       .add("pays_m2", &SurveyProblem::pays_m2,
            "With `fewest`: what each station has to capture besides the others, m². The required `capture` is the "
@@ -232,13 +229,17 @@ Options<SurveyProblem> problem_options() {
            "the larger of both counts.")
       .add("attainable", &SurveyProblem::attainable,
            "Attainable coverage, the denominator of `capture`; a plan finds it.")
-      .add<py::iterable>(
+      .add<MadeOrText<Objective>>(
           "objectives", tuple_of(&SurveyProblem::objectives),
-          [](SurveyProblem& p, const py::iterable& given) { p.objectives = objectives_from(given, p); },
+          [](SurveyProblem& p, MadeOrText<Objective> given) {
+            p.objectives = made_of(std::move(given), p, &make_objective);
+          },
           "Objectives of the search, or names of built-in ones.")
-      .add<py::iterable>(
+      .add<MadeOrText<Requirement>>(
           "requirements", tuple_of(&SurveyProblem::requirements),
-          [](SurveyProblem& p, const py::iterable& given) { p.requirements = requirements_from(given, p); },
+          [](SurveyProblem& p, MadeOrText<Requirement> given) {
+            p.requirements = made_of(std::move(given), p, &make_requirement);
+          },
           "Requirements, or texts like 'coverage >= 0.9'.");
 }
 

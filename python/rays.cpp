@@ -25,16 +25,16 @@ struct GivenRays {
   }
 };
 
-GivenRays given_rays(const py::object& origins, const py::object& directions, const py::object& ranges_m) {
+GivenRays given_rays(const ArrayLike& origins, const ArrayLike& directions, const std::optional<ArrayLike>& ranges_m) {
   return {doubles_of(origins, "origins"), doubles_of(directions, "directions"),
-          ranges_m.is_none() ? std::nullopt : std::optional(doubles_of(ranges_m, "ranges_m"))};
+          ranges_m ? std::optional(doubles_of(*ranges_m, "ranges_m")) : std::nullopt};
 }
 
 // A call of the tracer with arrays, whose result `give` makes one of Python's.
 template <class Result, class Give>
 auto call_of(Result (RayTracer::*traced)(const Rays&, const RayOptions&, const Progress&) const, const Give& give) {
-  return [traced, give](const RayTracer& self, const py::object& origins, const py::object& directions,
-                        const py::object& ranges_m, double from_m, bool glass, py::object progress) {
+  return [traced, give](const RayTracer& self, const ArrayLike& origins, const ArrayLike& directions,
+                        const std::optional<ArrayLike>& ranges_m, double from_m, bool glass, Listener progress) {
     const GivenRays given = given_rays(origins, directions, ranges_m);
     const Rays rays = given.rays();
     LongCall call(std::move(progress));

@@ -194,10 +194,10 @@ Rows rows_of(const std::vector<std::string>& outputs, bool float32, const Vec3& 
   return rows;
 }
 
-std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
+std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const Stations& stations,
                                 const std::vector<std::string>& outputs, const std::string& crs,
                                 const std::optional<BeamOptions>& beam,
-                                const std::optional<InstrumentErrors>& instrument, bool doubles, py::object progress) {
+                                const std::optional<InstrumentErrors>& instrument, bool doubles, Listener progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
   const std::uint32_t bits =
@@ -228,7 +228,7 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
           bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam,
-          const std::optional<InstrumentErrors>& instrument, py::object progress) {
+          const std::optional<InstrumentErrors>& instrument, Listener progress) {
   if (grid && beam && beam->returns == Returns::all)
     throw Error(Errc::invalid_argument, "scan: a grid has one element for each ray; with returns='all' leave it out");
   const Simulator& simulator = self.simulator;
@@ -249,7 +249,7 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
 
 py::array scan_array(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, bool float32,
                      const StationSetup& setup, std::uint32_t place, const std::optional<BeamOptions>& beam,
-                     const std::optional<InstrumentErrors>& instrument, py::object progress) {
+                     const std::optional<InstrumentErrors>& instrument, Listener progress) {
   std::vector<std::string> others;
   for (const std::string& output : outputs)
     if (output != "row" && output != "column" && output != "range_m") others.push_back(output);

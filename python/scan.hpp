@@ -19,12 +19,12 @@ void add_clouds(py::module_& m);
 
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
           bool grid, std::uint32_t place, const std::optional<BeamOptions>& beam,
-          const std::optional<InstrumentErrors>& instrument, py::object progress);
+          const std::optional<InstrumentErrors>& instrument, Listener progress);
 
 /// The points of a station as a structured array.
 py::array scan_array(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, bool float32,
                      const StationSetup& setup, std::uint32_t place, const std::optional<BeamOptions>& beam,
-                     const std::optional<InstrumentErrors>& instrument, py::object progress);
+                     const std::optional<InstrumentErrors>& instrument, Listener progress);
 
 /// Points of a station; with `grid` one element for each ray.
 struct Scan : ScanPoints {

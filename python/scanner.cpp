@@ -6,69 +6,68 @@
 namespace vantage::python {
 namespace {
 
+using Numbers = py::array_t<double>;
+using GivenNoise = Typed<"Dict[str, numpy.typing.ArrayLike]">;
+
 // {'distances_m': (d,), 'reflectivities': (r,), 'sigma_m': (r, d)}; None: no noise.
-py::object noise_of(const NoiseTable& noise) {
-  if (noise.empty()) return py::none();
-  py::dict dict;
-  dict["distances_m"] =
-      py::array_t<double>(static_cast<py::ssize_t>(noise.distances_m.size()), noise.distances_m.data());
-  dict["reflectivities"] =
-      py::array_t<double>(static_cast<py::ssize_t>(noise.reflectivities.size()), noise.reflectivities.data());
-  dict["sigma_m"] = py::array_t<double>(
-      Shape{static_cast<py::ssize_t>(noise.reflectivities.size()), static_cast<py::ssize_t>(noise.distances_m.size())},
-      noise.sigma_m.data());
-  return dict;
+std::optional<std::map<std::string, Numbers>> noise_of(const NoiseTable& noise) {
+  if (noise.empty()) return std::nullopt;
+  const auto d = static_cast<py::ssize_t>(noise.distances_m.size());
+  const auto r = static_cast<py::ssize_t>(noise.reflectivities.size());
+  return {{{"distances_m", Numbers(d, noise.distances_m.data())},
+           {"reflectivities", Numbers(r, noise.reflectivities.data())},
+           {"sigma_m", Numbers(Shape{r, d}, noise.sigma_m.data())}}};
 }
 
-NoiseTable noise_from(const py::object& given) {
-  if (given.is_none()) return {};
+NoiseTable noise_from(const std::optional<GivenNoise>& given) {
+  if (!given) return {};
   const auto part = [&](const char* key) {
-    const Doubles numbers = doubles_of(given[key], std::string("noise: ") + key);
+    const Doubles numbers = doubles_of((*given)[key], std::string("noise: ") + key);
     return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
   };
   return {.distances_m = part("distances_m"), .reflectivities = part("reflectivities"), .sigma_m = part("sigma_m")};
 }
 
-py::array_t<double> numbers_of(const std::vector<double>& numbers) {
+Numbers numbers_of(const std::vector<double>& numbers) {
   return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
 
 // An array of what a list holds; None of an empty one.
 template <class List, class Array>
-py::object or_none(const List& list, const Array& array) {
-  return list.empty() ? py::object(py::none()) : py::object(array(list));
+std::optional<Numbers> or_none(const List& list, const Array& array) {
+  return list.empty() ? std::nullopt : std::optional(array(list));
 }
 
-std::vector<double> numbers_from(const py::object& given, const char* name) {
-  if (given.is_none()) return {};
-  const Doubles numbers = doubles_of(given, name);
+std::vector<double> numbers_from(const std::optional<ArrayLike>& given, const char* name) {
+  if (!given) return {};
+  const Doubles numbers = doubles_of(*given, name);
   return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
 }
 
-py::array_t<double> zeniths_of(const std::vector<Angle>& zeniths) {
+Numbers zeniths_of(const std::vector<Angle>& zeniths) {
   std::vector<double> degrees;
   for (const Angle& zenith : zeniths) degrees.push_back(zenith.in_degrees());
   return numbers_of(degrees);
 }
 
-std::vector<Angle> zeniths_from(const py::object& given) {
+std::vector<Angle> zeniths_from(const std::optional<ArrayLike>& given) {
   std::vector<Angle> zeniths;
   for (const double degrees : numbers_from(given, "row_zeniths_deg")) zeniths.push_back(Angle::degrees(degrees));
   return zeniths;
 }
 
-py::array_t<double> pairs_of(const std::vector<RayAngles>& directions) {
-  py::array_t<double> pairs(Shape{static_cast<py::ssize_t>(directions.size()), 2});
+Numbers pairs_of(const std::vector<RayAngles>& directions) {
+  Numbers pairs(Shape{static_cast<py::ssize_t>(directions.size()), 2});
   double* next = pairs.mutable_data();
   for (const RayAngles& angles : directions)
     *next++ = angles.azimuth.in_degrees(), *next++ = 90 - angles.zenith.in_degrees();
   return pairs;
 }
 
-std::vector<RayAngles> directions_from(const py::object& pairs) {
+std::vector<RayAngles> directions_from(const std::optional<ArrayLike>& pairs) {
   std::vector<RayAngles> directions;
-  if (pairs.is_none()) return directions;
-  const Doubles given = doubles_of(pairs, "directions_deg");
+  if (!pairs) return directions;
+  const Doubles given = doubles_of(*pairs, "directions_deg");
   if (given.ndim() != 2 || given.shape(1) != 2)
     throw Error(Errc::invalid_argument, "directions_deg must have the shape (n, 2): azimuths and elevations");
   for (py::ssize_t k = 0; k < given.shape(0); ++k)
@@ -85,19 +84,21 @@ Options<Scanner> scanner_options() {
       .add("zenith_start_deg", &Scanner::zenith_start, "First zenith, from straight up.")
       .add("azimuth_step_deg", &Scanner::azimuth_step, "Angle between columns.")
       .add("zenith_step_deg", &Scanner::zenith_step, "Angle between rows.")
-      .add<py::object>(
+      .add<std::optional<ArrayLike>>(
           "row_zeniths_deg", [](const Scanner& s) { return or_none(s.row_zeniths, zeniths_of); },
-          [](Scanner& s, const py::object& zeniths) { s.set_row_zeniths(zeniths_from(zeniths)); },
+          [](Scanner& s, const std::optional<ArrayLike>& zeniths) { s.set_row_zeniths(zeniths_from(zeniths)); },
           "Zeniths of uneven rows, ascending, degrees (n,), in place of even ones; vertical_angle_deg, "
           "zenith_start_deg and zenith_step_deg are then set to their field and mean step. None: even rows.")
-      .add<py::object>(
+      .add<std::optional<ArrayLike>>(
           "directions_deg", [](const Scanner& s) { return or_none(s.directions, pairs_of); },
-          [](Scanner& s, const py::object& pairs) { s.set_directions(directions_from(pairs), std::move(s.times_s)); },
+          [](Scanner& s, const std::optional<ArrayLike>& pairs) {
+            s.set_directions(directions_from(pairs), std::move(s.times_s));
+          },
           "Directions of a pattern that is no grid, in the order of its rays: azimuths from the heading and elevations "
           "from the horizon, degrees (n, 2); angles and steps are then set to their field and mean step. None: a grid.")
-      .add<py::object>(
+      .add<std::optional<ArrayLike>>(
           "times_s", [](const Scanner& s) { return or_none(s.times_s, numbers_of); },
-          [](Scanner& s, const py::object& times) { s.times_s = numbers_from(times, "times_s"); },
+          [](Scanner& s, const std::optional<ArrayLike>& times) { s.times_s = numbers_from(times, "times_s"); },
           "Seconds from the begin of a scan to each of the directions (n,). None: points_per_second tells them.")
       .add("height_m", &Scanner::height_m, "Height of the head above the search area, metres.")
       .add("min_range_m", &Scanner::min_range_m, "Nearest distance measured, metres.")
@@ -106,9 +107,9 @@ Options<Scanner> scanner_options() {
       .add("battery_min", &Scanner::battery_min,
            "Minutes that a charged battery lasts with the scanner on, 1 or more; 0: not stated.")
       .add("battery_scans", &Scanner::battery_scans, "The same in scans.")
-      .add<py::object>(
+      .add<std::optional<GivenNoise>>(
           "noise", [](const Scanner& s) { return noise_of(s.noise); },
-          [](Scanner& s, const py::object& noise) { s.noise = noise_from(noise); },
+          [](Scanner& s, const std::optional<GivenNoise>& noise) { s.noise = noise_from(noise); },
           "Standard deviations of ranges: a dict of 'distances_m' (d,), 'reflectivities' (r,), 'sigma_m' (r, d); None: "
           "exact.")
       .add<double>(
@@ -150,21 +151,6 @@ Options<InstrumentErrors> instrument_options() {
 }  // namespace
 
 void add_scanners(py::module_& m) {
-  const auto errors = instrument_options();
-  py::class_<InstrumentErrors> instrument(m, "InstrumentErrors",
-                                          ("Errors of one instrument, which all its scans share. Angles have the "
-                                           "opposite sign behind the heading, where the "
-                                           "mirror\nshows its other face." +
-                                           errors.doc())
-                                              .c_str());
-  instrument.def(py::init([errors](const py::kwargs& given) { return errors.read(given); }))
-      .def_static("draw", &draw_instrument_errors, py::arg("scanner"), py::arg("seed"),
-                  "Draws errors of the standard deviations that the scanner states. Scanners of one seed err alike. "
-                  "Raises Error\ninvalid_argument if it states none.")
-      .def("__repr__", [errors](const InstrumentErrors& e) { return errors.repr(e); });
-  errors.attributes(instrument);
-  errors.pickles(instrument);
-
   const auto options = scanner_options();
   py::class_<Scanner> type(
       m, "Scanner",
@@ -187,6 +173,22 @@ void add_scanners(py::module_& m) {
       .def("__repr__", [options](const Scanner& scanner) { return options.repr(scanner); });
   options.attributes(type);
   options.pickles(type);
+
+  const auto errors = instrument_options();
+  py::class_<InstrumentErrors> instrument(m, "InstrumentErrors",
+                                          ("Errors of one instrument, which all its scans share. Angles have the "
+                                           "opposite sign behind the heading, where the "
+                                           "mirror\nshows its other face." +
+                                           errors.doc())
+                                              .c_str());
+  instrument.def(py::init([errors](const py::kwargs& given) { return errors.read(given); }))
+      .def_static("draw", &draw_instrument_errors, py::arg("scanner"), py::arg("seed"),
+                  "Draws errors of the standard deviations that the scanner states. Scanners of one seed err alike. "
+                  "Raises Error\ninvalid_argument if it states none.")
+      .def("__repr__", [errors](const InstrumentErrors& e) { return errors.repr(e); });
+  errors.attributes(instrument);
+  errors.pickles(instrument);
+
   m.def(
       "scanners",
       [](const std::filesystem::path& more) {

@@ -11,8 +11,8 @@ namespace {
 
 using Globs = std::vector<std::string>;
 
-Options<SceneOptions> scene_options() {
-  return Options<SceneOptions>("Scene.load")
+Options<SceneOptions> scene_options(const std::string& call) {
+  return Options<SceneOptions>(call)
       .add("surveyed", &SceneOptions::surveyed, "Patterns (`*`, `?`) of surveyed nodes.")
       .add("blocking", &SceneOptions::blocking, "Nodes that only block.")
       .add("search", &SceneOptions::search, "Nodes of the search area.")
@@ -118,6 +118,9 @@ void add_room(py::module_& m) {
   add_pickle(type);
 }
 
+using GivenMoves = Typed<"Mapping[str, Any]">;
+using GivenMeshes = Typed<"Sequence[Mapping[str, Any]]", py::sequence>;
+
 // A translation, or a pair of a translation and a rotation.
 Pose pose_of(const py::handle& given) {
   try {
@@ -134,10 +137,12 @@ Pose pose_of(const py::handle& given) {
   }
 }
 
-Scene changed(const Scene& scene, const Options<SceneMesh>& options, const py::dict& move, const Globs& remove,
-              const py::sequence& add) {
+Scene changed(const Scene& scene, const Options<SceneMesh>& options, const GivenMoves& move, const Globs& remove,
+              const GivenMeshes& add) {
   SceneChange change;
-  for (const auto& [pattern, pose] : move) change.move.emplace_back(pattern.cast<std::string>(), pose_of(pose));
+  py::dict moves;
+  moves.attr("update")(move);
+  for (const auto& [pattern, pose] : moves) change.move.emplace_back(pattern.cast<std::string>(), pose_of(pose));
   change.remove = remove;
   for (const auto& mesh : add) {
     py::dict rest;
@@ -155,7 +160,7 @@ Scene changed(const Scene& scene, const Options<SceneMesh>& options, const py::d
 }
 
 void add_scene(py::module_& m) {
-  const auto options = scene_options();
+  const auto options = scene_options("Scene.load");
   const auto added = mesh_options("Scene.with_changes");
   py::class_<Scene>(m, "Scene",
                     "The 3D model of a site: surveyed and blocking surfaces, and the search area. Immutable.\nThe "
@@ -183,7 +188,7 @@ void add_scene(py::module_& m) {
           "Raises Error: invalid_argument, malformed_file (no triangle with area).")
       .def(
           "with_changes",
-          [added](const Scene& scene, const py::dict& move, const Globs& remove, const py::sequence& add) {
+          [added](const Scene& scene, const GivenMoves& move, const Globs& remove, const GivenMeshes& add) {
             return changed(scene, added, move, remove, add);
           },
           py::kw_only(), py::arg("move") = py::dict(), py::arg("remove") = Globs{}, py::arg("add") = py::tuple(),
@@ -268,15 +273,19 @@ void add_scenes(py::module_& m) {
   add_room(m);
   add_scene(m);
   add_builder(m);
+  const auto options = scene_options("load_gltf");
   m.def(
       "load_gltf",
-      [options = scene_options()](const py::bytes& bytes, const std::string& name, const py::kwargs& given) {
+      [options](const py::bytes& bytes, const std::string& name, const py::kwargs& given) {
         const std::string_view text = bytes;
         return load_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, options.read(given), name);
       },
       py::arg("bytes"), py::arg("name") = "glTF in memory",
-      "Loads a scene from the bytes of a .glb or .gltf file. Messages begin with `name`. Options as for "
-      "`Scene.load`.\nRaises Error as `Scene.load`, and malformed_file if the file refers to another one.");
+      ("Loads a scene from the bytes of a .glb or .gltf file. Messages begin with `name`.\nRaises Error as "
+       "`Scene.load`, "
+       "and malformed_file if the file refers to another one." +
+       options.doc())
+          .c_str());
   m.def(
       "built_in_scene_names",
       [] {

@@ -62,21 +62,21 @@ void refuse_unknown(const py::kwargs& given, const std::string& call, const Sett
   }
 }
 
-/// A line for each row with the form of its value, for the end of a docstring, and the rows' names for the test of the
-/// stubs.
+/// A line for each row with the form of its value, for the end of a docstring, and the rows' names for the stub.
 template <class... Options>
 std::string settings_doc(const std::string& call, const SettingTable<Options>&... tables) {
   std::string text = "\n\nSettings, each with the form of its value (text, number or sequence); None leaves it open:\n";
-  py::dict defaults;
+  py::dict options;
+  const py::tuple setting = py::make_tuple("Union[None, bool, float, os.PathLike, Sequence[Any]]", py::none());
   const auto add = [&](const auto& table) {
     for (const auto& row : table) {
       if (row.name == "problem") continue;  // a separate parameter
       text += "    " + keyword(row.name) + (row.unit.empty() ? "" : " (" + row.unit + ")") + ": " + row.help + ".\n";
-      defaults[py::str(keyword(row.name))] = py::none();
+      options[py::str(keyword(row.name))] = setting;
     }
   };
   (add(tables), ...);
-  all_defaults().emplace_back(call, defaults);
+  all_options().emplace_back(call, options);
   return text;
 }
 

@@ -12,6 +12,9 @@
 namespace vantage::python {
 namespace {
 
+using Networks =
+    Typed<"Sequence[Union[numpy.typing.ArrayLike, Sequence[vantage.Station], Sequence[vantage.PlacedStation]]]",
+          py::sequence>;
 using Devices = std::vector<std::pair<Engine, std::optional<std::uint32_t>>>;
 
 Options<SimulatorConfig> simulator_options() {
@@ -48,9 +51,9 @@ bool all_surfaces(const std::optional<RegistrationOptions>& registration) {
   return registration && registration->surfaces == RegistrationSurfaces::all;
 }
 
-Evaluation evaluate(Simulators& self, const py::object& stations, bool overlap, bool skip, bool field,
-                    bool surroundings, const std::optional<RegistrationOptions>& registration,
-                    const std::optional<BeamOptions>& beam, py::object progress) {
+Evaluation evaluate(Simulators& self, const Stations& stations, bool overlap, bool skip, bool field, bool surroundings,
+                    const std::optional<RegistrationOptions>& registration, const std::optional<BeamOptions>& beam,
+                    Listener progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   LongCall call(std::move(progress));
   return call.run([&] {
@@ -62,9 +65,9 @@ Evaluation evaluate(Simulators& self, const py::object& stations, bool overlap, 
   });
 }
 
-std::vector<Evaluation> evaluate_sampled(Simulators& self, const py::sequence& networks, std::uint64_t voxels,
-                                         bool overlap, bool surroundings,
-                                         const std::optional<RegistrationOptions>& registration, py::object progress) {
+std::vector<Evaluation> evaluate_sampled(Simulators& self, const Networks& networks, std::uint64_t voxels, bool overlap,
+                                         bool surroundings, const std::optional<RegistrationOptions>& registration,
+                                         Listener progress) {
   if (voxels == 0) throw Error(Errc::invalid_argument, "evaluate_sampled: voxels: a sample has at least one");
   std::vector<std::vector<PlacedStation>> all;
   for (const auto& stations : networks) all.push_back(stations_of(py::reinterpret_borrow<py::object>(stations)));

@@ -31,8 +31,8 @@ std::shared_ptr<GuardedSite> guarded(Site site) {
   return std::shared_ptr<GuardedSite>(new GuardedSite{std::move(site)});
 }
 
-Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const EvaluationOptions& options,
-                    py::object progress) {
+Evaluation evaluate(GuardedSite& guarded, const Stations& stations, const EvaluationOptions& options,
+                    Listener progress) {
   std::vector<PlacedStation> given = stations_of(stations);
   LongCall call(std::move(progress));
   return call.run([&] {
@@ -42,7 +42,7 @@ Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const Eval
 }
 
 void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, const Evaluation& evaluation,
-                       const std::optional<std::string>& title, py::object progress) {
+                       const std::optional<std::string>& title, Listener progress) {
   const auto lock = guarded.taken();
   LongCall call(std::move(progress));
   call.run([&] {
@@ -150,9 +150,9 @@ void add_sites(py::module_& m) {
           "Settings that the user left open and the site chose, with the reasons.")
       .def(
           "evaluate",
-          [](GuardedSite& self, const py::object& stations, std::optional<std::uint64_t> sample_voxels, bool overlap,
+          [](GuardedSite& self, const Stations& stations, std::optional<std::uint64_t> sample_voxels, bool overlap,
              bool skip, bool field, double link, const std::optional<RegistrationOptions>& registration,
-             const std::optional<BeamOptions>& beam, py::object progress) {
+             const std::optional<BeamOptions>& beam, Listener progress) {
             return evaluate(self, stations,
                             {.sample_voxels = sample_voxels,
                              .overlap = overlap,
@@ -192,7 +192,7 @@ void add_sites(py::module_& m) {
       .def("__repr__", [](const GuardedSite& self) { return "<vantage.Site " + self.site.name() + ">"; });
   m.def(
       "place_heads",
-      [](GuardedSite& site, const py::object& stations) {
+      [](GuardedSite& site, const Stations& stations) {
         const Network network = network_of(stations);
         const py::gil_scoped_release unlocked;
         const auto lock = site.beside();

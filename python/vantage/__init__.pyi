@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Types of the module; shapes, units and errors are in the docstrings. A test holds this file against the module.
+# Types of the module, written by packaging/write_stub.py; shapes, units and errors are in the docstrings.
 import os
 from typing import Any, Callable, Dict, Iterable, List, Literal, Mapping, Optional, Sequence, Tuple, Union
 
@@ -10,46 +10,30 @@ __version__: str
 
 # A point (x, y, z): survey frame, metres.
 Vec3 = Tuple[float, float, float]
-# A place (u, v) of a search area.
-Uv = Tuple[float, float]
-# A value, and its standard error.
-Estimate = Tuple[float, float]
+# The same where it is given: any three numbers.
+Point = Union[Sequence[float], npt.NDArray[Any]]
 # A file or a folder.
-Path = Union[str, "os.PathLike[str]"]
+Path = Union[str, os.PathLike[str]]
 # Called with the share done, in [0, 1], now and then; the call ends early if it returns False.
 Progress = Callable[[float], Any]
-# Purpose of a mesh.
-Role = Literal["surveyed", "blocking", "search", "ignore"]
-# Engine that traces rays.
-EngineName = Literal["auto", "ray_query", "compute_bvh", "embree"]
 # Heads as an array (n, 3): survey frame, metres; or stations with their set-ups; or stations that were placed.
-Stations = Union[npt.ArrayLike, Sequence["Station"], Sequence["PlacedStation"]]
+Stations = Union[npt.ArrayLike, Sequence[Station], Sequence[PlacedStation]]
 # A region seen from above, survey frame: points inside an odd number of its rings of corners (x, y).
 Rings = Sequence[Sequence[Tuple[float, float]]]
 # An array; docstrings tell its shape.
 Floats = npt.NDArray[np.float64]
+# Value of a setting, in the form of the option of that name: a number, a text, a truth value, or a sequence of them.
+Setting = Union[None, bool, float, Path, Sequence[Any]]
 
 class Error(RuntimeError):
-    code: str
+    code: Literal["invalid_argument", "io", "malformed_file", "no_suitable_device", "out_of_memory", "device_failure"]
     details: Tuple[str, ...]
-
-class Room:
-    @property
-    def name(self) -> str: ...
-    @property
-    def storey(self) -> str: ...
-    @property
-    def floor_m2(self) -> float: ...
-    @property
-    def box(self) -> Floats: ...
-    @property
-    def outline(self) -> List[Floats]: ...
 
 class MeshInfo:
     @property
     def name(self) -> str: ...
     @property
-    def role(self) -> Role: ...
+    def role(self) -> Literal["surveyed", "blocking", "search", "ignore"]: ...
     @property
     def diffuse(self) -> float: ...
     @property
@@ -68,6 +52,18 @@ class MeshInfo:
     def detail_m(self) -> float: ...
     @property
     def accuracy_m(self) -> float: ...
+
+class Room:
+    @property
+    def name(self) -> str: ...
+    @property
+    def storey(self) -> str: ...
+    @property
+    def floor_m2(self) -> float: ...
+    @property
+    def box(self) -> Floats: ...
+    @property
+    def outline(self) -> List[Floats]: ...
 
 class Scene:
     @staticmethod
@@ -130,16 +126,16 @@ class SceneBuilder:
         triangles: npt.NDArray[Any],
         *,
         name: str = "mesh",
-        role: Optional[Role] = None,
+        role: Optional[Literal["surveyed", "blocking", "search", "ignore"]] = None,
         diffuse: float = 0.5,
         weight: int = 1,
         door: bool = False,
         station_area: bool = False,
         detail_m: float = 0.0,
         accuracy_m: float = 0.0,
-        colour: Sequence[float] = [1, 1, 1, 1],
-        translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = [0, 0, 0, 1],
+        colour: Sequence[float] = [1.0, 1.0, 1.0, 1.0],
+        translation: Point = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = [0.0, 0.0, 0.0, 1.0],
     ) -> int: ...
     def replace(
         self,
@@ -148,19 +144,22 @@ class SceneBuilder:
         triangles: npt.NDArray[Any],
         *,
         name: str = "mesh",
-        role: Optional[Role] = None,
+        role: Optional[Literal["surveyed", "blocking", "search", "ignore"]] = None,
         diffuse: float = 0.5,
         weight: int = 1,
         door: bool = False,
         station_area: bool = False,
         detail_m: float = 0.0,
         accuracy_m: float = 0.0,
-        colour: Sequence[float] = [1, 1, 1, 1],
-        translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = [0, 0, 0, 1],
+        colour: Sequence[float] = [1.0, 1.0, 1.0, 1.0],
+        translation: Point = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = [0.0, 0.0, 0.0, 1.0],
     ) -> None: ...
     def move(
-        self, mesh: int, translation: Sequence[float] = (0, 0, 0), rotation: Sequence[float] = (0, 0, 0, 1)
+        self,
+        mesh: int,
+        translation: Point = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = [0.0, 0.0, 0.0, 1.0],
     ) -> None: ...
     def build(self) -> Scene: ...
     @property
@@ -229,6 +228,14 @@ class Scanner:
     ) -> None: ...
     @staticmethod
     def load(name: str, more: Path = "") -> Scanner: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def rays(self) -> int: ...
+    def check(self) -> None: ...
+    def to_dict(self) -> Dict[str, Any]: ...
     name: str
     heading_deg: float
     horizontal_angle_deg: float
@@ -236,16 +243,28 @@ class Scanner:
     zenith_start_deg: float
     azimuth_step_deg: float
     zenith_step_deg: float
-    row_zeniths_deg: Optional[Any]
-    directions_deg: Optional[Any]
-    times_s: Optional[Any]
+    @property
+    def row_zeniths_deg(self) -> Optional[Floats]: ...
+    @row_zeniths_deg.setter
+    def row_zeniths_deg(self, given: Optional[npt.ArrayLike]) -> None: ...
+    @property
+    def directions_deg(self) -> Optional[Floats]: ...
+    @directions_deg.setter
+    def directions_deg(self, given: Optional[npt.ArrayLike]) -> None: ...
+    @property
+    def times_s(self) -> Optional[Floats]: ...
+    @times_s.setter
+    def times_s(self, given: Optional[npt.ArrayLike]) -> None: ...
     height_m: float
     min_range_m: float
     max_range_m: float
     points_per_second: float
     battery_min: float
     battery_scans: float
-    noise: Optional[Dict[str, Any]]
+    @property
+    def noise(self) -> Optional[Dict[str, Floats]]: ...
+    @noise.setter
+    def noise(self, given: Optional[Dict[str, npt.ArrayLike]]) -> None: ...
     beam_divergence_mrad: float
     exit_diameter_mm: float
     angle_accuracy_arcsec: float
@@ -255,14 +274,6 @@ class Scanner:
     detection_range_m: float
     detection_reflectivity: float
     dropout: float
-    @property
-    def rows(self) -> int: ...
-    @property
-    def columns(self) -> int: ...
-    @property
-    def rays(self) -> int: ...
-    def check(self) -> None: ...
-    def to_dict(self) -> Dict[str, Any]: ...
 
 class InstrumentErrors:
     def __init__(
@@ -282,27 +293,30 @@ class InstrumentErrors:
     range_offset_m: float
     range_scale_ppm: float
 
-def load_directions(file: Path) -> Tuple[npt.NDArray[np.float64], Optional[npt.NDArray[np.float64]]]: ...
 def scanners(more: Path = "") -> List[Tuple[str, str]]: ...
+def load_directions(file: Path) -> Tuple[Floats, Optional[Floats]]: ...
 
 class StationSetup:
     def __init__(self, *, heading_deg: float = 0.0, tilt_deg: float = 0.0, scanner: int = 0) -> None: ...
-    heading_deg: float
-    tilt_deg: float
-    scanner: int
     @property
     def turned(self) -> bool: ...
     def survey_from_scanner(self) -> Floats: ...
+    heading_deg: float
+    tilt_deg: float
+    scanner: int
 
 class Station:
-    def __init__(self, position: Sequence[float], setup: StationSetup = ..., active: bool = True) -> None: ...
-    position: Vec3
+    def __init__(self, position: Point, setup: StationSetup = ..., active: bool = True) -> None: ...
+    @property
+    def position(self) -> Vec3: ...
+    @position.setter
+    def position(self, given: Point) -> None: ...
     setup: StationSetup
     active: bool
 
 class PlacedStation:
     @property
-    def uv(self) -> Uv: ...
+    def uv(self) -> Tuple[float, float]: ...
     @property
     def position(self) -> Vec3: ...
     @property
@@ -329,16 +343,16 @@ class SearchArea:
         passage_width_m: float = 0.6,
         passage_height_m: float = 1.9,
         climb_m: float = 0.25,
-        enter: Sequence[Sequence[float]] = [],
+        enter: Sequence[Point] = [],
         enter_closed: bool = True,
         levels: Optional[Tuple[float, float]] = None,
         within: Sequence[Rings] = [],
         without: Sequence[Rings] = [],
     ) -> None: ...
     @property
-    def uv_min(self) -> Uv: ...
+    def uv_min(self) -> Tuple[float, float]: ...
     @property
-    def uv_max(self) -> Uv: ...
+    def uv_max(self) -> Tuple[float, float]: ...
     @property
     def derived(self) -> bool: ...
     @property
@@ -353,14 +367,139 @@ class SearchArea:
     def project(self, grounds: npt.ArrayLike) -> Floats: ...
 
 class ClashChecker:
-    def __init__(
-        self, scene: Scene, *, lower_m: float = 0.6, upper_m: float = 1.35, radius_m: float = 0.5
-    ) -> None: ...
+    def __init__(self, scene: Scene, *, lower_m: float = 0.6, upper_m: float = 1.35, radius_m: float = 0.5) -> None: ...
     def clashes(self, grounds: npt.ArrayLike, height_m: Optional[float] = None) -> npt.NDArray[np.bool_]: ...
     def sees(self, a: npt.ArrayLike, b: npt.ArrayLike) -> Union[bool, npt.NDArray[np.bool_]]: ...
     def distance(self, points: npt.ArrayLike, limit_m: float) -> Floats: ...
 
-def place_heads(site: Site, heads: Stations) -> List[PlacedStation]: ...
+class Target:
+    def __init__(self, name: str, centre: Point, control_m: float = 0.0) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def centre(self) -> Vec3: ...
+    @property
+    def control_m(self) -> float: ...
+    @property
+    def proposed(self) -> bool: ...
+    @property
+    def stations(self) -> List[int]: ...
+    @property
+    def check(self) -> bool: ...
+
+def read_targets_csv(file: Path) -> List[Target]: ...
+
+class OnSiteOptions:
+    def __init__(
+        self,
+        *,
+        set_up_min: float = 3.0,
+        photos_min: float = 0.0,
+        walking_m_per_s: float = 0.8,
+        detour: float = 1.5,
+        entrance: Optional[Point] = None,
+        day_min: Optional[float] = None,
+        crews: int = 1,
+        day_start_min: float = 480.0,
+        windows: Sequence[str] = [],
+    ) -> None: ...
+    set_up_min: float
+    photos_min: float
+    walking_m_per_s: float
+    detour: float
+    @property
+    def entrance(self) -> Optional[Vec3]: ...
+    @entrance.setter
+    def entrance(self, given: Optional[Point]) -> None: ...
+    day_min: Optional[float]
+    crews: int
+    day_start_min: float
+    @property
+    def windows(self) -> List[str]: ...
+    @windows.setter
+    def windows(self, given: Sequence[str]) -> None: ...
+
+class BatteryUse:
+    @property
+    def instrument(self) -> str: ...
+    @property
+    def battery_min(self) -> float: ...
+    @property
+    def battery_scans(self) -> float: ...
+    @property
+    def on_min(self) -> float: ...
+    @property
+    def scans(self) -> int: ...
+    @property
+    def batteries(self) -> int: ...
+    @property
+    def in_a_day(self) -> int: ...
+
+class Round:
+    @property
+    def order(self) -> List[int]: ...
+    @property
+    def arrive_min(self) -> List[float]: ...
+    @property
+    def stay_min(self) -> List[float]: ...
+    @property
+    def legs_m(self) -> List[float]: ...
+    @property
+    def paths(self) -> List[List[Vec3]]: ...
+    @property
+    def walk_m(self) -> float: ...
+    @property
+    def scan_min(self) -> float: ...
+    @property
+    def set_up_min(self) -> float: ...
+    @property
+    def photos_min(self) -> float: ...
+    @property
+    def walk_min(self) -> float: ...
+    @property
+    def minutes(self) -> float: ...
+    @property
+    def unconnected(self) -> int: ...
+    @property
+    def unlinked(self) -> int: ...
+    @property
+    def batteries(self) -> List[BatteryUse]: ...
+
+class Session(Round):
+    @property
+    def day(self) -> int: ...
+    @property
+    def crew(self) -> int: ...
+    @property
+    def parts(self) -> int: ...
+    @property
+    def linked(self) -> bool: ...
+    @property
+    def start_min(self) -> float: ...
+    @property
+    def wait_min(self) -> List[float]: ...
+    @property
+    def waiting_min(self) -> float: ...
+
+class ClosedStation:
+    @property
+    def station(self) -> int: ...
+    @property
+    def why(self) -> str: ...
+
+class Visit(Round):
+    @property
+    def day_min(self) -> float: ...
+    @property
+    def sessions(self) -> List[Session]: ...
+    @property
+    def not_split(self) -> str: ...
+    @property
+    def closed(self) -> List[ClosedStation]: ...
+    @property
+    def bound(self) -> int: ...
+    @property
+    def batteries(self) -> List[BatteryUse]: ...
 
 class RegistrationOptions:
     def __init__(
@@ -428,7 +567,7 @@ class Evaluation:
     @property
     def registration(self) -> RegistrationError: ...
     @property
-    def registration_estimate(self) -> Estimate: ...
+    def registration_estimate(self) -> Tuple[float, float]: ...
     @property
     def seen(self) -> npt.NDArray[np.uint64]: ...
     @property
@@ -471,7 +610,7 @@ class Evaluation:
 
 class EngineInfo:
     @property
-    def engine(self) -> EngineName: ...
+    def engine(self) -> Literal["auto", "ray_query", "compute_bvh", "embree"]: ...
     @property
     def device(self) -> str: ...
     @property
@@ -488,242 +627,9 @@ class EngineInfo:
     def reason(self) -> str: ...
 
 def list_engines() -> List[EngineInfo]: ...
-def all_devices(engine: EngineName = "auto") -> List[Tuple[EngineName, Optional[int]]]: ...
-def write_point_cloud(
-    file: Path,
-    simulator: Simulator,
-    stations: Stations,
-    *,
-    outputs: Sequence[str] = ["reflectivity"],
-    crs: str = "",
-    beam: Optional[BeamOptions] = None,
-    instrument: Optional[InstrumentErrors] = None,
-    doubles: bool = False,
-    progress: Optional[Progress] = None,
-) -> int: ...
-
-class OnSiteOptions:
-    set_up_min: float
-    photos_min: float
-    walking_m_per_s: float
-    detour: float
-    entrance: Optional[Tuple[float, float, float]]
-    day_min: Optional[float]
-    crews: int
-    day_start_min: float
-    windows: List[str]
-    def __init__(
-        self,
-        *,
-        set_up_min: float = 3.0,
-        photos_min: float = 0.0,
-        walking_m_per_s: float = 0.8,
-        detour: float = 1.5,
-        entrance: Optional[Sequence[float]] = None,
-        day_min: Optional[float] = None,
-        crews: int = 1,
-        day_start_min: float = 480.0,
-        windows: Sequence[str] = [],
-    ) -> None: ...
-
-class Target:
-    def __init__(self, name: str, centre: Sequence[float], control_m: float = 0.0) -> None: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def centre(self) -> Vec3: ...
-    @property
-    def control_m(self) -> float: ...
-    @property
-    def proposed(self) -> bool: ...
-    @property
-    def stations(self) -> List[int]: ...
-    @property
-    def check(self) -> bool: ...
-
-def read_targets_csv(file: Path) -> List[Target]: ...
-
-class BatteryUse:
-    @property
-    def instrument(self) -> str: ...
-    @property
-    def battery_min(self) -> float: ...
-    @property
-    def battery_scans(self) -> float: ...
-    @property
-    def on_min(self) -> float: ...
-    @property
-    def scans(self) -> int: ...
-    @property
-    def batteries(self) -> int: ...
-    @property
-    def in_a_day(self) -> int: ...
-
-class Round:
-    @property
-    def order(self) -> List[int]: ...
-    @property
-    def arrive_min(self) -> List[float]: ...
-    @property
-    def stay_min(self) -> List[float]: ...
-    @property
-    def legs_m(self) -> List[float]: ...
-    @property
-    def paths(self) -> List[List[Tuple[float, float, float]]]: ...
-    @property
-    def walk_m(self) -> float: ...
-    @property
-    def scan_min(self) -> float: ...
-    @property
-    def set_up_min(self) -> float: ...
-    @property
-    def photos_min(self) -> float: ...
-    @property
-    def walk_min(self) -> float: ...
-    @property
-    def minutes(self) -> float: ...
-    @property
-    def unconnected(self) -> int: ...
-    @property
-    def unlinked(self) -> int: ...
-    @property
-    def batteries(self) -> List[BatteryUse]: ...
-
-class Session(Round):
-    @property
-    def day(self) -> int: ...
-    @property
-    def crew(self) -> int: ...
-    @property
-    def parts(self) -> int: ...
-    @property
-    def linked(self) -> bool: ...
-    @property
-    def start_min(self) -> float: ...
-    @property
-    def wait_min(self) -> List[float]: ...
-    @property
-    def waiting_min(self) -> float: ...
-
-class ClosedStation:
-    @property
-    def station(self) -> int: ...
-    @property
-    def why(self) -> str: ...
-
-class Visit(Round):
-    @property
-    def day_min(self) -> float: ...
-    @property
-    def sessions(self) -> List[Session]: ...
-    @property
-    def not_split(self) -> str: ...
-    @property
-    def closed(self) -> List[ClosedStation]: ...
-    @property
-    def bound(self) -> int: ...
-    @property
-    def batteries(self) -> List[BatteryUse]: ...
-
-class OnSite:
-    def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...
-    def way_m(self, start: Sequence[float], end: Sequence[float]) -> Optional[float]: ...
-    def way(self, start: Sequence[float], end: Sequence[float]) -> List[Tuple[float, float, float]]: ...
-    def visit(self, stations: Stations) -> Visit: ...
-
-class MissedVoxels:
-    @property
-    def voxels(self) -> npt.NDArray[np.uint32]: ...
-    @property
-    def points(self) -> npt.NDArray[np.uint32]: ...
-    @property
-    def why(self) -> npt.NDArray[np.uint8]: ...
-    @property
-    def reasons(self) -> List[str]: ...
-    @property
-    def shares(self) -> Dict[str, Dict[str, float]]: ...
-    @property
-    def rooms(self) -> List[Dict[str, Any]]: ...
-    @property
-    def candidates(self) -> int: ...
-
-class UncoveredVoxels:
-    @property
-    def voxels(self) -> npt.NDArray[np.uint32]: ...
-    @property
-    def centres(self) -> Floats: ...
-    @property
-    def meshes(self) -> npt.NDArray[np.uint32]: ...
-    @property
-    def points(self) -> npt.NDArray[np.uint32]: ...
-    def __len__(self) -> int: ...
-
-def uncovered(simulator: Simulator, evaluation: Evaluation) -> UncoveredVoxels: ...
-
-class RayHits:
-    @property
-    def range_m(self) -> Floats: ...
-    @property
-    def position(self) -> Floats: ...
-    @property
-    def normal(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def reflectivity(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def diffuse(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def mesh(self) -> npt.NDArray[np.int32]: ...
-    @property
-    def primitive(self) -> npt.NDArray[np.uint32]: ...
-    def __len__(self) -> int: ...
-
-class RayTracer:
-    def __init__(
-        self, scene: Scene, *, engine: EngineName = "embree", device_index: Optional[int] = None
-    ) -> None: ...
-    @property
-    def scene(self) -> Scene: ...
-    @property
-    def engine(self) -> EngineInfo: ...
-    def nearest(
-        self,
-        origins: npt.ArrayLike,
-        directions: npt.ArrayLike,
-        *,
-        ranges_m: Optional[npt.ArrayLike] = None,
-        from_m: float = 0.0,
-        glass: bool = False,
-        progress: Optional[Progress] = None,
-    ) -> RayHits: ...
-    def blocked(
-        self,
-        origins: npt.ArrayLike,
-        directions: npt.ArrayLike,
-        *,
-        ranges_m: Optional[npt.ArrayLike] = None,
-        from_m: float = 0.0,
-        glass: bool = False,
-        progress: Optional[Progress] = None,
-    ) -> npt.NDArray[np.bool_]: ...
-    def count(
-        self,
-        origins: npt.ArrayLike,
-        directions: npt.ArrayLike,
-        *,
-        ranges_m: Optional[npt.ArrayLike] = None,
-        from_m: float = 0.0,
-        glass: bool = False,
-        progress: Optional[Progress] = None,
-    ) -> npt.NDArray[np.uint32]: ...
-
-def why_missed(
-    site: Site,
-    evaluation: Evaluation,
-    *,
-    progress: Optional[Progress] = None,
-    candidates: int = 256,
-    flat_deg: float = 80.0,
-) -> MissedVoxels: ...
+def all_devices(
+    engine: Literal["auto", "ray_query", "compute_bvh", "embree"] = "auto",
+) -> List[Tuple[Literal["auto", "ray_query", "compute_bvh", "embree"], Optional[int]]]: ...
 
 class BeamOptions:
     def __init__(
@@ -765,8 +671,6 @@ class Scan:
     @property
     def return_number(self) -> npt.NDArray[np.uint8]: ...
     @property
-    def mixed(self) -> Tuple[int, int, int]: ...
-    @property
     def rows(self) -> int: ...
     @property
     def columns(self) -> int: ...
@@ -776,6 +680,8 @@ class Scan:
     def points(self) -> int: ...
     @property
     def points_on_surveyed(self) -> int: ...
+    @property
+    def mixed(self) -> Tuple[int, int, int]: ...
     @property
     def trace_seconds(self) -> float: ...
     @property
@@ -788,9 +694,9 @@ class Simulator:
         scene: Scene,
         scanner: Union[Scanner, Sequence[Scanner]],
         *,
-        engine: EngineName = "auto",
+        engine: Literal["auto", "ray_query", "compute_bvh", "embree"] = "auto",
         device_index: Optional[int] = None,
-        devices: Sequence[Tuple[EngineName, Optional[int]]] = [],
+        devices: Sequence[Tuple[Literal["auto", "ray_query", "compute_bvh", "embree"], Optional[int]]] = [],
         max_memory_bytes: int = 0,
         user_size_m: float = 0.1,
         point_spacing_m: float = 0.01,
@@ -824,7 +730,7 @@ class Simulator:
     def goal_densities(self) -> Floats: ...
     def scan(
         self,
-        position: Sequence[float],
+        position: Point,
         outputs: Sequence[str] = ["position", "reflectivity"],
         *,
         setup: StationSetup = ...,
@@ -836,7 +742,7 @@ class Simulator:
     ) -> Scan: ...
     def scan_array(
         self,
-        position: Sequence[float],
+        position: Point,
         outputs: Sequence[str] = ["position", "reflectivity"],
         *,
         float32: bool = False,
@@ -869,67 +775,31 @@ class Simulator:
         progress: Optional[Progress] = None,
     ) -> List[Evaluation]: ...
 
-class CoverageMatrix:
-    def __init__(self, weights: Sequence[int], goal: float, amounts: Sequence[Sequence[int]]) -> None: ...
-    def __len__(self) -> int: ...
-    def column(self, candidate: int) -> npt.NDArray[np.uint32]: ...
-    @property
-    def weights(self) -> npt.NDArray[np.uint32]: ...
-    @property
-    def goal(self) -> float: ...
-    def coverage(self, chosen: Sequence[int]) -> float: ...
+def write_point_cloud(
+    file: Path,
+    simulator: Simulator,
+    stations: Stations,
+    *,
+    outputs: Sequence[str] = ["reflectivity"],
+    crs: str = "",
+    beam: Optional[BeamOptions] = None,
+    instrument: Optional[InstrumentErrors] = None,
+    doubles: bool = False,
+    progress: Optional[Progress] = None,
+) -> int: ...
 
-class SampledCoverage:
-    def __len__(self) -> int: ...
-    @property
-    def matrix(self) -> CoverageMatrix: ...
+class UncoveredVoxels:
     @property
     def voxels(self) -> npt.NDArray[np.uint32]: ...
     @property
-    def cancelled(self) -> bool: ...
-    def coverage(self, stations: Optional[Sequence[int]] = None) -> Estimate: ...
-
-def sample_coverage(
-    simulator: Simulator,
-    stations: Sequence[PlacedStation],
-    *,
-    sample_voxels: int = 20000,
-    progress: Optional[Progress] = None,
-) -> SampledCoverage: ...
-
-class StationGraph:
-    def __init__(self, overlaps: npt.ArrayLike, excluded: Sequence[Tuple[int, int]] = []) -> None: ...
-    def __len__(self) -> int: ...
+    def centres(self) -> Floats: ...
     @property
-    def overlaps(self) -> npt.NDArray[np.float32]: ...
-
-def overlap_graph(
-    simulator: Simulator,
-    stations: Sequence[PlacedStation],
-    *,
-    sample_voxels: int = 10000,
-    progress: Optional[Progress] = None,
-) -> StationGraph: ...
-
-class Candidates:
+    def meshes(self) -> npt.NDArray[np.uint32]: ...
     @property
-    def stations(self) -> List[PlacedStation]: ...
-    @property
-    def coverage(self) -> SampledCoverage: ...
-    @property
-    def attainable(self) -> Estimate: ...
-    @property
-    def captured_matrix(self) -> CoverageMatrix: ...
-    @property
-    def change(self) -> float: ...
-    @property
-    def ended(self) -> Literal["enough", "all", "most", "time", "cancelled"]: ...
-    @property
-    def spacing_m(self) -> float: ...
+    def points(self) -> npt.NDArray[np.uint32]: ...
     def __len__(self) -> int: ...
 
-# Value of a setting, in the form of the option of that name: a number, a text, a truth value, or a sequence of them.
-Setting = Union[None, bool, float, str, Sequence[Any], "os.PathLike[str]"]
+def uncovered(simulator: Simulator, evaluation: Evaluation) -> UncoveredVoxels: ...
 
 class SiteChoice:
     @property
@@ -1001,9 +871,9 @@ class Site:
         up: Setting = None,
         wall_layer: Setting = None,
         wall_height: Setting = None,
-        shared_meshes: Setting = None,
         scene_index: Setting = None,
         diffuse: Setting = None,
+        shared_meshes: Setting = None,
         allow_outside: Setting = None,
         scanner: Setting = None,
         step: Setting = None,
@@ -1071,8 +941,7 @@ class Site:
         beam: Optional[BeamOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
-    def plot(self, ax: Any = None) -> Any: ...
-    def nearest_place(self, head: Sequence[float], reach_m: float = 5.0) -> Optional[PlacedStation]: ...
+    def nearest_place(self, head: Point, reach_m: float = 5.0) -> Optional[PlacedStation]: ...
     def write_report(
         self,
         file: Path,
@@ -1085,10 +954,15 @@ class Site:
         self,
         problem: Union[None, str, SurveyProblem] = None,
         *,
-        start: Sequence[Sequence[float]] = [],
+        start: Sequence[Point] = [],
         checkpoint: Optional[Path] = None,
         existing_targets: Sequence[Target] = [],
         progress: Optional[Callable[[PlanProgress], Any]] = None,
+        capture: Setting = None,
+        pays: Setting = None,
+        link: Setting = None,
+        apart: Setting = None,
+        max_time_on_site: Setting = None,
         set_up: Setting = None,
         photos: Setting = None,
         walking: Setting = None,
@@ -1096,6 +970,14 @@ class Site:
         crews: Setting = None,
         day_start: Setting = None,
         window: Setting = None,
+        objectives: Setting = None,
+        require: Setting = None,
+        stations: Setting = None,
+        search_step: Setting = None,
+        heights: Setting = None,
+        link_overlap: Setting = None,
+        min_overlap: Setting = None,
+        fitness: Setting = None,
         registration_rho: Setting = None,
         registration_patch: Setting = None,
         registration_position: Setting = None,
@@ -1107,19 +989,6 @@ class Site:
         target_height: Setting = None,
         target_sigma: Setting = None,
         accuracy_class: Setting = None,
-        capture: Setting = None,
-        pays: Setting = None,
-        link: Setting = None,
-        apart: Setting = None,
-        max_time_on_site: Setting = None,
-        objectives: Setting = None,
-        require: Setting = None,
-        stations: Setting = None,
-        search_step: Setting = None,
-        heights: Setting = None,
-        link_overlap: Setting = None,
-        min_overlap: Setting = None,
-        fitness: Setting = None,
         population: Setting = None,
         iterations: Setting = None,
         batch: Setting = None,
@@ -1149,6 +1018,159 @@ class Site:
         tolerance: Setting = None,
         taken_within: Setting = None,
     ) -> Optional[NextResult]: ...
+    def plot(self, ax: Any = None) -> Any: ...
+
+def place_heads(site: Site, heads: Stations) -> List[PlacedStation]: ...
+
+class OnSite:
+    def __init__(self, site: Site, options: OnSiteOptions = ...) -> None: ...
+    def way_m(self, start: Point, end: Point) -> Optional[float]: ...
+    def way(self, start: Point, end: Point) -> List[Vec3]: ...
+    def visit(self, stations: Stations) -> Visit: ...
+
+class RayHits:
+    @property
+    def range_m(self) -> Floats: ...
+    @property
+    def position(self) -> Floats: ...
+    @property
+    def normal(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def reflectivity(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def diffuse(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def mesh(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def primitive(self) -> npt.NDArray[np.uint32]: ...
+    def __len__(self) -> int: ...
+
+class RayTracer:
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        engine: Literal["auto", "ray_query", "compute_bvh", "embree"] = "embree",
+        device_index: Optional[int] = None,
+    ) -> None: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def engine(self) -> EngineInfo: ...
+    def nearest(
+        self,
+        origins: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        *,
+        ranges_m: Optional[npt.ArrayLike] = None,
+        from_m: float = 0.0,
+        glass: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> RayHits: ...
+    def blocked(
+        self,
+        origins: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        *,
+        ranges_m: Optional[npt.ArrayLike] = None,
+        from_m: float = 0.0,
+        glass: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> npt.NDArray[np.bool_]: ...
+    def count(
+        self,
+        origins: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        *,
+        ranges_m: Optional[npt.ArrayLike] = None,
+        from_m: float = 0.0,
+        glass: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> npt.NDArray[np.uint32]: ...
+
+class MissedVoxels:
+    @property
+    def voxels(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def points(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def why(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def reasons(self) -> List[str]: ...
+    @property
+    def shares(self) -> Dict[str, Dict[str, float]]: ...
+    @property
+    def rooms(self) -> List[Dict[str, Any]]: ...
+    @property
+    def candidates(self) -> int: ...
+
+def why_missed(
+    site: Site,
+    evaluation: Evaluation,
+    *,
+    progress: Optional[Progress] = None,
+    candidates: int = 256,
+    flat_deg: float = 80.0,
+) -> MissedVoxels: ...
+
+class CoverageMatrix:
+    def __init__(self, weights: Sequence[int], goal: float, amounts: Sequence[Sequence[int]]) -> None: ...
+    def __len__(self) -> int: ...
+    def column(self, candidate: int) -> npt.NDArray[np.uint32]: ...
+    @property
+    def weights(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def goal(self) -> float: ...
+    def coverage(self, chosen: Sequence[int]) -> float: ...
+
+class SampledCoverage:
+    def __len__(self) -> int: ...
+    @property
+    def matrix(self) -> CoverageMatrix: ...
+    @property
+    def voxels(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def cancelled(self) -> bool: ...
+    def coverage(self, stations: Optional[Sequence[int]] = None) -> Tuple[float, float]: ...
+
+def sample_coverage(
+    simulator: Simulator,
+    stations: Sequence[PlacedStation],
+    *,
+    sample_voxels: int = 20000,
+    progress: Optional[Progress] = None,
+) -> SampledCoverage: ...
+
+class StationGraph:
+    def __init__(self, overlaps: npt.ArrayLike, excluded: Sequence[Tuple[int, int]] = []) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def overlaps(self) -> npt.NDArray[np.float32]: ...
+
+def overlap_graph(
+    simulator: Simulator,
+    stations: Sequence[PlacedStation],
+    *,
+    sample_voxels: int = 10000,
+    progress: Optional[Progress] = None,
+) -> StationGraph: ...
+
+class Candidates:
+    @property
+    def stations(self) -> List[PlacedStation]: ...
+    @property
+    def coverage(self) -> SampledCoverage: ...
+    @property
+    def attainable(self) -> Tuple[float, float]: ...
+    @property
+    def captured_matrix(self) -> CoverageMatrix: ...
+    @property
+    def change(self) -> float: ...
+    @property
+    def ended(self) -> Literal["enough", "all", "most", "time", "cancelled"]: ...
+    @property
+    def spacing_m(self) -> float: ...
+    def __len__(self) -> int: ...
 
 def find_candidates(
     site: Site,
@@ -1252,7 +1274,7 @@ def greedy_network(
     progress: Optional[Progress] = None,
     candidates: int = 300,
     sample_voxels: Optional[int] = 20000,
-    existing: Sequence[Sequence[float]] = [],
+    existing: Sequence[Point] = [],
     existing_setups: Sequence[StationSetup] = [],
 ) -> GreedyResult: ...
 
@@ -1274,7 +1296,7 @@ def exact_network(
     link: float = 0.0,
     apart_m: float = 0.0,
     max_seconds: float = 60.0,
-    existing: Sequence[Sequence[float]] = [],
+    existing: Sequence[Point] = [],
 ) -> ExactResult: ...
 
 class MeasuredNetwork:
@@ -1347,7 +1369,7 @@ class SurveyProblem:
         name: str = "custom",
         stations_min: int = 4,
         stations_max: int = 4,
-        existing: Iterable[Sequence[float]] = (),
+        existing: Iterable[Point] = (),
         existing_setups: Iterable[StationSetup] = (),
         existing_names: Iterable[str] = (),
         scanners: Iterable[Scanner] = (),
@@ -1360,25 +1382,41 @@ class SurveyProblem:
         existing_targets: Iterable[Target] = (),
         fewest: bool = False,
         pays_m2: Optional[float] = None,
-        pays_share: float = 0,
+        pays_share: float = 0.0,
         attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
         requirements: Iterable[Union[str, Requirement]] = (),
     ) -> None: ...
+    def to_dict(self) -> Dict[str, Any]: ...
     name: str
     stations_min: int
     stations_max: int
-    existing: Tuple[Vec3, ...]
-    existing_setups: Tuple[StationSetup, ...]
-    existing_names: Tuple[str, ...]
-    scanners: Tuple[Scanner, ...]
+    @property
+    def existing(self) -> Tuple[Vec3, ...]: ...
+    @existing.setter
+    def existing(self, given: Iterable[Point]) -> None: ...
+    @property
+    def existing_setups(self) -> Tuple[StationSetup, ...]: ...
+    @existing_setups.setter
+    def existing_setups(self, given: Iterable[StationSetup]) -> None: ...
+    @property
+    def existing_names(self) -> Tuple[str, ...]: ...
+    @existing_names.setter
+    def existing_names(self, given: Iterable[str]) -> None: ...
+    @property
+    def scanners(self) -> Tuple[Scanner, ...]: ...
+    @scanners.setter
+    def scanners(self, given: Iterable[Scanner]) -> None: ...
     every_echo: bool
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
     registration: RegistrationOptions
     on_site: OnSiteOptions
     targets: Optional[int]
-    existing_targets: Tuple[Target, ...]
+    @property
+    def existing_targets(self) -> Tuple[Target, ...]: ...
+    @existing_targets.setter
+    def existing_targets(self, given: Iterable[Target]) -> None: ...
     fewest: bool
     pays_m2: Optional[float]
     pays_share: float
@@ -1391,17 +1429,24 @@ class SurveyProblem:
     def requirements(self) -> Tuple[Requirement, ...]: ...
     @requirements.setter
     def requirements(self, given: Iterable[Union[str, Requirement]]) -> None: ...
-    def to_dict(self) -> Dict[str, Any]: ...
 
 def coverage_fix(stations: int) -> SurveyProblem: ...
 def coverage_overlap_fix(stations: int) -> SurveyProblem: ...
 def coverage_min(stations_min: int, stations_max: int) -> SurveyProblem: ...
 def coverage_overlap_min(stations_min: int, stations_max: int) -> SurveyProblem: ...
 def fitness_min(
-    stations_min: int, stations_max: int, coverage: float = 0.4, station_count: float = 0.4, visibility: float = 0.2
+    stations_min: int,
+    stations_max: int,
+    coverage: float = 0.4,
+    station_count: float = 0.4,
+    visibility: float = 0.2,
 ) -> SurveyProblem: ...
 def fewest_stations(
-    capture: float = 0.9, link: float = 0.3, stations_min: int = 1, stations_max: int = 1024, apart_m: float = 1.0
+    capture: float = 0.9,
+    link: float = 0.3,
+    stations_min: int = 1,
+    stations_max: int = 1024,
+    apart_m: float = 1.0,
 ) -> SurveyProblem: ...
 
 class PlanProgress:
@@ -1457,15 +1502,15 @@ class PlanEntry:
     @property
     def scan_overlap_matrix(self) -> Floats: ...
     @property
-    def data(self) -> Optional[Dict[str, float]]: ...
-    @property
-    def visit(self) -> Optional[Visit]: ...
-    @property
     def registration(self) -> Optional[RegistrationError]: ...
     @property
     def targets(self) -> List[Target]: ...
     @property
     def without_targets_m(self) -> Optional[float]: ...
+    @property
+    def data(self) -> Optional[Dict[str, float]]: ...
+    @property
+    def visit(self) -> Optional[Visit]: ...
 
 class PlanResult:
     @property
@@ -1496,7 +1541,6 @@ class PlanResult:
     def site(self) -> Site: ...
     @property
     def summary(self) -> str: ...
-    def plot(self, ax: Any = None, link: float = 0.3) -> Any: ...
     def to_dict(self) -> Dict[str, Any]: ...
     def write(
         self,
@@ -1508,13 +1552,12 @@ class PlanResult:
         doubles: bool = False,
         progress: Optional[Progress] = None,
     ) -> List[str]: ...
-    def write_report(
-        self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None
-    ) -> None: ...
+    def write_report(self, file: Path, *, title: Optional[str] = None, progress: Optional[Progress] = None) -> None: ...
+    def plot(self, ax: Any = None, link: float = 0.3) -> Any: ...
 
 class NextResult:
     @property
-    def captured(self) -> Estimate: ...
+    def captured(self) -> Tuple[float, float]: ...
     @property
     def captured_then(self) -> float: ...
     @property

@@ -98,7 +98,7 @@ def _plot_site(self, ax=None):
 
 
 def _plot_evaluation(self, ax=None, site=None, link=_LEAST_LINK):
-    """plot(self: vantage.Evaluation, ax: Any = None, site: vantage.Site = None, link: float = 0.3) -> Any
+    """plot(self: vantage.Evaluation, ax: Any = None, site: Optional[vantage.Site] = None, link: float = 0.3) -> Any
 
     Draws the stations in plan view, with lines where scan overlaps, if they are known, are at least `link`. site: its
     ground is drawn. ax: matplotlib's axes; None: new ones, which are returned. Raises ImportError without matplotlib."""

@@ -110,6 +110,14 @@ class Plans(unittest.TestCase):
         told = found.to_dict()["front"][0]["stations"][0]
         self.assertEqual((told["tilt"], told["step"]), (90, 0.2))
 
+    def test_what_a_problem_holds_is_in_tuples(self):
+        problem = vantage.SurveyProblem(existing=iter([[1, 2, 3]]), heights_m=[1, 2], objectives=["coverage"])
+        self.assertEqual(problem.existing, ((1, 2, 3),))
+        self.assertEqual(problem.heights_m, (1, 2))
+        self.assertEqual([objective.name for objective in problem.objectives], ["coverage"])
+        with self.assertRaisesRegex(TypeError, r"objectives: \[3\] is no Tuple\[Union\[str, vantage.Objective\], ...\]"):
+            problem.objectives = [3]
+
     def test_the_surveyors_question_is_answered(self):
         found = self.plan(vantage.fewest_stations(capture=0.8, stations_max=6), iterations=2)
         self.assertTrue(found.met)
