@@ -11,9 +11,9 @@ namespace vantage {
 struct Progress {
   /// Called between chunks of work, on the calling thread, with the share done in [0, 1]. An exception from it ends the
   /// call and is passed on.
-  std::function<void(double done)> report;
+  std::function<void(double done)> report = {};
   /// Checked between chunks of work. A stopped call says so in its result.
-  std::stop_token stop;
+  std::stop_token stop = {};
 
   /// Reports the share done, if anybody listens.
   void operator()(double done) const {

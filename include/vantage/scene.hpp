@@ -46,9 +46,9 @@ struct MeshInfo {
 
 /// A room that the file names, as IFC does (`IfcSpace`). Survey frame.
 struct Room {
-  std::string name;    ///< Its number and its long name.
-  std::string storey;  ///< Name of the `IfcBuildingStorey` above it; "" if there is none.
-  Box box;             ///< Around it.
+  std::string name = {};    ///< Its number and its long name.
+  std::string storey = {};  ///< Name of the `IfcBuildingStorey` above it; "" if there is none.
+  Box box = {};             ///< Around it.
   /// Loops around its floor, seen from above: corners (x, y). A point is in the room if it is within an odd number of
   /// them. Empty: the box alone.
   std::vector<std::vector<std::array<double, 2>>> outline = {};

@@ -37,7 +37,7 @@ double error_at_95_percent(double rms_m) noexcept;
 /// A target on its stand or mark. Lengths in metres, survey frame.
 struct Target {
   std::string name = {};  ///< For tables, pictures and the crew.
-  Vec3 centre;            ///< Centre of the sphere or the checkerboard.
+  Vec3 centre = {};       ///< Centre of the sphere or the checkerboard.
   double control_m = 0;   ///< Standard deviation of known coordinates, in each axis; 0: no control point.
   bool proposed = false;  ///< True if `propose_targets()` proposed it; false: it was given.
   /// Stations that measure it, ascending, by their places in the network.

@@ -79,7 +79,7 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
                          std::size_t column) {
   std::size_t count = std::min(stations.size(), known.candidates() - column);
   if (surroundings_) {
-    const CoverageMatrix fresh = surroundings_(stations.first(count), {.report = {}, .stop = progress.stop});
+    const CoverageMatrix fresh = surroundings_(stations.first(count), {.stop = progress.stop});
     around_.append(fresh);
     count = std::min(count, fresh.candidates());
   }

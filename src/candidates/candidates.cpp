@@ -145,7 +145,7 @@ Candidates find_candidates(Site& site, const CandidateConfig& config, const Prog
   if (found.spacing_m_ > kNarrowest_m && found.ended_ != "cancelled" && found.ended_ != "time") {
     std::vector<PlacedStation> others(spread.stations.begin() + taken, spread.stations.end());
     others.insert(others.end(), spread.others.begin(), spread.others.end());
-    Candidates::add_unseen(found, site, others, {.report = {}, .stop = progress.stop});
+    Candidates::add_unseen(found, site, others, {.stop = progress.stop});
   }
   progress(1);
   return found;

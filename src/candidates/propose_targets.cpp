@@ -232,7 +232,7 @@ std::optional<TargetProposal> propose_targets(Site& site, std::span<const Placed
   if (all && !counts.cancelled)
     around = site.surroundings().evaluate(
         network, count_surroundings(needs, registration, counted, simulator, site.surroundings()),
-        {.report = {}, .stop = progress.stop});
+        {.stop = progress.stop});
   if (counts.cancelled || around.cancelled) return std::nullopt;
   const std::uint64_t around_voxels = all ? site.surroundings().voxel_count() : 0;
   const NetworkCounts* const surroundings = all ? &around : nullptr;

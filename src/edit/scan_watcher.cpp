@@ -54,9 +54,9 @@ void ScanWatcher::look(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     try {
       session_.tell("reading " + file.filename().string());
-      std::vector<TakenScan> scans = read_taken_scans(file, 0.02, {.report = {}, .stop = stop});
+      std::vector<TakenScan> scans = read_taken_scans(file, 0.02, {.stop = stop});
       if (stop.stop_requested()) return;
-      if (!fit_to_model(site_, scans, tolerance_m_, {.report = {}, .stop = stop})) return;
+      if (!fit_to_model(site_, scans, tolerance_m_, {.stop = stop})) return;
       waiting_.insert(waiting_.end(), std::move_iterator(scans.begin()), std::move_iterator(scans.end()));
     } catch (const std::exception& error) {
       session_.tell(error.what());

@@ -106,7 +106,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     attainable = *options.attainable;
     for (const Objective& measure : evaluator.measures())
       if (!measure.meshes.empty()) attainable.tell_of(site.simulator, measure.meshes);
-    const Progress raising = share(counting, 0.95), silent{.report = {}, .stop = progress.stop};
+    const Progress raising = share(counting, 0.95), silent{.stop = progress.stop};
     bool whole = true;
     for (const Network& network : networks)
       whole = whole && raise_attainable(attainable, site.simulator, network, networks.size() == 1 ? raising : silent);

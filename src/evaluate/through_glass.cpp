@@ -15,9 +15,8 @@ void look_through_glass(Evaluation& evaluation, const Simulator& simulator, cons
   try {
     Simulator around = surroundings_of(simulator, true);
     const Network network = to_network(evaluation.stations);
-    const NetworkCounts counts =
-        around.evaluate_sampled({&network, 1}, {.voxels = kVoxels, .count_to = CountTo::one, .groups = false},
-                                {.report = {}, .stop = progress.stop})[0];
+    const NetworkCounts counts = around.evaluate_sampled(
+        {&network, 1}, {.voxels = kVoxels, .count_to = CountTo::one, .groups = false}, {.stop = progress.stop})[0];
     if (!counts.cancelled) evaluation.through_glass = scan_overlap_matrix(counts);
   } catch (const Error& error) {
     if (error.code() != Errc::out_of_memory) throw;

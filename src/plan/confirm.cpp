@@ -145,7 +145,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
   if (sampled && !networks.empty()) {
     if (const auto estimates =
             evaluator.estimate(networks, found.sample.voxels > 0 ? found.sample : VoxelWindow{sample_voxels},
-                               NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort})) {
+                               NetworkEvaluator::Which::all, {.stop = watch.abort})) {
       for (std::size_t k = 0; k < entries.size(); ++k) {
         for (std::size_t m = 0; m < measures.all.size(); ++m) {
           const bool pooled = k < found.estimates.size() && m < measures.searched;

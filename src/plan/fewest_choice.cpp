@@ -279,7 +279,7 @@ CoverProblem cover_problem(const FewestChoice& choice) {
 
 void look(CandidateTable& table, std::span<const PlacedStation> existing, std::span<const PlacedStation> candidates,
           const CoverageMatrix& known, const Progress& progress, const std::stop_token& abort) {
-  const Progress at_once{.report = {}, .stop = abort};
+  const Progress at_once{.stop = abort};
   // Existing stations come first in every network, so they are traced even if time is short.
   if (!existing.empty()) table.add(existing, at_once);
   const auto begun = std::chrono::steady_clock::now();
@@ -363,7 +363,7 @@ bool look_along_ways(FewestChoice& choice, const PlacementOracle& oracle, const 
       const std::vector<PlacedStation> found = on_the_way(choice, part, unlinked.network, oracle);
       along.insert(along.end(), found.begin(), found.end());
     }
-    if (along.empty() || !choice.table.add(along, {.report = {}, .stop = stop})) break;
+    if (along.empty() || !choice.table.add(along, {.stop = stop})) break;
     const double known = choice.network.violation;
     choose_from(choice, choice.network, stop);
     strengthen(choice, stop);
@@ -479,7 +479,7 @@ bool stand_aside(FewestChoice& choice, const PlacementOracle& oracle, const std:
     if (!aside) {
       std::vector<PlacedStation> around = positions_around(oracle, std::span(&placed, 1), kAsideAround, kAside_m);
       std::erase_if(around, [&](const PlacedStation& one) { return oracle.in_the_way(one.ground); });
-      if (around.empty() || !choice.table.add(around, {.report = {}, .stop = stop})) continue;
+      if (around.empty() || !choice.table.add(around, {.stop = stop})) continue;
       aside = with_one_aside(choice, at, others, oracle);
     }
     if (!aside) continue;

@@ -101,7 +101,7 @@ void look_between(FewestChoice& choice, const PlacementOracle& oracle, std::span
     const auto along = positions_along(oracle, choice.way(ends[0].ground, ends[1].ground), kAlong_m);
     between.insert(between.end(), along.begin(), along.end());
   }
-  choice.table.add(between, {.report = {}, .stop = stop});
+  choice.table.add(between, {.stop = stop});
   choose_again(choice, stop);
 }
 

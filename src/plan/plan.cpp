@@ -125,8 +125,7 @@ std::shared_ptr<const Candidates> look_for_candidates(PlanContext& context, Site
   if (limit_wanted) {
     const double left = kCountedTimeShare * max_seconds - seconds_since(begun);
     const Deadline counted_by(max_seconds > 0 ? std::max(left, 0.1) : 0, watch.stop);
-    count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
-                     {.report = {}, .stop = counted_by.stop()});
+    count_attainable(context, simulator, problem, *candidates, config.sample_voxels, {.stop = counted_by.stop()});
   }
   const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
   if (watch.report && candidates->ended() != "cancelled")
@@ -205,7 +204,7 @@ void time_a_station(PlanContext& context, Simulator& simulator, const PlanWatch&
   Simulator* const around = context.measures().all_needs().surroundings ? &context.surroundings() : nullptr;
   const auto begun = std::chrono::steady_clock::now();
   for (Simulator* const counting : {&simulator, around})
-    if (counting && counting->evaluate(to_network(one), {}, {.report = {}, .stop = watch.stop}).cancelled) return;
+    if (counting && counting->evaluate(to_network(one), {}, {.stop = watch.stop}).cancelled) return;
   watch.seconds_after(context.problem().existing.size() + context.problem().stations_max, seconds_since(begun));
 }
 
@@ -235,7 +234,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   std::shared_ptr<const Candidates> candidates;
   if (problem.fewest || limit_wanted)
     candidates = look_for_candidates(context, site, problem, config, time.seconds(), watch);
-  if (candidates) require_what_pays(problem, context, site, *candidates, {.report = {}, .stop = watch.abort});
+  if (candidates) require_what_pays(problem, context, site, *candidates, {.stop = watch.abort});
   problem = with_scales(std::move(problem));
   if (surroundings.valid()) surroundings.get();
   context.ask(problem);
@@ -261,7 +260,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   if (result.stop_reason == StopReason::cancelled && time.search_ended()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
   result.pays = context.pays;
-  complete_front(result, context, site, {.report = {}, .stop = watch.abort});
+  complete_front(result, context, site, {.stop = watch.abort});
   require_no_more_than_answer(result, asked);
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;

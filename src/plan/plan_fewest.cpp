@@ -131,8 +131,7 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   if (!choice.asked.captured || choice.asked.most_coverage) return;
   for (std::size_t k = 0; k < kNewChoices && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
     const Network network = to_network(choice.stations_of(choice.network));
-    const auto shares =
-        captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
+    const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.stop = watch.stop});
     if (shares.empty() || shares.front().all.value >= choice.asked.coverage) return;
     raise_margins(choice, {.coverage = choice.asked.coverage - shares.front().all.value}, watch.stop);
   }
@@ -141,7 +140,7 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
 // Lowers the required capture to that of the network on other voxels, less its error, within the problem's limits.
 void require_no_more(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
   const Network network = to_network(choice.stations_of(choice.network));
-  const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
+  const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.stop = watch.stop});
   if (shares.empty()) return;
   const double captured = std::min(shares.front().all.value - shares.front().all.standard_error, choice.asked.coverage);
   choice.asked.coverage = context.pays->capture = std::max(context.asked_capture, rounded_down(captured));
@@ -165,7 +164,7 @@ void mend_links(FewestChoice& choice, PlanContext& context, Simulator& simulator
   const LeastOverlaps least_overlaps =
       [&](std::span<const PlacedStation> stations) -> std::optional<ScanOverlapMatrix> {
     const Network network = to_network(stations);
-    const auto counts = surroundings.evaluate_sampled({&network, 1}, others, {.report = {}, .stop = watch.stop});
+    const auto counts = surroundings.evaluate_sampled({&network, 1}, others, {.stop = watch.stop});
     if (counts.front().cancelled) return std::nullopt;
     ScanOverlapMatrix overlap = scan_overlap_matrix(counts.front());
     for (std::size_t i = 0; i < stations.size(); ++i)
@@ -187,8 +186,7 @@ VerifiedNetworks::VisitOrder visit_order(PlanContext& context, const PlanWatch& 
     if (const std::uint64_t voxels = context.link_voxels(); link > 0 && voxels > 0) {
       const Network network = to_network(placed);
       const auto counts = context.surroundings().evaluate_sampled(
-          {&network, 1}, {.voxels = voxels, .count_to = CountTo::one, .groups = false},
-          {.report = {}, .stop = watch.abort});
+          {&network, 1}, {.voxels = voxels, .count_to = CountTo::one, .groups = false}, {.stop = watch.abort});
       if (!counts.front().cancelled) known.scan_overlap_matrix = scan_overlap_matrix(counts.front());
     }
     return visit_of(known, context.on_site(), most_minutes(context.problem().requirements)).order;
@@ -357,7 +355,7 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
     auto some =
         context.evaluator().estimate(std::span(networks).subspan(first, std::min(at_once, networks.size() - first)),
                                      {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
-                                     NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort});
+                                     NetworkEvaluator::Which::all, {.stop = watch.abort});
     if (!some) break;
     std::ranges::move(*some, std::back_inserter(estimates));
   }

@@ -33,7 +33,7 @@ PlanTime::PlanTime(double max_seconds, const PlanWatch& given)
 double PlanTime::seconds() const { return limited() ? std::max(max_seconds_ - after_, kMoment_s) : 0; }
 
 PlanWatch PlanTime::watch() {
-  PlanWatch own{.report = {}, .stop = search_by_.stop(), .abort = all_by_.stop()};
+  PlanWatch own{.stop = search_by_.stop(), .abort = all_by_.stop()};
   own.seconds_after = [this](std::size_t stations, double seconds_a_station) {
     learn(stations, seconds_a_station);
     return after_;

@@ -53,7 +53,7 @@ std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulat
       images.emplace_back();
       if (station.status == StationStatus::hole) continue;
       const Vec3 towards = middle - station.position;
-      auto drawn = renderer.render(station.position, kView, {.report = {}, .stop = stop},
+      auto drawn = renderer.render(station.position, kView, {.stop = stop},
                                    {.heading = Angle::radians(std::atan2(towards.y, towards.x))});
       if (drawn.empty()) return {};
       images.back() = std::move(drawn.front().image);

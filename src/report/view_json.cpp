@@ -68,9 +68,8 @@ CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedSt
     }
   };
   if (!alone.empty())
-    for (const NetworkCounts& done :
-         simulator.evaluate_sampled(alone, {.voxels = voxel_indices.size(), .overlap = false, .points = add},
-                                    {.report = {}, .stop = std::move(stop)}))
+    for (const NetworkCounts& done : simulator.evaluate_sampled(
+             alone, {.voxels = voxel_indices.size(), .overlap = false, .points = add}, {.stop = std::move(stop)}))
       cancelled = cancelled || done.cancelled;
   return cell_colours(cells, voxel_indices, counts, seen_by, simulator);
 }

@@ -38,7 +38,7 @@ std::vector<std::string> write_reports(const std::filesystem::path& folder, cons
   Report report = report_of(result, site, options);
   report.plan = plan;
   bool page = false, sheets = false;
-  parallel::beside([&] { sheets = write(folder / "report.pdf", report, site, {.report = {}, .stop = progress.stop}); },
+  parallel::beside([&] { sheets = write(folder / "report.pdf", report, site, {.stop = progress.stop}); },
                    [&] { page = write(folder / "report.html", report, site, progress); });
   std::vector<std::string> left_out;
   if (!page) left_out.emplace_back("report.html");

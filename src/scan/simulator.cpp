@@ -102,7 +102,7 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
   auto grid = make(too_small ? finest : config.user_size_m);
   if (!grid) return nullptr;
   if (too_small || grid->voxel_size() < finest) refuse_goal_density(*grid, config, finest);
-  auto weights_of_points = point_weights(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
+  auto weights_of_points = point_weights(scene, *grid, spacings_m, {.stop = progress.stop});
   if (!weights_of_points) return nullptr;
   grid->set_point_weights(std::move(*weights_of_points));
   return std::make_shared<VoxelGrid>(std::move(*grid));

@@ -136,7 +136,7 @@ class Search {
     ArchiveEvaluator* const evaluator = setup_.evaluator.archive();
     if (!evaluator || !evaluator->due(optimiser_->population(), history_.size())) return true;
     const SearchArchive members = archive();
-    const auto values = evaluator->re_evaluate(members, history_.size(), {.report = {}, .stop = setup_.stop});
+    const auto values = evaluator->re_evaluate(members, history_.size(), {.stop = setup_.stop});
     if (!values) return false;
     reassess(members, *values);
     // From here on the replayed values belong to an archive with these values.
@@ -149,7 +149,7 @@ class Search {
     ArchiveEvaluator* const evaluator = setup_.evaluator.archive();
     if (!evaluator) return true;
     const SearchArchive members = archive();
-    const auto estimates = evaluator->verify(members, history_.size(), {.report = {}, .stop = setup_.stop});
+    const auto estimates = evaluator->verify(members, history_.size(), {.stop = setup_.stop});
     if (!estimates) return false;
     SearchValues values(estimates->size());
     for (std::size_t k = 0; k < values.size(); ++k) {

@@ -67,7 +67,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     counted.surveyed = std::move(*counts);
   }
   if (attainable && !in_one) {
-    counted.captured = captured_shares(site_.simulator, *attainable, networks, {.report = {}, .stop = progress.stop});
+    counted.captured = captured_shares(site_.simulator, *attainable, networks, {.stop = progress.stop});
     if (counted.captured.size() < networks.size()) return std::nullopt;
   }
   if (needs.surroundings) {
@@ -78,7 +78,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                               .count_to = CountTo::one,
                               .registration = registered_around(needs),
                               .groups = errors},
-                             {.report = {}, .stop = progress.stop});
+                             {.stop = progress.stop});
     if (!counts) return std::nullopt;
     counted.surroundings = std::move(*counts);
   }
@@ -143,8 +143,7 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
     for (const NetworkCounts& c : *counts) trace_seconds_ += c.trace_seconds;
   const bool share = evaluator_.needs().attainable;
   if (share)
-    counted.captured =
-        captured_shares(site_.simulator, *attainable_.confirmed, networks, {.report = {}, .stop = progress.stop});
+    counted.captured = captured_shares(site_.simulator, *attainable_.confirmed, networks, {.stop = progress.stop});
 
   std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {

@@ -125,7 +125,7 @@ std::optional<VoxelBricks> mark_bricks(const SceneData& scene, std::span<const M
   const int shift = static_cast<int>(brick_bits);
   const std::int64_t bricks_per_side = depth > shift ? std::int64_t{1} << (depth - shift) : 1;
   {
-    const auto keys = touched_bricks(walk, grid.coarser(shift), bricks_per_side, {.report = {}, .stop = progress.stop});
+    const auto keys = touched_bricks(walk, grid.coarser(shift), bricks_per_side, {.stop = progress.stop});
     if (!keys) return std::nullopt;
     if (keys->size() >= empty_slot / 2)
       throw Error(Errc::invalid_argument, "the surveyed meshes fill " + std::to_string(keys->size()) +

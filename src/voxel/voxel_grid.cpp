@@ -50,7 +50,7 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
       mark_bricks(scene, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth, progress);
   if (!marked) return std::nullopt;
   grid.take(std::move(*marked));
-  auto weights = voxel_weights(scene, grid, {.report = {}, .stop = progress.stop});
+  auto weights = voxel_weights(scene, grid, {.stop = progress.stop});
   if (!weights) return std::nullopt;
   grid.total_weight_ =
       weights->empty() ? grid.size_ : std::accumulate(weights->begin(), weights->end(), std::uint64_t{0});

@@ -99,8 +99,8 @@ std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
       }
       if (use.again) alone.count.assign(voxels, 0);
       // Stations for which there was no room are traced again, without progress.
-      const Progress own = traced < shared.different() ? part_of(progress, traced, shared.different())
-                                                       : Progress{.report = {}, .stop = progress.stop};
+      const Progress own =
+          traced < shared.different() ? part_of(progress, traced, shared.different()) : Progress{.stop = progress.stop};
       ++traced;
       StationTotals totals;
       if (!count_station(scanners[station.scanner], station, options.skip, use.again ? alone : tally.field(), points,

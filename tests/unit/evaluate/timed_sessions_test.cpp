@@ -133,8 +133,9 @@ TEST(TimedSessions, AreAsShortAsEveryMinuteThatIsTriedInTheirOrder) {
       busy += town.stops.stay_min[order[k]] + (k > 0 ? town.stops.walk_min[order[k - 1]][order[k]] : 0);
     EXPECT_GE(found->end_min - found->start_min, busy - 1e-9);
     // Several hours of one stop may make a later end shorter; one may not.
-    if (std::ranges::none_of(town.stops.hours, [](const auto& hours) { return hours.size() > 1; }))
+    if (std::ranges::none_of(town.stops.hours, [](const auto& hours) { return hours.size() > 1; })) {
       EXPECT_NEAR(found->end_min - found->start_min, fewest, 1e-9) << trial;
+    }
     ++possible, waited += fewest > busy;
   }
   EXPECT_GT(possible, 200);

@@ -52,8 +52,7 @@ TEST_F(ChildProcessTest, IsEndedWhenItIsStopped) {
   std::stop_source stop;
   stop.request_stop();
   const auto begin = std::chrono::steady_clock::now();
-  const Ended ended =
-      importers::run_limited({"/bin/bash", "-c", "sleep 60"}, {}, {}, {}, {.report = {}, .stop = stop.get_token()});
+  const Ended ended = importers::run_limited({"/bin/bash", "-c", "sleep 60"}, {}, {}, {}, {.stop = stop.get_token()});
   EXPECT_TRUE(ended.stopped);
   EXPECT_NE(ended.exit_code, 0);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));

@@ -125,8 +125,7 @@ TEST_F(ImporterTest, ReadingForTheKeyIsStopped) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_TRUE(
-      importers::as_glb(model_, *importers::recognise(model_).format, {}, {}, {.report = {}, .stop = stop.get_token()})
-          .empty());
+      importers::as_glb(model_, *importers::recognise(model_).format, {}, {}, {.stop = stop.get_token()}).empty());
 }
 
 TEST_F(ImporterTest, ReadsItsModelAndTheTablesItNamesAlone) {

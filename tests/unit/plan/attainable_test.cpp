@@ -247,9 +247,9 @@ TEST(Attainable, StopsWhereTold) {
   std::stop_source stop;
   stop.request_stop();
   AttainableCounts attainable(simulator, 50);
-  EXPECT_FALSE(raise_attainable(attainable, simulator, heads(), {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(raise_attainable(attainable, simulator, heads(), {.stop = stop.get_token()}));
   const Network network = heads();
-  EXPECT_TRUE(captured_shares(simulator, attainable, {&network, 1}, {.report = {}, .stop = stop.get_token()}).empty());
+  EXPECT_TRUE(captured_shares(simulator, attainable, {&network, 1}, {.stop = stop.get_token()}).empty());
   EXPECT_EQ(attainable.coverage().value, 0);
   EXPECT_EQ(attainable.captured(std::vector<std::uint32_t>(attainable.voxels().size(), 3)).value, 0)
       << "all of nothing";

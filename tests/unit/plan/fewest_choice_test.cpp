@@ -63,7 +63,7 @@ TEST(Look, TakesExistingStationsFirstAndSomeCandidatesWhereTimeIsOver) {
   const PlacedStation existing = candidates.back();
   const auto looked_at = [&](std::stop_token stop, std::stop_token abort) {
     FewestChoice choice = floor_choice(floor_problem(0.5));
-    look(choice.table, {&existing, 1}, candidates, known, {.report = {}, .stop = std::move(stop)}, abort);
+    look(choice.table, {&existing, 1}, candidates, known, {.stop = std::move(stop)}, abort);
     return choice.table;
   };
   std::stop_source stop, abort;

@@ -45,7 +45,7 @@ TEST(CachingEvaluator, RemembersNothingOfAStoppedBatch) {
   std::stop_source stop;
   stop.request_stop();
   const std::vector<PlacedNetwork> networks{{at(1, 2, 3)}};
-  EXPECT_FALSE(caching.evaluate(networks, {}, {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(caching.evaluate(networks, {}, {.stop = stop.get_token()}));
   EXPECT_TRUE(caching.evaluate(networks, {}, {}));
   EXPECT_EQ(evaluator.evaluated, 1u);
 }

@@ -82,8 +82,8 @@ TEST_F(Resampled, AStoppedCallChangesNothing) {
   const std::string before = evaluator_->state();
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_FALSE(evaluator_->archive()->re_evaluate(archive, 6, {.report = {}, .stop = stop.get_token()}));
-  EXPECT_FALSE(evaluator_->archive()->verify(archive, 6, {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(evaluator_->archive()->re_evaluate(archive, 6, {.stop = stop.get_token()}));
+  EXPECT_FALSE(evaluator_->archive()->verify(archive, 6, {.stop = stop.get_token()}));
   EXPECT_EQ(evaluator_->state(), before);
   EXPECT_EQ(evaluator_->reported_by(), (VoxelWindow{1600, 400}));
 }

@@ -135,8 +135,7 @@ TEST_F(TimeLimit, ALookCutShortLeavesCaptureUnknown) {
   ASSERT_TRUE(met(result));
   std::stop_source stop;
   stop.request_stop();
-  result.candidates =
-      std::make_shared<const Candidates>(find_candidates(site_, {}, {.report = {}, .stop = stop.get_token()}));
+  result.candidates = std::make_shared<const Candidates>(find_candidates(site_, {}, {.stop = stop.get_token()}));
   EXPECT_FALSE(met(result));
   ASSERT_EQ(what_would_help(result).size(), 1u);
   EXPECT_NE(what_would_help(result)[0].find("cut short"), std::string::npos);

@@ -279,7 +279,7 @@ TEST(Ranks, StopAtOnceAndGoOn) {
   const auto there = job.remote(scene);
   std::stop_source stop;
   stop.request_stop();
-  const auto stopped = there->count_each(work.networks, work.sizes, {}, {.report = {}, .stop = stop.get_token()});
+  const auto stopped = there->count_each(work.networks, work.sizes, {}, {.stop = stop.get_token()});
   EXPECT_TRUE(stopped.back().cancelled);
   // The next request gets its own answer, not the previous one's.
   expect_all_equal(there->count(work.networks[5], work.sizes[5], {}, {}),

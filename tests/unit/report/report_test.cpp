@@ -400,8 +400,8 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
   std::stop_source stop;
   stop.request_stop();
   for (const char* name : {"stopped.pdf", "stopped.html"}) {
-    EXPECT_FALSE(write_report(folder / name, survey.result, survey.site, {.missed = &missed},
-                              {.report = {}, .stop = stop.get_token()}));
+    EXPECT_FALSE(
+        write_report(folder / name, survey.result, survey.site, {.missed = &missed}, {.stop = stop.get_token()}));
     EXPECT_FALSE(std::filesystem::exists(folder / name));
   }
   write_report(folder / "report.html", survey.result, survey.site, {.pictures = false});

@@ -116,7 +116,7 @@ TEST(Simulator, IsBuiltWithProgressAndNotWhereItIsStopped) {
   EXPECT_LE(told.back(), 1);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_FALSE(Simulator::build(scene, {&scanner, 1}, fine, {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(Simulator::build(scene, {&scanner, 1}, fine, {.stop = stop.get_token()}));
 }
 
 TEST(Simulator, RefusesGoalDensitiesBelowOneAndNamesWhatWorks) {
@@ -401,7 +401,7 @@ TEST(Evaluate, StoppedLargeNetworksAreAllSaidToBe) {
   const std::vector<Network> networks(3, Network(mask_bits + 1, Station{{0, 0, 0}}));
   std::stop_source stop;
   stop.request_stop();
-  const auto counts = simulator.evaluate_sampled(networks, {.voxels = 20}, {.report = {}, .stop = stop.get_token()});
+  const auto counts = simulator.evaluate_sampled(networks, {.voxels = 20}, {.stop = stop.get_token()});
   ASSERT_EQ(counts.size(), networks.size());
   for (const NetworkCounts& one : counts) EXPECT_TRUE(one.cancelled);
 }
@@ -449,7 +449,7 @@ TEST(Evaluate, StopsBeforeThePlanesOfRegistrationAndMakesThemLater) {
   const SampleOptions options{.voxels = 20, .overlap = true, .registration = RegistrationModel{}};
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_TRUE(simulator.evaluate_sampled(networks, options, {.report = {}, .stop = stop.get_token()})[0].cancelled);
+  EXPECT_TRUE(simulator.evaluate_sampled(networks, options, {.stop = stop.get_token()})[0].cancelled);
   const NetworkCounts later = simulator.evaluate_sampled(networks, options)[0],
                       expected = fresh.evaluate_sampled(networks, options)[0];
   EXPECT_FALSE(later.cancelled);

@@ -123,8 +123,7 @@ TEST_F(Rebuilding, SaysWhatAStoppedCountDidNotReach) {
   stop.request_stop();
   const std::vector<std::vector<TraceStation>> networks(5);
   const std::vector<std::uint32_t> stations(5, 1), sample(2);
-  const auto counts =
-      tracer.count_sampled(networks, stations, {.sample = sample}, {.report = {}, .stop = stop.get_token()});
+  const auto counts = tracer.count_sampled(networks, stations, {.sample = sample}, {.stop = stop.get_token()});
   ASSERT_EQ(counts.size(), 5u);
   for (const NetworkCounts& each : counts) EXPECT_TRUE(each.cancelled);
 }

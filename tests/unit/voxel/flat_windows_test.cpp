@@ -246,7 +246,9 @@ TEST(FlatWindows, HoldTheSmallTrianglesOfTheirNeighbours) {
         within += area;
     }
     of_several += held > 1;
-    if (within + other > 0) ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << voxel_indices[k];
+    if (within + other > 0) {
+      ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << voxel_indices[k];
+    }
   }
   EXPECT_GT(of_several, 100u);
 }
