@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "search/search.hpp"
+#include "vantage/planner.hpp"
 
 namespace vantage {
 

@@ -132,6 +132,8 @@ void DayOptions::add(CLI::App& command) {
   command.add_option("--thing", things, "x,y,z,x,y,z: a box that is there and not in the model")->take_all();
   command.add_option("--scanner", scanner, "Preset")->capture_default_str();
   command.add_option("--steps", steps_deg, "Degrees between rays, in place of the preset's");
+  command.add_option("--user-size", user_size_m, "Upper bound of the voxel size, metres");
+  command.add_option("--spacing", spacing_m, "Wanted distance between points, metres");
   command.add_option("--capture", capture, "Wanted share")->capture_default_str();
   command.add_option("--link", link, "Least scan overlap of links")->capture_default_str();
   command.add_option("--shift", shift_m, "Error of poses, metres")->capture_default_str();
@@ -150,6 +152,7 @@ void run_day(const DayOptions& options) {
       std::filesystem::remove(entry.path());
   vantage::SiteOptions as;
   as.scanner = options.scanner;
+  as.user_size_m = options.user_size_m, as.spacing_m = options.spacing_m;
   if (!options.steps_deg.empty()) {
     const Angle step = Angle::degrees(options.steps_deg.front());
     as.steps = {step, step};

@@ -17,6 +17,7 @@ struct DayOptions {
   std::uint64_t most = 20, seed = 1;
   std::optional<std::uint64_t> instrument;  // seed of its errors
   std::vector<double> steps_deg;
+  std::optional<double> user_size_m, spacing_m;
   void add(CLI::App& command);
 };
 

@@ -12,6 +12,7 @@
 #include "search/checkpoint.hpp"
 #include "search/identity.hpp"
 #include "search/measures.hpp"
+#include "support/member_count.hpp"
 #include "trace/tracer_maker.hpp"
 #include "unit/formats/files.hpp"
 #include "vantage/error.hpp"
@@ -19,21 +20,6 @@
 
 namespace vantage {
 namespace {
-
-// Counts the members of an aggregate, so that none can be added without a line below.
-struct Anything {
-  template <class T>
-  operator T() const {  // never called: only asked whether it would do
-    std::abort();
-  }
-};
-template <class T, class... Members>
-constexpr std::size_t member_count() {
-  if constexpr (requires { T{Members{}..., Anything{}}; })
-    return member_count<T, Members..., Anything>();
-  else
-    return sizeof...(Members);
-}
 
 struct PlanRun {
   Scanner scanner{.azimuth_step = Angle::degrees(5), .zenith_step = Angle::degrees(5)};
@@ -88,7 +74,7 @@ const std::vector<Change<Scanner>> kScanner{
     {"tilt_accuracy", [](Scanner& s) { s.tilt_accuracy = Angle::degrees(0.05); }, false},  // the registration's decides
     {"detection_reflectivity", [](Scanner& s) { s.detection_range_m = 80, s.detection_reflectivity = 0.5; }},
     {"dropout", [](Scanner& s) { s.dropout = 0.1; }}};
-static_assert(member_count<Scanner>() == 26);
+static_assert(test::member_count<Scanner>() == 26);
 
 // The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
@@ -125,7 +111,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"wall_height_m", [](SceneOptions& o) { o.wall_height_m = 3.0; }, false},
     {"shared_meshes", [](SceneOptions& o) { o.shared_meshes = SharedMeshes::always; }, false},
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SceneOptions>() == 21);
+static_assert(test::member_count<SceneOptions>() == 21);
 
 struct Alone final : TracerMaker {
   std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }
@@ -152,7 +138,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
     // The free memory of a machine does not change results.
     {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SimulatorConfig>() == 14);
+static_assert(test::member_count<SimulatorConfig>() == 14);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},
@@ -177,12 +163,12 @@ const std::vector<Change<WalkableOptions>> kWalkable{
     {"without", [](WalkableOptions& o) {
        o.without = {{{{{-9, -9}, {9, -9}, {9, 9}}}}};
      }}};
-static_assert(member_count<WalkableOptions>() == 11);
+static_assert(test::member_count<WalkableOptions>() == 11);
 
 const std::vector<Change<SecurityVolume>> kSecurity{{"lower_m", [](SecurityVolume& v) { v.lower_m = 0.7; }},
                                                     {"upper_m", [](SecurityVolume& v) { v.upper_m = 1.5; }},
                                                     {"radius_m", [](SecurityVolume& v) { v.radius_m = 0.2; }}};
-static_assert(member_count<SecurityVolume>() == 3);
+static_assert(test::member_count<SecurityVolume>() == 3);
 
 const std::vector<Change<SurveyProblem>> kProblem{
     {"name", [](SurveyProblem& p) { p.name = "other"; }, false},
@@ -220,7 +206,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
      },
      false},
     {"target", [](SurveyProblem& p) { p.target.diameter_m = 0.2; }, false}};
-static_assert(member_count<SurveyProblem>() == 21);
+static_assert(test::member_count<SurveyProblem>() == 21);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},
@@ -230,7 +216,7 @@ const std::vector<Change<SurveyProblem>> kRegistration{
     {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }},
     {"tilt_of_scanner", [](SurveyProblem& p) { p.registration.tilt_of_scanner = true; }},
     {"surfaces", [](SurveyProblem& p) { p.registration.surfaces = RegistrationSurfaces::all; }}};
-static_assert(member_count<RegistrationOptions>() == 6 && member_count<RegistrationModel>() == 2);
+static_assert(test::member_count<RegistrationOptions>() == 6 && test::member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},
@@ -263,7 +249,7 @@ const std::vector<Change<PlanConfig>> kPlan{
     // `sample_voxels` is what they come to.
     {"exact", [](PlanConfig& c) { c.exact = true; }, false, false},
     {"sample_share", [](PlanConfig& c) { c.sample_share = 0.5; }, false, false}};
-static_assert(member_count<PlanConfig>() == 19);
+static_assert(test::member_count<PlanConfig>() == 19);
 
 SearchMesh ground() {
   return {.positions = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}},
@@ -290,7 +276,7 @@ Told told(const PlanRun& run) {
 
 template <class Struct>
 void expect_all_count(const std::vector<Change<Struct>>& changes, Struct PlanRun::*part,
-                      std::size_t members = member_count<Struct>()) {
+                      std::size_t members = test::member_count<Struct>()) {
   ASSERT_EQ(changes.size(), members);
   const Told before = told({});
   for (const Change<Struct>& change : changes) {
@@ -314,12 +300,12 @@ TEST(Settings, OfAProblemAllCount) { expect_all_count(kProblem, &PlanRun::proble
 // A part of the problem, and the model a part of that.
 TEST(Settings, OfRegistrationAllCount) {
   expect_all_count(kRegistration, &PlanRun::problem,
-                   member_count<RegistrationOptions>() - 1 + member_count<RegistrationModel>());
+                   test::member_count<RegistrationOptions>() - 1 + test::member_count<RegistrationModel>());
 }
 TEST(Settings, OfASearchAllCount) { expect_all_count(kPlan, &PlanRun::config); }
 
 TEST(Settings, OfASceneAllCount) {
-  ASSERT_EQ(kScene.size(), member_count<SceneOptions>());
+  ASSERT_EQ(kScene.size(), test::member_count<SceneOptions>());
   const auto json_of = [](const SceneOptions& options) {
     std::string text;
     for (const Setting& setting : settings(options)) text += setting.name + setting.json;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "support/member_count.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -82,6 +85,73 @@ TEST(SurveyQuestion, IsAProblemByNameOrByObjectives) {
   const SurveyProblem problem = survey_problem(site, question);
   EXPECT_EQ(problem.objectives.size(), 2u);
   EXPECT_EQ(required(problem), (std::vector<std::string>{"apart >= 1"}));
+}
+
+// All that a problem says, names of existing stations included.
+std::string text_of(const SurveyProblem& problem) {
+  std::string text;
+  for (const Setting& setting : settings(problem)) text += setting.name + " " + setting.json + "\n";
+  for (const std::string& name : problem.existing_names) text += name + "\n";
+  return text;
+}
+
+// A member of a question, set to another value than it has in the question before.
+struct QuestionChange {
+  std::string member;
+  std::function<void(SurveyQuestion&)> make, before = [](SurveyQuestion&) {};
+};
+void keep_a_station(SurveyQuestion& q) { q.existing = {{4, 4, 1.8}}; }
+const std::vector<QuestionChange> kQuestion{
+    {"problem", [](SurveyQuestion& q) { q.problem = "coverage-min"; },
+     [](SurveyQuestion& q) {
+       q.problem = "coverage-overlap-min", q.stations = {2, 3};
+     }},
+    {"capture", [](SurveyQuestion& q) { q.capture = 0.8; }},
+    {"pays_m2", [](SurveyQuestion& q) { q.pays_m2 = 40; }},
+    {"link", [](SurveyQuestion& q) { q.link = 0.2; }},
+    {"apart_m", [](SurveyQuestion& q) { q.apart_m = 2; }},
+    {"minutes_on_site", [](SurveyQuestion& q) { q.minutes_on_site = 90; }},
+    {"on_site", [](SurveyQuestion& q) { q.on_site.set_up_min = 7; }},
+    {"objectives", [](SurveyQuestion& q) { q.objectives = {"coverage"}; }},
+    {"requirements", [](SurveyQuestion& q) { q.requirements = {"coverage>=0.5"}; }},
+    {"stations",
+     [](SurveyQuestion& q) {
+       q.stations = {2, 3};
+     }},
+    {"existing", keep_a_station},
+    {"existing_setups", [](SurveyQuestion& q) { q.existing_setups = {{.heading = Angle::degrees(30)}}; },
+     keep_a_station},
+    {"existing_names", [](SurveyQuestion& q) { q.existing_names = {"gate"}; }, keep_a_station},
+    {"search_steps", [](SurveyQuestion& q) { q.search_steps = {"0.5"}; }},
+    {"heights_m",
+     [](SurveyQuestion& q) {
+       q.heights_m = {1.5, 2.0};
+     }},
+    {"link_overlap", [](SurveyQuestion& q) { q.link_overlap = 0.07; }},
+    {"min_overlap", [](SurveyQuestion& q) { q.min_overlap = 0.2; }},
+    {"fitness", [](SurveyQuestion& q) { q.fitness = FitnessWeights{.coverage = 3}; },
+     [](SurveyQuestion& q) {
+       q.problem = "fitness-min", q.stations = {2, 3};
+     }},
+    {"registration", [](SurveyQuestion& q) { q.registration.position_m = 0.2; }},
+    {"targets", [](SurveyQuestion& q) { q.targets = 4; }},
+    {"existing_targets",
+     [](SurveyQuestion& q) {
+       q.existing_targets = {{.name = "C1", .centre = {1, 2, 1}}};
+     }},
+    {"target", [](SurveyQuestion& q) { q.target.diameter_m = 0.2; }}};
+static_assert(test::member_count<SurveyQuestion>() == 22);
+
+TEST(SurveyQuestion, HasNoMemberThatItsProblemForgets) {
+  EXPECT_EQ(kQuestion.size(), test::member_count<SurveyQuestion>());
+  const Site site = small_site();
+  for (const QuestionChange& change : kQuestion) {
+    SurveyQuestion question;
+    change.before(question);
+    const std::string before = text_of(survey_problem(site, question));
+    change.make(question);
+    EXPECT_NE(text_of(survey_problem(site, question)), before) << change.member;
+  }
 }
 
 TEST(SurveyQuestion, TakesRequirementsInPlaceOfItsOwn) {

@@ -371,8 +371,8 @@ class FragileFinder final : public RayFinder {
  private:
   Fragile& fragile_;
   EngineInfo info_;
-  std::vector<OwnRay> rays_[slots];
-  std::vector<std::uint32_t> answers_[slots];
+  std::vector<OwnRay> rays_[kSlots];
+  std::vector<std::uint32_t> answers_[kSlots];
 };
 
 struct Batches {
