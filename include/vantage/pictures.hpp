@@ -20,7 +20,7 @@ namespace vantage {
 void draw_front(const std::filesystem::path& file, const PlanResult& result);
 /// Draws the hypervolume of the search against its evaluations.
 void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result);
-/// The front at five moments of the search, with the search's own values (figure 9 of the method).
+/// Draws the front at five moments of the search, with the search's own values (figure 9 of the method).
 void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);
 /// Draws the site in plan view: shaded relief, search area, stations with the height of their ground, and links. A link
 /// is as wide as its overlap is large, on one scale in all pictures; those below `link_overlap` are not drawn. A site
@@ -36,12 +36,12 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   std::span<const Target> targets = {});
 
 /// Draws every voxel of `missed` in plan view, in the colour of its reason: a map for each floor, cut as by
-/// `draw_plan_view`. Of voxels above each other, one missed for want of a station shows first, then one seen badly, then
-/// a captured one, then a hidden one: most of these are undersides.
+/// `draw_plan_view`. If voxels lie above each other, one missed for want of a station shows first, then one seen badly,
+/// then a captured one, then a hidden one, since most of these are undersides.
 void draw_missed(const std::filesystem::path& file, Site& site, const MissedVoxels& missed,
                  std::span<const PlacedStation> stations, const std::string& title);
-/// Draws the predicted registration error on the surface in plan view (`write_registration_ply()`): a map for each floor
-/// as by `draw_missed`, with unseen parts in grey.
+/// Draws the predicted registration error on the surface in plan view (`write_registration_ply()`): a map for each
+/// floor as by `draw_missed`, with unseen parts in grey.
 void draw_registration(const std::filesystem::path& file, Site& site, const VoxelField& field,
                        const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title);

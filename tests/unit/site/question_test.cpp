@@ -129,7 +129,7 @@ const std::vector<QuestionChange> kQuestion{
      }},
     {"link_overlap", [](SurveyQuestion& q) { q.link_overlap = 0.07; }},
     {"min_overlap", [](SurveyQuestion& q) { q.min_overlap = 0.2; }},
-    {"fitness", [](SurveyQuestion& q) { q.fitness = FitnessWeights{.coverage = 3}; },
+    {"fitness", [](SurveyQuestion& q) { q.fitness = FitnessWeights{.coverage = 0.6}; },
      [](SurveyQuestion& q) {
        q.problem = "fitness-min", q.stations = {2, 3};
      }},
