@@ -163,7 +163,7 @@ TEST(PlansWithStairs, TieStoreysInTheStairwell) {
   SiteOptions fine;
   fine.engine = Engine::embree;
   fine.steps = {Angle::degrees(0.2), Angle::degrees(0.2)};
-  fine.user_size_m = 0.1, fine.spacing_m = 0.05;
+  fine.user_size_m = 0.2, fine.spacing_m = 0.1;
   Site house = Site::open(folder / "site.glb", fine);
   SurveyQuestion question;
   question.targets = 0;
