@@ -132,7 +132,7 @@ struct SceneOptions {
   /// Patterns (case does not matter) of the layers that a floor plan has its walls on. Empty: those named as walls,
   /// else those whose lines enclose rooms.
   std::vector<std::string> wall_layers = {};
-  std::optional<double> wall_height_m = std::nullopt;  ///< Height in a floor plan, above 0. Empty: 2.7.
+  std::optional<double> wall_height_m = std::nullopt;  ///< Height of a floor plan's walls, above 0. Empty: 2.7.
   /// Storage of meshes that several nodes place (docs/scenes.md). It changes memory, and results by no more than the
   /// rounding of coordinates (docs/evidence/stability.md).
   SharedMeshes shared_meshes = SharedMeshes::automatic;

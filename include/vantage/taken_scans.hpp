@@ -33,8 +33,8 @@ struct TakenPoint {
 
 /// Result of fitting a scan to the model.
 struct ScanFit {
-  bool fitted = false;    ///< Reason why not, as the end of a sentence that begins with the scan's name.
-  std::string why = {};   ///< Then the reason, as the end of a sentence that begins with the scan's name.
+  bool fitted = false;    ///< False if the scan keeps the pose of its file.
+  std::string why = {};   ///< Reason why not, as the end of a sentence that begins with the scan's name.
   double shift_m = 0;     ///< Distance by which its head was moved.
   Angle turn = {};        ///< Angle by which it was turned.
   double residual_m = 0;  ///< Root mean square distance of its points near the model from the model's planes.
