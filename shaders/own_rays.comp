@@ -55,7 +55,7 @@ void main() {
     push.answers.at[k] = ray.range == own_ray_open ? open_answer : nothing;
     return;
   }
-  // Limits are widened by more than their own rounding. If no hit is sure, `other` is the first doubtful one.
+  // Limits are widened by more than their own rounding. If no hit is sure, a finite `other` means a doubtful one.
   Found found = Found(infinite(), ray.range * (1.0 + doubt_of_depth), infinite(), nothing);
   find(found, ray, max(ray.from * (1.0 - doubt_of_depth), 0.0));
   bool open = found.other < infinite();

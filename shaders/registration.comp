@@ -26,7 +26,7 @@ shared float weights[register_voxels * stations_at_most];  // 1/s²; below 0 if 
 shared float scales[2u * register_voxels];  // units / Σ w of each side
 shared int products[register_voxels * pair_sums];
 shared int surface[register_voxels * 4u];  // weight and place
-shared float means[2u * register_voxels * instrument_errors];  // mean movement of a plane by errors
+shared float means[2u * register_voxels * instrument_errors];  // means over stations of a plane's movement by errors
 shared uint any_seen;
 
 // Returns 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.

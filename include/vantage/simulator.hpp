@@ -198,7 +198,7 @@ struct EveryRayOptions {
 enum class CountTo {
   all,   ///< Every point.
   goal,  ///< Up to the goal density: a voxel there may show fewer points than it got.
-  one,   ///< One point at most: pairs and registration are right, and no coverage.
+  one,   ///< Until there is any: pairs and registration are right, and no coverage.
 };
 
 /// Sample and outputs of `Simulator::evaluate_sampled`.

@@ -3,7 +3,7 @@
 #ifndef VANTAGE_LIB_EXACT
 #define VANTAGE_LIB_EXACT
 
-// Returns 1 / x by Newton's iteration from an integer guess, to 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
+// Returns 1 / x by Newton's iteration from a guess; relative error below 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
 float exact_reciprocal(float x) {
   precise float y = uintBitsToFloat(0x7EF311C7u - floatBitsToUint(x));
   for (int i = 0; i < 4; ++i) {

@@ -29,7 +29,7 @@ struct Faces {
   uint id[faces_at_once];
 };
 
-// Finds them in one walk. Most beams pass two or three faces, and a walk for each would double the time.
+// Finds them in one walk. Most beams pass two or three faces, and each further walk would take as long again.
 Faces walk_faces(NodeQuarters nodes, TriangleCorners corners, vec3 origin, vec3 direction, float t_min, float t_max) {
   Faces found;
   for (uint k = 0u; k < faces_at_once; ++k) {

@@ -96,7 +96,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
     const Occluder occluder = occluder_of(corners);
     const float facing = dot(occluder.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
     const Place place = place_of(cube, occluder, facing);
-    if (any(lessThan(place.at, -place.wide))) {  // it does not cover the cube
+    if (any(lessThan(place.at, -place.wide))) {  // it covers no part of the cube
       if (m == 0u) return false;
       continue;
     }

@@ -4,7 +4,7 @@
 #define VANTAGE_LIB_VOXEL
 #include "lib/parameters.glsl"
 
-// Returns voxel coordinates, as VoxelGrid::cell_of does, to the bit.
+// Finds voxel coordinates, as VoxelGrid::cell_of does, to the bit; returns false outside the voxels' cube.
 bool cell_of(vec3 p, out uvec3 cell) {
   precise vec3 q = p - parameters.voxel_min;
   precise vec3 scaled = q * parameters.voxel_inverse_size;

@@ -19,7 +19,7 @@ double apart_m(const PlacedStation& a, const PlacedStation& b) {
 }
 
 constexpr double kStep_m = 0.1;  // along a way
-// Radius of further positions on each side of a place where nobody may stand.
+// Further positions on each side of a place where nobody may stand, and their radius.
 constexpr std::size_t kBySide = 8;
 constexpr double kBySide_m = 0.75;
 

@@ -51,7 +51,7 @@ class NetworkLinks {
     std::vector<std::size_t> without;  // by member: number of components without it
   };
   Trees trees() const;
-  // Components of all members. `of` has the network's size.
+  // Components of all members, or of all but the one at `at`, which is in none. `of` has the network's size.
   Components components() const { return components_without(network_.size(), trees()); }
   Components components_without(std::size_t at, const Trees& trees) const;
   // Number of components that a candidate is linked to. `without`: the place of a member that does not count.

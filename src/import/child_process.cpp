@@ -90,7 +90,7 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
   setrlimit(resource, &wanted);
 }
 
-// Sanitizers reserve terabytes and read files that the sandbox closes: their builds run importers without either limit.
+// Sanitizers reserve terabytes and read files that the sandbox closes: their builds limit no memory and use no sandbox.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kConfined = false;
 #else

@@ -30,7 +30,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file,
 // Recognises the format of a model by its content, else by its extension. Missing or unreadable files are left to the
 // loader's own errors. Throws Error malformed_file, which names the kind of file, for files without surfaces (a zip
 // archive, a page, a picture, …). Throws it also for several files of different formats, or of a format that takes one
-// file.
+// file; for the latter, invalid_argument if some are `beside`.
 Recognised recognise(const std::filesystem::path& file, const std::vector<std::string>& beside = {});
 
 }  // namespace vantage::importers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Main loop and exit codes shared by the importers in C++.
+// Common end of the importers in C++: progress, result, errors and exit codes.
 #pragma once
 
 #include <functional>

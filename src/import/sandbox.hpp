@@ -11,7 +11,7 @@ namespace vantage::importers {
 // Access rights of a child process, prepared before the fork, since only system calls are safe after it.
 class Sandbox {
  public:
-  // Allows running and reading programs below `programs` and the system's folders, and reading `readable`, files or
+  // Allows running and reading what lies below `programs` and the system's folders, and reading `readable`, files or
   // folders. `spawns`: the process may start programs by posix_spawn(), which share its sandbox and its process group.
   Sandbox(const std::vector<std::filesystem::path>& programs, const std::vector<std::filesystem::path>& readable,
           bool spawns = false);

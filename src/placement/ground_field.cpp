@@ -412,7 +412,7 @@ void GroundField::find_room(const SceneData& scene) {
   struct Open {
     glm::dvec2 p;
     double low, high;
-    bool is_beside;  // otherwise it may only be overhead
+    bool is_beside;  // known already: only surfaces over it still matter
   };
   const auto may_mark = [&](const Box& box, const Open& o) {
     const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),

@@ -189,7 +189,7 @@ class GroundField {
   std::optional<std::uint32_t> column_beyond(const Rim& rim) const;
   // Returns true if a person looks down on reached floor over a rail, so that nobody falls off.
   bool is_gallery(const MeshTree& tree, std::uint32_t part) const;
-  // Returns true for a floor that ends in the air high above another, like an aircraft's wing: nobody walks on it.
+  // Returns true for a floor that ends in the air high above another, like a wing: nobody walks on it.
   bool is_open_deck(const MeshTree& tree, std::uint32_t part) const;
   // Returns true if reached floor, or the outside of the model, is in view from it.
   bool has_openings(const MeshTree& tree, std::uint32_t part) const;
@@ -206,7 +206,7 @@ class GroundField {
   };
   std::vector<Step> steps_between_parts() const;
   bool is_gap(std::uint32_t sample, std::uint32_t to, std::int64_t columns) const;
-  // Visits a step to each part that steps of at most this height reach, perhaps by other parts.
+  // Visits a step to each part that steps up to `highest` lead to from the reached parts, perhaps by other parts.
   template <class Visit>
   void for_parts_by_steps(std::span<const Step> steps, double highest, Visit&& visit) const;
   void look_beyond_high_steps(std::span<const Step> steps);
@@ -235,7 +235,7 @@ class GroundField {
   glm::dvec2 corner_{};
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> top_;             // per column: the highest surface at its middle
-  std::vector<std::uint8_t> wet_;      // per column: true if water is on top
+  std::vector<std::uint8_t> wet_;      // per column: 1 if water is on top
   std::vector<MeshRange> ceilings_;    // the triangles of meshes that are named as ceilings, ascending
   std::vector<std::uint32_t> first_;   // per column: its start in the samples, which ascend in z
   std::vector<std::uint32_t> column_;  // per sample

@@ -12,12 +12,12 @@ namespace vantage {
 // Rounds of refinement around the chosen stations.
 inline constexpr std::size_t kRounds = 3;
 
-// Raises limits by the known errors of the search's sample. `overstated`: excess of the sampled coverage of the initial
-// network.
+// Raises lower limits by the known errors of the search's sample. `overstated`: excess of the sampled coverage of the
+// initial network.
 SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, double overstated, double link_margin);
 
-// Returns a configuration with small first steps. If it has no number of iterations, it gets one that bounds the traced
-// stations by those of the candidates.
+// Returns a configuration with small first steps. If it has no number of iterations, it gets one that limits the
+// stations that the search traces for each traced candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
 // True if the search evaluates enough networks for each coordinate, and has something to trade. With fewer it learns no

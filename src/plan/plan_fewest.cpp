@@ -86,7 +86,7 @@ class TableMaker {
  private:
   Simulator& simulator_;
   TraceColumns surroundings_;
-  std::vector<double> goals_;  // attainable counts, if the choice limits `capture`
+  std::vector<double> goals_;  // attainable counts, if the choice is by `capture`
   StationSpacing spacing_;
   double unsampled_ = 1;
 };

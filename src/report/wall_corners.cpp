@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCell_m = 1, kTouch_m = 2e-3, kLeastRun_m = 0.15, kSame_m = 5e-3;
 constexpr double kUnder_m = 2e-2;  // tolerance of a line over a corner
-constexpr double kShort_m = 1e-2;  // part of a line before a corner that may end there
+constexpr double kShort_m = 1e-2;  // a free line of sight may end this far before its end
 const double kStraight = std::cos(Angle::degrees(3).in_radians());
 const double kTurn = std::cos(Angle::degrees(30).in_radians());
 

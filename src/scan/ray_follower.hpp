@@ -25,7 +25,7 @@ class RayFollower {
 
   // The surface that a ray meets, with its distance along the whole way.
   struct Seen {
-    std::uint32_t triangle;  // RayBundle::no_hit: nothing, or mirrors without end
+    std::uint32_t triangle;  // RayBundle::kNoHit: nothing, or mirrors without end
     float t, reflectivity;
     double cosine;  // of incidence
     Float3 normal;  // as seen in the mirrors

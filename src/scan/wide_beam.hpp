@@ -32,7 +32,7 @@ class WideBeam {
     bool wrong_voxel;        // mixed, and in a surveyed voxel that none of its echoes came from
     float t, reflectivity;   // t with noise
     std::uint32_t triangle;  // of the strongest echo in it
-    std::uint32_t voxel;     // no_voxel if the point does not count
+    std::uint32_t voxel;     // kNoVoxel if the point does not count
     DroppedPoints dropped;   // limits that alone keep it from counting
     Float3 point, normal;
     Float2 weights;

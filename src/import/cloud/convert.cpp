@@ -190,7 +190,7 @@ class Converter {
     for (const CloudScan& scan : source_->scans()) posed_ += scan.posed ? 1 : 0;
   }
 
-  // Refuses points 50 times as high as they are wide, and at most 0.02 wide: degrees, with heights in metres.
+  // Refuses points less than 0.02 wide and more than 50 times as high: degrees, with heights in metres.
   static void refuse_degrees(const Density& density) {
     constexpr double kWidest = 0.02, kHigher = 50, kLeastHigh = 0.3;
     const Eigen::Vector3d extent = density.extent(), middle = density.middle();

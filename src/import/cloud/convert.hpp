@@ -21,14 +21,14 @@ struct CloudSettings {
   char up = 'z';                      // the file's axis that points up: x, y or z
   std::string columns = {};           // of a text, see columns_of()
 };
-// Sets one of them by a word NAME=VALUE of cell, unit, up and columns; returns false for other names. Throws Refused.
+// Sets one of them by a word NAME=VALUE of cell, unit, up and columns; returns false for other words. Throws Refused.
 bool take_setting(CloudSettings& settings, const std::string& word);
 
 // Opens the reader of a format: e57, las, ply, xyz or pcd. Several files are read one after the other. Throws Refused.
 std::unique_ptr<PointSource> open_source(const Files& files, const std::string& format,
                                          const CloudSettings& settings = {});
 
-// Returns the bytes that cells may take, 60 % of this process's limit.
+// Returns the bytes that cells may take: 60 % of this process's memory limit, or of 2 GB without a limit.
 double memory_for_cells();
 
 // Converts a point cloud to surfaces, a GLB. `format`: e57, las, ply, xyz or pcd. The GLB declares its unit if the

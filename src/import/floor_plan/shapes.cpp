@@ -250,7 +250,7 @@ Shape filled(const Shape& shape) { return polygon(outer_ring(shape)); }
 
 namespace {
 
-// GEOS clips ears, and finds none in some areas with holes that nearly touch. Such areas are halved first.
+// GEOS clips ears, and finds none in some areas with holes that nearly touch. Halves of these are easier.
 void add_triangles(const Shape& polygon_in, int halvings, std::vector<std::array<Point, 3>>& out) {
   constexpr int kMostHalvings = 16;
   if (const Shape cut{GEOSConstrainedDelaunayTriangulation_r(context(), polygon_in.get())}) {

@@ -38,7 +38,7 @@ struct StairStorey {
 
 // A step with its corners and the height of its face above the lower floor; or a landing.
 struct Step {
-  std::array<Point, 4> corners;  // counter-clockwise; the first two are the front
+  std::array<Point, 4> corners;  // counter-clockwise; the first two are the front, where people come from
   double low_m = 0, high_m = 0;
 };
 

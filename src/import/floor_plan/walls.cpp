@@ -144,7 +144,7 @@ Faces faces_of(const std::vector<Line>& lines_in) {
   return out;
 }
 
-// Returns the pieces of lines outside `solid`, without stubs no longer than the tolerance of joins.
+// Returns the pieces of lines outside `solid`, without stubs of up to twice kTolerance_m.
 std::vector<Line> single_lines(const std::vector<Line>& cut, const Shape& solid) {
   const Region beside(grown(solid, kBeside_m));
   std::vector<Line> rest, touching;
@@ -248,7 +248,7 @@ double likeness(const std::vector<Line>& lines_in) {
   return score;
 }
 
-// Returns the layers whose lines look most like walls: the best one, and each that adds to its score.
+// Returns the one layer whose lines look most like walls; empty if none look like walls.
 std::set<int> enclosing_layers(const Drawing& drawing) {
   std::map<int, std::vector<Line>> by_layer;
   for (const Line& line : lines_of(drawing, [](const Origin& from) { return from.kind == Kind::other; }))

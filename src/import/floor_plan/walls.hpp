@@ -16,7 +16,7 @@ inline constexpr double kThinnestWall_m = 0.03, kThickestWall_m = 0.62, kSingleL
 // A face that lines enclose.
 struct WallFace {
   double area_m2 = 0, perimeter_m = 0;
-  double wide_m() const { return perimeter_m > 0 ? 2 * area_m2 / perimeter_m : 0; }  // exact for a long one
+  double wide_m() const { return perimeter_m > 0 ? 2 * area_m2 / perimeter_m : 0; }  // about that of a long one
 };
 
 struct Walls {
@@ -30,8 +30,8 @@ struct Walls {
   double widest_gap_m = 0;
 };
 
-// Finds the walls of a drawing in metres, by lines of Kind::wall, or of the layers that enclose most rooms if there are
-// none. Throws Refused if no line encloses anything.
+// Finds the walls of a drawing in metres, by lines of Kind::wall, or of the layer that looks most like walls if there
+// are none. Throws Refused if there is no such layer, or if lines cross too often.
 Walls find_walls(const Drawing& drawing);
 
 }  // namespace vantage::floor_plan

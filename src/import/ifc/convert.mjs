@@ -34,7 +34,7 @@ export function convert(ifc, api, files, unit) {
   return site.toGlb();
 }
 
-// Returns each file's place. Files without a map conversion use that of the others: they share coordinates.
+// Returns {notes, crs, of}; `of` gives a file's place. Files without a map conversion take the first one that there is.
 function places(models) {
   const notes = [], mapped = models.filter(({ located }) => located?.place), first = mapped[0];
   const crs = [...new Set(mapped.map(({ located }) => located.crs).filter(Boolean))];

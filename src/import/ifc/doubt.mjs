@@ -13,7 +13,7 @@ export const sizes = (size) => `${size.map((v) => (v >= 1000 ? v.toFixed(0) : te
 // Returns sizes in x, z and y: height last.
 export const sizeOf = ({ min, max }) => [max[0] - min[0], max[2] - min[2], max[1] - min[1]];
 
-// Returns the model's size in each unit. `metres`: its present unit, which `wanted` sizes replace.
+// Returns texts of the model's size in each unit. `metres`: in its present unit; `wanted`: true for sizes to list.
 export function choices(extent, metres, wanted = () => true) {
   const size = sizeOf(extent).map((v) => v / metres);
   return UNITS.map(([name, unit, plural]) => ({ name, plural, size: size.map((v) => v * unit) })).filter(({ size: found }) => wanted(found))

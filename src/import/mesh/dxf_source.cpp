@@ -72,7 +72,7 @@ class DxfModel {
           listed(hidden_));
     if (smoothed_ > 0)
       model_.notes.push_back(std::to_string(smoothed_) + " MESH are read as their frames, without smoothing");
-    // Lists types only if layers and types together are too many for a message.
+    // Lists the types alone if layers and types together are too many for a message.
     constexpr std::size_t kMostTold = 40;
     if (model_.left_out.size() > kMostTold) {
       Counts types;

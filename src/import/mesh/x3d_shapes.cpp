@@ -234,7 +234,7 @@ class Surface {
       }
   }
 
-  // Returns how many corners keep the chords of a circle within kChordError_m of it.
+  // Returns the number of corners of a circle, by the error of its chords, kChordError_m: from 16 to 256.
   int segments(double radius) const {
     const double share = kChordError_m / (std::abs(radius) * units_.metres);
     const double n = share < 1 ? pi / std::acos(1 - share) : 0;
