@@ -12,7 +12,7 @@ inline RayCaster caster_over(const std::shared_ptr<const SceneData>& scene) {
   return {scene, std::make_shared<Planes>(scene)};
 }
 
-// The triangle hit, or no_hit, and its distance.
+// The triangle hit, or kNoHit, and its distance.
 inline std::uint32_t nearest_hit(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end,
                                  float& t) {
   RayBundle ray = one_ray(origin, d, start, end);
