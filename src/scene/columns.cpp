@@ -34,7 +34,7 @@ struct WallAt {
   auto key() const { return std::tie(edge, wall.low, wall.high); }
 };
 
-// Returns the part of a triangle on the line where axis `k` (0 or 1) equals `at`: from one (along, z) to another.
+// Finds the part of a triangle where axis `k` (0 or 1) equals `at`, from (along, z) a to b; false if there is none.
 bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
   int found = 0;
   for (int e = 0; e < 3; ++e) {

@@ -43,7 +43,7 @@ class Columns {
   bool inside_out() const { return inside_out_; }
   const std::vector<Level>& levels() const { return levels_; }
   std::uint32_t first(std::uint32_t column) const { return first_[column]; }  // ascending in z; up to `count()`
-  // Returns true if a wall stands between a column and its neighbour along x (0) or y (1), somewhere in [low, high].
+  // Returns true if a wall stands between a column and its neighbour along x (0) or y (1), somewhere in (low, high).
   bool wall(std::uint32_t column, int axis, float low, float high) const;
 
  private:

@@ -45,7 +45,7 @@ struct Recognised {
   bool inside_out = false;                // true if its faces must be turned
   std::string note = {};                  // one line; empty if glTF's rule holds
   std::string question = {};              // not empty: no hypothesis wins clearly
-  std::vector<std::string> choices = {};  // if not empty: the best hypotheses
+  std::vector<std::string> choices = {};  // then: what each of the best hypotheses would mean
 };
 
 // `keeps_rule`: the file's format prescribes metres and Y up, as glTF does; that reading then needs a smaller lead.

@@ -35,7 +35,7 @@ std::optional<SceneDifference> difference(const SceneData& before, const SceneDa
 // Returns the triangles of the later scene below `end` that are in no run; by number only.
 std::vector<KeptRun> not_kept(std::span<const KeptRun> kept, std::uint32_t end);
 
-// Joins `first` and then `then`: runs by the numbers before both.
+// Applies `first` and then `then`: runs of triangles in both, by the numbers before both.
 std::vector<KeptRun> joined(std::span<const KeptRun> first, std::span<const KeptRun> then);
 
 }  // namespace vantage

@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// Returns 1 / x by Newton's iteration from an integer guess, to 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
+// Returns 1 / x by Newton's iteration from an integer guess, to a relative 2^-22. REQUIRES: 2^-100 < |x| < 2^100.
 inline float exact_reciprocal(float x) {
   float y = std::bit_cast<float>(0x7EF311C7u - std::bit_cast<std::uint32_t>(x));
   for (int i = 0; i < 4; ++i) y = y * (2.0f - x * y);

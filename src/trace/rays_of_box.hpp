@@ -25,7 +25,7 @@ struct RayRanges {
 // more than the rounding of directions.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
 
-// Returns the angles of a box, for patterns that are a list.
+// Returns the angles of a box, also widened, for patterns that are a list.
 AngleWindow angles_of_box(const Vec3& low, const Vec3& high);
 
 // Returns rays with a zenith between two and an azimuth in [azimuth, azimuth + width], radians; also widened.

@@ -42,7 +42,7 @@ struct PatchFrame {
 // REQUIRES: model.rho_m > 0, model.patch_m > 0; surfaces within the cube.
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model);
-// Does so for voxels of a grid; indices as for `SurfaceFinder::find`. Without patches if stopped early.
+// Does so for voxels of the grid of `surfaces`; indices as for `SurfaceFinder::find`. Without patches if stopped early.
 Patches make_patches(SurfaceFinder& surfaces, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
                      const RayPattern& pattern, const RegistrationModel& model, const std::stop_token& stop = {});
 

@@ -59,7 +59,7 @@ struct RayPattern {
 // in steps of 0.01.
 struct NoiseModel {
   static constexpr std::uint32_t kSide = 101;
-  std::vector<float> sigma;  // side × side, row-major [reflectivity][distance]; empty: no noise
+  std::vector<float> sigma;  // kSide × kSide, row-major [reflectivity][distance]; empty: no noise
   float min_range = 0;       // normalised distance = (t − min_range) · inverse_span
   float inverse_span = 0;
   std::uint64_t seed = 0;
@@ -160,7 +160,7 @@ class Tracer {
     std::vector<float> reflectivity;
     std::vector<std::uint32_t> primitive;  // scene triangle; 2^32 − 1 without a hit
     std::vector<Float2> barycentric;       // weights of the triangle's second and third vertex
-    std::vector<std::uint32_t> voxel;      // no_voxel if the point does not count
+    std::vector<std::uint32_t> voxel;      // kNoVoxel if the point does not count
   };
   enum RawOutput : std::uint32_t {
     range = 1,

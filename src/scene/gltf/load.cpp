@@ -47,7 +47,7 @@ constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 // Bytes of a mesh that is stored once: corners, sorted corners, flag of being kept.
 constexpr double kSharedVertex = 12 + 4, kSharedTriangle = 2 * 12, kSharedTriangleSorted = 40 + 1;
-// A scene with both roles stores its shared meshes once more beside them: NearPlaced.
+// A scene with both roles and shared meshes stores its other meshes once more: NearPlaced.
 constexpr double kVertexBeside = 12, kTriangleBeside = 12 + 4;
 // SharedMeshes::automatic shares meshes of at least kFewTriangles in scenes of more than kManyTriangles: a second level
 // of the tree pays only for larger meshes.

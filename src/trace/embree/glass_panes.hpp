@@ -42,7 +42,7 @@ class GlassPanes {
   double share(const Float3& origin, const Float3& d, float start, float end) const;
 
  private:
-  // Takes a beam of this direction through a face. `next`: distance from which faces of its pane count again.
+  // Takes a beam of this direction through a face. `next`: distance from which faces count again.
   void pass(Passed& passed, float& next, float t, std::uint32_t triangle, const Float3& d) const;
   // Works as follow(), from each ray's start to its end. `slot`: of each ray in `passed`.
   void follow_all(const std::vector<RayCaster::Crossing>& faces, const RayBundle& rays, const std::uint32_t* slot,

@@ -9,7 +9,7 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t kLanes = Hits::kLanes;
-// Fewer hits in a row of one triangle share a bound with others, as a separate bound costs as much as their noise.
+// Fewer hits in a row of one triangle are tested with others, as a bound for them alone costs as much as their noise.
 constexpr std::uint32_t kFew = 4;
 // Largest number of standard deviations by which noise moves a point: truncated at five, plus rounding.
 constexpr float kFarthest = 5.01f;

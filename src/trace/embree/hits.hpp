@@ -27,7 +27,7 @@ struct Hits {
   std::uint32_t slot[kCapacity];                                      // in the bundle
   alignas(64) float range[kCapacity];                                 // output of find_ranges
 
-  // REQUIRES: the slot has a hit; at most RayBundle::capacity calls since the size was 0.
+  // REQUIRES: the slot has a hit; at most RayBundle::kCapacity calls since the size was 0.
   void add(const RayBundle& rays, std::uint32_t from, std::uint64_t ray) {
     x[size] = rays.x[from];
     y[size] = rays.y[from];

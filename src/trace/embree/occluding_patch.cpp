@@ -67,7 +67,7 @@ bool OccludingPatches::hide(std::uint32_t triangle, const Vec3& head, const Box&
       inside[k] = one.seen.inside(k, seen_box);
       outside |= !inside[k] && one.seen.outside(k, seen_box);
     }
-    if (outside) {  // it does not cover the box
+    if (outside) {  // it covers no part of the box
       if (m == 0) return false;
       continue;
     }

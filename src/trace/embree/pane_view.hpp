@@ -24,7 +24,7 @@ class PaneView {
   // Crossings of each hit's ray before `end`, sorted by distance and triangle as in RayCaster::crossings().
   struct Crossings {
     static constexpr std::uint32_t kMost = 8, kUnsure = kMost + 1;
-    std::uint32_t count[Hits::kCapacity];  // number, or unsure: ask RayCaster
+    std::uint32_t count[Hits::kCapacity];  // number, or kUnsure: ask RayCaster
     float t[Hits::kCapacity][kMost];
     std::uint32_t triangle[Hits::kCapacity][kMost];
   };

@@ -34,7 +34,7 @@ constexpr float kAngleDoubt = 0x1.8p-20f;  // radians; of rows computed in float
 constexpr float kPastAll = 8;              // beyond any angle
 
 constexpr std::int32_t kRowLanes = 8;
-constexpr std::int32_t kFewRows = 32;  // fewer rows are evaluated faster than bounded
+constexpr std::int32_t kFewRows = 32;  // up to so many rows are evaluated faster than bounded
 
 // Coefficients from which a triangle's rows are computed, in the scanner's frame.
 struct Outline {
@@ -118,8 +118,8 @@ bool Picture::Item::operator<(const Item& other) const {
   return std::tuple(-nearest, triangle, column_begin) < std::tuple(-other.nearest, other.triangle, other.column_begin);
 }
 
-// Drawing visits every triangle, tracing only those near a ray. On a plant of 300 000 triangles with as many rays, both
-// take equally long (docs/evidence/benchmarks.md).
+// Drawing visits every triangle, tracing only those near a ray. On a plant of 300 000 triangles, with this many rays
+// for each, both take equally long (docs/evidence/benchmarks.md).
 constexpr std::uint64_t kLeastRaysATriangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
   return triangles < kNone && rays >= kLeastRaysATriangle * triangles;

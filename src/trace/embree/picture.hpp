@@ -23,7 +23,7 @@ class Picture {
 
   // Returns true if drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
-  // Returns a picture of the rays within `ends`; null if tracing them is faster. Borrows all.
+  // Returns a picture of the rays within `ends`; null if they must be traced. Borrows all.
   static std::unique_ptr<const Picture> where_it_pays(const StationRays& rays, const TraceStation& station,
                                                       const TileEnds& ends);
 

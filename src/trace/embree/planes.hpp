@@ -21,7 +21,7 @@ namespace vantage {
 class Planes {
  public:
   explicit Planes(std::shared_ptr<const SceneData> scene);
-  // Takes a changed scene, which no other thread may use meanwhile. An error changes nothing.
+  // Takes a changed scene; no other thread may use the planes meanwhile. An error changes nothing.
   void take(std::shared_ptr<const SceneData> scene, const SceneDifference& difference);
 
   // A plane relative to a head.

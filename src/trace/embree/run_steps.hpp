@@ -165,7 +165,7 @@ class RunSteps {
 
   const StationRays& rays_;
   const TraceStation& station_;
-  std::vector<float> sines_, cosines_;  // of every step-th row; empty: all rows one by one
+  std::vector<float> sines_, cosines_;  // of every kStep-th row; empty: all rows one by one
 };
 
 }  // namespace vantage

@@ -12,8 +12,8 @@ namespace vantage {
 // Scans whole stations, chunk by chunk. Not thread-safe.
 class ChunkedScan {
  public:
-  // Tracer::scan on the CPU. A picture drawn for one chunk of a station serves its next chunks; the chunk with the last
-  // ray frees it.
+  // Tracer::scan on the CPU. A picture prepared for one chunk of a station serves its next chunks; the chunk with the
+  // last ray frees it.
   void scan(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
             std::uint32_t outputs, Tracer::RawChunk& chunk);
 

@@ -43,7 +43,7 @@ class SharedStations {
 
   void put_in_order();
   void drop(std::size_t id);
-  // Returns the position of the next network that has the station, or never.
+  // Returns the position of the next network that has the station, or kNever.
   std::size_t wanted(std::size_t id) const { return left_[id] < uses_[id].size() ? uses_[id][left_[id]] : kNever; }
 
   std::vector<std::vector<std::size_t>> ids_;  // stations of each network

@@ -22,7 +22,7 @@
 
 namespace vantage {
 
-// Rays that are traced together: at most `kSide` rows and columns, or as many rows of a list.
+// Rays that are traced together: at most `kSide` rows and columns, or as many rays of a list.
 struct RayTile {
   static constexpr std::uint32_t kSide = 16;
   static_assert(kSide * kSide <= RayBundle::kCapacity);
@@ -123,7 +123,7 @@ class StationRays {
     std::fill_n(rays.end, rays.size, end);
   }
 
-  // Fills hits.range with noise; with `for_voxels` only as far as noise moves points to other voxels.
+  // Fills hits.range, noise included; with `for_voxels` only as far as noise moves points to other voxels.
   void find_ranges(const TraceStation& station, Hits& hits, bool for_voxels) const {
     vantage::find_ranges(surface(), noise_, station.origin, station.place, hits, for_voxels ? &grid() : nullptr);
   }

@@ -76,7 +76,7 @@ class Surface {
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
   std::vector<std::uint64_t> surveyed_;  // a bit per triangle
-  std::vector<std::uint32_t> mesh_;      // per triangle; empty if many triangles are in shared meshes
+  std::vector<std::uint32_t> mesh_;      // per triangle; empty if the scene shares meshes: too many
   std::vector<double> diffuse_;          // per mesh
 };
 

@@ -48,7 +48,7 @@ class SampledVoxelCounter {
   };
   // Some of the rays that may cross a cube, as arrays.
   struct RayBatch {
-    static constexpr std::uint32_t kCapacity = 64, kStep = 8;  // step: rays written at a time, even if fewer are needed
+    static constexpr std::uint32_t kCapacity = 64, kStep = 8;  // kStep: rays written at a time, even if fewer suffice
     std::uint32_t size = 0;
     alignas(64) std::array<float, kCapacity + kStep> x, y, z;
     alignas(64) std::array<std::uint32_t, kCapacity + kStep> row, column;

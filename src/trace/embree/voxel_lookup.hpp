@@ -72,8 +72,8 @@ class VoxelLookup {
     }
   }
 
-  // Calls f(index, begin, end) with the surveyed voxel of each run of points that lie in one. Points are numbered in
-  // order of their addition. Inlined, to be compiled for the caller's target.
+  // Calls f(index, begin, end) with the surveyed voxel of each run of points that lie in one, in order. Points are
+  // numbered as they were added. Inlined, to be compiled for the caller's target.
   template <class F>
   [[gnu::always_inline]] void each_run(const F& f) {
     if (size_ == 0) return;

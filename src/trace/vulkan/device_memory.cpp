@@ -20,7 +20,7 @@ constexpr double kMostStaging = 1 << 25;  // commands.cpp
 // bytes of a driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
 constexpr double kTreeNodes = 0.6, kBytesOfStructure = 112, kBytesOfScratch = 64;
 
-// Returns the bytes of a tree of our own, which glass has on every engine.
+// Returns the bytes of the engine's trees. Glass has a tree of our own on every engine.
 double tree(const DeviceLoad& load) {
   constexpr double kBytesOfTree = kTreeNodes * sizeof(BvhNode) + sizeof(BvhTriangle);
   if (load.engine == Engine::compute_bvh)

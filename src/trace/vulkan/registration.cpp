@@ -54,7 +54,7 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.noise_inverse_span = registration_.uploaded_noise->inverse_span;
   const DeviationErrors errors = deviation_errors(job.scanners.front(), deviation);
   push.angle = errors.angle, push.offset = errors.offset, push.scale = errors.scale;
-  // One thread for each pair, and one for each error of each station.
+  // The same threads take a pair each, and an error of a station each.
   const std::uint32_t threads = std::max({pairs, deviation > 0 ? most * instrument_errors : 0, 1u});
   const auto record = [&](const Recorder& r) {
     r.zero(registration_.sums, 0, sums.size() * sizeof(std::int64_t));

@@ -24,7 +24,7 @@ struct TraversalScene {
   std::span<const std::uint32_t> ids;   // per triangle, for Hit::id: its number, with surveyed_bit if its points count
   bool sort = true;                     // as TraceScene::sort_triangles
   const PlacedMeshes& placed;           // empty unless the engine has VulkanEngine::places_meshes
-  Box bounds = {};                      // of all placed triangles, for a RayWalk
+  Box bounds = {};                      // of all triangles in place, for a RayWalk
 };
 
 // Inputs of shaders that walk a structure.

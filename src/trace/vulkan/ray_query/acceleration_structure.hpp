@@ -51,7 +51,7 @@ class AccelerationStructure {
   Device& device_;
   Commands& commands_;
   std::vector<Buffer> storage_;  // of structures, which are small if meshes are
-  VkDeviceSize used_ = 0;        // end of the last one
+  VkDeviceSize used_ = 0;        // bytes of the last one
   std::vector<UniqueAccelerationStructure> bottom_;
   UniqueAccelerationStructure top_;
   Buffer primitives_, instances_;
