@@ -48,160 +48,193 @@ bool cut(const Corners& t, int k, double at, glm::dvec2& a, glm::dvec2& b) {
   return found == 2;
 }
 
-}  // namespace
+// The lines: where the model lies in them, how far apart they are, and how many there are in x and y.
+struct ColumnGrid {
+  double limit = 0;              // vertices with a larger coordinate are broken
+  glm::dvec3 low{}, size{};      // `low`: lowest corner of the model, one column further out in x and y
+  double cell = 0, tall = 1;     // `tall`: height of the model, above 0
+  std::uint32_t nx = 0, ny = 0;  // 0: there is no model
+};
 
-Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out, bool either_way) {
+bool is_within(const RawScene& raw, const Triangle& t, double limit) {
+  return std::ranges::all_of(t, [&](std::uint32_t v) {
+    const glm::dvec3& p = raw.positions[v];
+    return std::abs(p.x) < limit && std::abs(p.y) < limit && std::abs(p.z) < limit;
+  });
+}
+
+ColumnGrid grid_of(const RawScene& raw, UpAxis up_axis) {
   // Ignores broken vertices. In a site in millimetres, however, all vertices may lie as far out.
   constexpr double kFarthest = 1e12;
-  const auto within = [&](const Triangle& t, double limit) {
-    return std::ranges::all_of(t, [&](std::uint32_t v) {
-      const glm::dvec3& p = raw.positions[v];
-      return std::abs(p.x) < limit && std::abs(p.y) < limit && std::abs(p.z) < limit;
-    });
-  };
-  const bool near = std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return within(t, kFarthest_m); });
-  const double limit = near ? kFarthest_m : kFarthest;
+  const bool near =
+      std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return is_within(raw, t, kFarthest_m); });
+  ColumnGrid grid{.limit = near ? kFarthest_m : kFarthest};
   const auto place = [&](std::uint32_t v) { return with_up(up_axis, raw.positions[v]); };
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const Triangle& t : raw.triangles)
-    if (within(t, limit))
+    if (is_within(raw, t, grid.limit))
       for (const std::uint32_t v : t) {
         const glm::dvec3 p = place(v);
         for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]), high[c] = std::max(high[c], p[c]);
       }
-  if (!(low.x <= high.x)) return;
-  size_ = high - low;
-  const double widest = std::max({size_.x, size_.y, size_.z});
-  const double width = std::max(size_.x, 1e-6 * widest), depth = std::max(size_.y, 1e-6 * widest);
-  if (!(widest > 0)) return;
+  if (!(low.x <= high.x)) return grid;
+  grid.size = high - low;
+  const double widest = std::max({grid.size.x, grid.size.y, grid.size.z});
+  const double width = std::max(grid.size.x, 1e-6 * widest), depth = std::max(grid.size.y, 1e-6 * widest);
+  if (!(widest > 0)) return grid;
   const double columns =
       std::min(kMostColumns, kFewestColumns + kColumnsPerTriangle * static_cast<double>(raw.triangles.size()));
-  cell_ = std::max(std::sqrt(width * depth / columns), std::max(width, depth) / columns);
+  grid.cell = std::max(std::sqrt(width * depth / columns), std::max(width, depth) / columns);
   double in_squares = 0, in_lines = 0;
   for (const Triangle& t : raw.triangles) {
-    if (!within(t, limit)) continue;
+    if (!is_within(raw, t, grid.limit)) continue;
     const glm::dvec3 a = place(t[0]), b = place(t[1]), c = place(t[2]);
-    const glm::dvec3 extent = (glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c)) / cell_;
+    const glm::dvec3 extent = (glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c)) / grid.cell;
     in_squares += extent.x * extent.y, in_lines += extent.x + extent.y;
   }
-  cell_ *= std::max({1.0, std::sqrt(in_squares / kMostCrossings), in_lines / kMostCrossings});
+  grid.cell *= std::max({1.0, std::sqrt(in_squares / kMostCrossings), in_lines / kMostCrossings});
   // Adds one column on each side, outside the model.
-  nx_ = static_cast<std::uint32_t>(width / cell_) + 3, ny_ = static_cast<std::uint32_t>(depth / cell_) + 3;
-  low.x -= cell_, low.y -= cell_;
-  const auto column_near = [&](double x) { return static_cast<std::int64_t>(std::floor(x / cell_ - kBeside)); };
-  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + kBeside) * cell_; };
-  const double tall = size_.z > 0 ? size_.z : 1;
+  grid.nx = static_cast<std::uint32_t>(width / grid.cell) + 3,
+  grid.ny = static_cast<std::uint32_t>(depth / grid.cell) + 3;
+  grid.low = {low.x - grid.cell, low.y - grid.cell, low.z};
+  if (grid.size.z > 0) grid.tall = grid.size.z;
+  return grid;
+}
 
-  struct Found {
-    std::vector<std::uint64_t> crossings;  // column, height, bits
-    std::vector<WallAt> walls;
-  };
-  tbb::enumerable_thread_specific<Found> found;
+// What the lines meet, sorted: column, height and bits of each crossing, and parts of steep surfaces between columns.
+struct Met {
+  std::vector<std::uint64_t> crossings;
+  std::vector<WallAt> walls;
+};
+
+// Adds what one triangle, relative to the grid's lowest corner, has in the lines. `n`: its normal, of any length.
+void add_triangle(const ColumnGrid& grid, const Corners& t, const glm::dvec3& n, bool gentle, Met& met) {
+  const auto column_near = [&](double x) { return static_cast<std::int64_t>(std::floor(x / grid.cell - kBeside)); };
+  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + kBeside) * grid.cell; };
+  for (int k = 0; k < (gentle ? 1 : 2); ++k) {  // lines along x, then along y
+    const int across = 1 - k;                   // the axis that numbers the lines
+    const double from = std::min({t[0][across], t[1][across], t[2][across]}),
+                 to = std::max({t[0][across], t[1][across], t[2][across]});
+    const std::int64_t lines = across == 1 ? grid.ny : grid.nx, along = across == 1 ? grid.nx : grid.ny;
+    for (std::int64_t line = std::max<std::int64_t>(0, column_near(from));
+         line <= std::min(lines - 1, column_near(to) + 1); ++line) {
+      glm::dvec2 a{}, b{};
+      if (!cut(t, across, middle(line), a, b)) continue;
+      if (b.x < a.x) std::swap(a, b);
+      const auto column = [&](std::int64_t i) {
+        return static_cast<std::uint32_t>(across == 1 ? line * grid.nx + i : i * grid.nx + line);
+      };
+      const auto z_at = [&](double x) {
+        return b.x > a.x ? a.y + (b.y - a.y) * std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0) : a.y;
+      };
+      if (k == 0 && n.z != 0)
+        for (std::int64_t c = std::max<std::int64_t>(0, column_near(a.x)); c < along && middle(c) < b.x; ++c) {
+          if (middle(c) < a.x) continue;
+          const auto height = static_cast<std::uint64_t>(std::clamp(z_at(middle(c)) / grid.tall, 0.0, 1.0) * kSteps);
+          met.crossings.push_back(std::uint64_t{column(c)} << 32 | height << 2 | (n.z < 0 ? kDown : 0) |
+                                  (gentle ? kGentle : 0));
+        }
+      if (gentle) continue;
+      for (std::int64_t c = std::max<std::int64_t>(0, column_near(a.x)); c + 1 < along && middle(c) <= b.x; ++c) {
+        double z0 = z_at(middle(c)), z1 = z_at(middle(c + 1));
+        if (!(b.x > a.x)) z0 = a.y, z1 = b.y;
+        met.walls.push_back({2 * column(c) + static_cast<std::uint32_t>(k),
+                             {static_cast<float>(std::min(z0, z1)), static_cast<float>(std::max(z0, z1))}});
+      }
+    }
+  }
+}
+
+// Returns what the lines meet of all triangles, and in `upright` the share of steep faces that are vertical but along
+// no horizontal axis.
+Met find_met(const RawScene& raw, UpAxis up_axis, const ColumnGrid& grid, const std::vector<std::uint8_t>& left_out,
+             double& upright) {
+  tbb::enumerable_thread_specific<Met> found;
   constexpr std::size_t kBlock = 256;
-  std::vector<std::array<double, 2>> upright((raw.triangles.size() + kBlock - 1) / kBlock);  // in the order of blocks
-  parallel::for_all(std::size_t{0}, upright.size(), [&](std::size_t block) {
-    Found& own = found.local();
+  std::vector<std::array<double, 2>> areas((raw.triangles.size() + kBlock - 1) / kBlock);  // in the order of blocks
+  parallel::for_all(std::size_t{0}, areas.size(), [&](std::size_t block) {
+    Met& own = found.local();
     for (std::size_t i = block * kBlock; i < std::min(raw.triangles.size(), (block + 1) * kBlock); ++i) {
-      if (!within(raw.triangles[i], limit) || (!left_out.empty() && left_out[i])) continue;
+      if (!is_within(raw, raw.triangles[i], grid.limit) || (!left_out.empty() && left_out[i])) continue;
       Corners t;
-      for (std::size_t c = 0; c < 3; ++c) t[c] = place(raw.triangles[i][c]) - low;
+      for (std::size_t c = 0; c < 3; ++c) t[c] = with_up(up_axis, raw.positions[raw.triangles[i][c]]) - grid.low;
       const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
       const double area = length(n);
       if (!(area > 0)) continue;
       const bool gentle = std::abs(n.z) >= kWalkableUp * area;
       if (!gentle) {
         constexpr double kUpright = 0.01, kTurned = 0.1;
-        upright[block][1] += area;
+        areas[block][1] += area;
         if (std::abs(n.z) < kUpright * area && std::min(std::abs(n.x), std::abs(n.y)) > kTurned * area)
-          upright[block][0] += area;
+          areas[block][0] += area;
       }
-      for (int k = 0; k < (gentle ? 1 : 2); ++k) {  // lines along x, then along y
-        const int across = 1 - k;                   // the axis that numbers the lines
-        const double from = std::min({t[0][across], t[1][across], t[2][across]}),
-                     to = std::max({t[0][across], t[1][across], t[2][across]});
-        const std::int64_t lines = across == 1 ? ny_ : nx_, along = across == 1 ? nx_ : ny_;
-        for (std::int64_t line = std::max<std::int64_t>(0, column_near(from));
-             line <= std::min(lines - 1, column_near(to) + 1); ++line) {
-          glm::dvec2 a{}, b{};
-          if (!cut(t, across, middle(line), a, b)) continue;
-          if (b.x < a.x) std::swap(a, b);
-          const auto column = [&](std::int64_t i) {
-            return static_cast<std::uint32_t>(across == 1 ? line * nx_ + i : i * nx_ + line);
-          };
-          const auto z_at = [&](double x) {
-            return b.x > a.x ? a.y + (b.y - a.y) * std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0) : a.y;
-          };
-          if (k == 0 && n.z != 0)
-            for (std::int64_t c = std::max<std::int64_t>(0, column_near(a.x)); c < along && middle(c) < b.x; ++c) {
-              if (middle(c) < a.x) continue;
-              const auto height = static_cast<std::uint64_t>(std::clamp(z_at(middle(c)) / tall, 0.0, 1.0) * kSteps);
-              own.crossings.push_back(std::uint64_t{column(c)} << 32 | height << 2 | (n.z < 0 ? kDown : 0) |
-                                      (gentle ? kGentle : 0));
-            }
-          if (gentle) continue;
-          for (std::int64_t c = std::max<std::int64_t>(0, column_near(a.x)); c + 1 < along && middle(c) <= b.x; ++c) {
-            double z0 = z_at(middle(c)), z1 = z_at(middle(c + 1));
-            if (!(b.x > a.x)) z0 = a.y, z1 = b.y;
-            own.walls.push_back({2 * column(c) + static_cast<std::uint32_t>(k),
-                                 {static_cast<float>(std::min(z0, z1)), static_cast<float>(std::max(z0, z1))}});
-          }
-        }
-      }
+      add_triangle(grid, t, n, gentle, own);
     }
   });
   double turned = 0, steep = 0;
-  for (const auto& [a, b] : upright) turned += a, steep += b;
-  upright_ = steep > 0 ? turned / steep : 0;
+  for (const auto& [a, b] : areas) turned += a, steep += b;
+  upright = steep > 0 ? turned / steep : 0;
 
-  std::vector<std::uint64_t> crossings;
-  std::vector<WallAt> walls;
-  for (const Found& some : found) {
-    crossings.insert(crossings.end(), some.crossings.begin(), some.crossings.end());
-    walls.insert(walls.end(), some.walls.begin(), some.walls.end());
+  Met met;
+  for (const Met& some : found) {
+    met.crossings.insert(met.crossings.end(), some.crossings.begin(), some.crossings.end());
+    met.walls.insert(met.walls.end(), some.walls.begin(), some.walls.end());
   }
-  parallel::sort(crossings.begin(), crossings.end());
-  parallel::sort(walls.begin(), walls.end(), [](const WallAt& a, const WallAt& b) { return a.key() < b.key(); });
+  parallel::sort(met.crossings.begin(), met.crossings.end());
+  parallel::sort(met.walls.begin(), met.walls.end(),
+                 [](const WallAt& a, const WallAt& b) { return a.key() < b.key(); });
+  return met;
+}
+
+}  // namespace
+
+Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uint8_t>& left_out, bool either_way) {
+  const ColumnGrid grid = grid_of(raw, up_axis);
+  size_ = grid.size;
+  if (grid.nx == 0) return;
+  cell_ = grid.cell, nx_ = grid.nx, ny_ = grid.ny;
+  const Met met = find_met(raw, up_axis, grid, left_out, upright_);
   first_wall_.assign(2 * std::size_t{count()} + 1, 0);
-  for (const WallAt& wall : walls) ++first_wall_[wall.edge + 1], walls_.push_back(wall.wall);
+  for (const WallAt& wall : met.walls) ++first_wall_[wall.edge + 1], walls_.push_back(wall.wall);
   for (std::size_t e = 1; e < first_wall_.size(); ++e) first_wall_[e] += first_wall_[e - 1];
 
-  // Finds levels with air above them. Those inside a solid are none, unless nearly all are: then faces point anywhere.
-  const auto find_levels = [&](bool facing) {
-    first_.assign(std::size_t{count()} + 1, 0);
-    levels_.clear();
-    outline_ = 0;
-    for (std::size_t i = 0; i < crossings.size();) {
-      const auto column = static_cast<std::uint32_t>(crossings[i] >> 32);
-      ++outline_;
-      int shells = 0;
-      while (i < crossings.size() && crossings[i] >> 32 == column) {
-        const auto height = [&](std::size_t k) { return static_cast<std::uint32_t>(crossings[k]) >> 2; };
-        std::size_t end = i;
-        int up = 0, down = 0;
-        bool floor = false;
-        for (; end < crossings.size() && crossings[end] >> 32 == column && height(end) <= height(i) + kSame; ++end) {
-          const bool downward = crossings[end] & kDown;
-          (downward ? down : up) += 1;
-          floor = floor || ((crossings[end] & kGentle) && (!downward || !facing));
-        }
-        shells = facing ? std::max(0, shells - up) + down : 0;
-        const bool last = end == crossings.size() || crossings[end] >> 32 != column;
-        if (floor && (shells == 0 || last)) {
-          const double z = height(end - 1) / kSteps * tall;
-          const double above = last ? std::numeric_limits<double>::infinity() : height(end) / kSteps * tall - z;
-          levels_.push_back({static_cast<float>(z), static_cast<float>(above)});
-          ++first_[column + 1];
-        }
-        i = end;
-      }
-    }
-    for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
-  };
-  find_levels(true);
-  inside_out_ = faces_outwards(crossings, tall);
+  find_levels(met.crossings, grid.tall, true);
+  inside_out_ = faces_outwards(met.crossings, grid.tall);
   constexpr double kFewLevels = 0.3;
   if (inside_out_ || either_way || static_cast<double>(levels_.size()) < kFewLevels * static_cast<double>(outline_))
-    find_levels(false);
+    find_levels(met.crossings, grid.tall, false);
+}
+
+void Columns::find_levels(const std::vector<std::uint64_t>& crossings, double tall, bool facing) {
+  first_.assign(std::size_t{count()} + 1, 0);
+  levels_.clear();
+  outline_ = 0;
+  for (std::size_t i = 0; i < crossings.size();) {
+    const auto column = static_cast<std::uint32_t>(crossings[i] >> 32);
+    ++outline_;
+    int shells = 0;
+    while (i < crossings.size() && crossings[i] >> 32 == column) {
+      const auto height = [&](std::size_t k) { return static_cast<std::uint32_t>(crossings[k]) >> 2; };
+      std::size_t end = i;
+      int up = 0, down = 0;
+      bool floor = false;
+      for (; end < crossings.size() && crossings[end] >> 32 == column && height(end) <= height(i) + kSame; ++end) {
+        const bool downward = crossings[end] & kDown;
+        (downward ? down : up) += 1;
+        floor = floor || ((crossings[end] & kGentle) && (!downward || !facing));
+      }
+      shells = facing ? std::max(0, shells - up) + down : 0;
+      const bool last = end == crossings.size() || crossings[end] >> 32 != column;
+      if (floor && (shells == 0 || last)) {
+        const double z = height(end - 1) / kSteps * tall;
+        const double above = last ? std::numeric_limits<double>::infinity() : height(end) / kSteps * tall - z;
+        levels_.push_back({static_cast<float>(z), static_cast<float>(above)});
+        ++first_[column + 1];
+      }
+      i = end;
+    }
+  }
+  for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
 }
 
 bool Columns::faces_outwards(const std::vector<std::uint64_t>& crossings, double tall) const {

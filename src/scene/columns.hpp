@@ -47,6 +47,9 @@ class Columns {
   bool wall(std::uint32_t column, int axis, float low, float high) const;
 
  private:
+  // Finds levels with air above them. Those inside a solid are none, unless `facing` is false: then faces point
+  // anywhere. `crossings`: column, height and bits of each, sorted. `tall`: height of the model.
+  void find_levels(const std::vector<std::uint64_t>& crossings, double tall, bool facing);
   bool faces_outwards(const std::vector<std::uint64_t>& crossings, double tall) const;
 
   double cell_ = 0, upright_ = 0;

@@ -307,6 +307,71 @@ std::vector<bool> coarser_levels(const File& file, const std::vector<int>& roots
   }
   return coarser;
 }
+
+// The patterns of all options, tried on each name.
+class NodePatterns {
+ public:
+  explicit NodePatterns(const SceneOptions& options)
+      : roles_(role_patterns(options)),
+        weights_(weight_patterns(options)),
+        doors_(patterns_but(options.doors, kClosedDoors)),
+        station_areas_(name_patterns(options.station_area)),
+        glasses_(patterns_but(options.glass, kOpaqueGlass)),
+        mirrors_(patterns_but(options.mirror, kNoMirror)),
+        details_(length_patterns(options.details_mm, "detail")),
+        accuracies_(length_patterns(options.accuracies_mm, "accuracy")) {}
+
+  // Returns the marks of a node below one with the marks `above`. `own`: of the node itself, in the file.
+  NodeMarks inherit(const NodeMarks& above, const std::string& name, const Marks& own) {
+    const std::optional<Role> role = roles_.find(name);
+    return {.pattern_role = nearer(role, above.pattern_role),
+            .pattern_weight = nearer(weights_.find(name), above.pattern_weight),
+            .pattern_detail_mm = nearer(details_.find(name), above.pattern_detail_mm),
+            .pattern_accuracy_mm = nearer(accuracies_.find(name), above.pattern_accuracy_mm),
+            .door = doors_.find(name).value_or(above.door),
+            .station_area = station_areas_.find(name).value_or(above.station_area),
+            .glass = glasses_.find(name).value_or(above.glass),
+            .mirror = mirrors_.find(name).value_or(above.mirror),
+            .marks = {.role = nearer(own.role, above.marks.role),
+                      .diffuse = nearer(own.diffuse, above.marks.diffuse),
+                      .weight = nearer(own.weight, above.marks.weight),
+                      .detail_mm = nearer(own.detail_mm, above.marks.detail_mm),
+                      .accuracy_mm = nearer(own.accuracy_mm, above.marks.accuracy_mm),
+                      .door = nearer(own.door, above.marks.door),
+                      .glass = nearer(own.glass, above.marks.glass),
+                      .mirror = nearer(own.mirror, above.marks.mirror)},
+            .own_role = role.has_value()};
+  }
+
+  // Throws Error invalid_argument for a pattern that matched none of `names`, which are those of all nodes.
+  void check(const std::vector<std::string>& names) const {
+    roles_.check(names);
+    weights_.check(names);
+    doors_.check(names);
+    station_areas_.check(names);
+    glasses_.check(names);
+    mirrors_.check(names);
+    details_.check(names);
+    accuracies_.check(names);
+  }
+
+ private:
+  template <class Value>
+  static std::optional<Value> nearer(const std::optional<Value>& own, const std::optional<Value>& above) {
+    return own ? own : above;
+  }
+  // Patterns of all names but a word that stands for none.
+  static Patterns<bool> patterns_but(std::vector<std::string> names, std::string_view none) {
+    std::erase(names, none);
+    return name_patterns(names);
+  }
+
+  Patterns<Role> roles_;
+  Patterns<std::uint32_t> weights_;
+  Patterns<bool> doors_, station_areas_, glasses_, mirrors_;
+  Patterns<double> details_, accuracies_;
+};
+
 }  // namespace
 
 std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, LoadBudget& budget,
@@ -316,30 +381,15 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     int node;
     int parent;
     glm::dmat4 world_from_parent;
-    std::optional<Role> pattern_role;
-    std::optional<std::uint32_t> pattern_weight;
-    std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
-    Marks marks;
-    bool door = false, station_area = false, glass = false, mirror = false;
+    NodeMarks marks = {};   // of the node above
     std::string name = {};  // of the nearest node above that has one
   };
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
   const std::vector<int> roots = root_nodes(file, options);
   const std::vector<bool> coarser = coarser_levels(file, roots);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-    stack.push_back({*it, -1, origin_of(file) * kSurveyFromGltf, {}, {}, {}, {}, {}});
-  Patterns<Role> roles = role_patterns(options);
-  Patterns<std::uint32_t> weights = weight_patterns(options);
-  std::vector<std::string> door_names = options.doors;
-  std::erase(door_names, kClosedDoors);
-  std::vector<std::string> glass_names = options.glass;
-  std::erase(glass_names, kOpaqueGlass);
-  std::vector<std::string> mirror_names = options.mirror;
-  std::erase(mirror_names, kNoMirror);
-  Patterns<bool> doors = name_patterns(door_names), station_areas = name_patterns(options.station_area),
-                 glasses = name_patterns(glass_names), mirrors = name_patterns(mirror_names);
-  Patterns<double> details = length_patterns(options.details_mm, "detail"),
-                   accuracies = length_patterns(options.accuracies_mm, "accuracy");
+    stack.push_back({*it, -1, origin_of(file) * kSurveyFromGltf});
+  NodePatterns patterns(options);
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
@@ -367,24 +417,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       continue;
     }
     names.push_back(name);
-    const auto own_role = roles.find(name);
-    if (own_role) visit.pattern_role = own_role;
-    if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
-    visit.door = doors.find(name).value_or(visit.door);
-    visit.station_area = station_areas.find(name).value_or(visit.station_area);
-    visit.glass = glasses.find(name).value_or(visit.glass);
-    visit.mirror = mirrors.find(name).value_or(visit.mirror);
-    if (const auto detail = details.find(name)) visit.pattern_detail_mm = detail;
-    if (const auto accuracy = accuracies.find(name)) visit.pattern_accuracy_mm = accuracy;
-    const Marks own = read_marks(file, "nodes", visit.node, where);
-    if (own.role) visit.marks.role = own.role;
-    if (own.diffuse) visit.marks.diffuse = own.diffuse;
-    if (own.weight) visit.marks.weight = own.weight;
-    if (own.detail_mm) visit.marks.detail_mm = own.detail_mm;
-    if (own.accuracy_mm) visit.marks.accuracy_mm = own.accuracy_mm;
-    if (own.door) visit.marks.door = own.door;
-    if (own.glass) visit.marks.glass = own.glass;
-    if (own.mirror) visit.marks.mirror = own.mirror;
+    const NodeMarks marks = patterns.inherit(visit.marks, name, read_marks(file, "nodes", visit.node, where));
     const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
@@ -392,20 +425,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
         throw file.malformed(where + " refers to mesh " + std::to_string(node.mesh) + "; there are " +
                              std::to_string(model.meshes.size()));
       if (node.skin >= 0) ++skinned;
-      PlacedMesh mesh{visit.node,
-                      node.mesh,
-                      name,
-                      instance_transforms(file, visit.node, where, budget),
-                      visit.pattern_role,
-                      visit.pattern_weight,
-                      visit.pattern_detail_mm,
-                      visit.pattern_accuracy_mm,
-                      visit.door,
-                      visit.station_area,
-                      visit.marks,
-                      visit.glass,
-                      visit.mirror,
-                      own_role.has_value()};
+      PlacedMesh mesh{marks, visit.node, node.mesh, name, instance_transforms(file, visit.node, where, budget)};
       for (glm::dmat4& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
         if (!finite(transform)) throw file.malformed(where + ": the transform of an instance is not finite");
@@ -413,18 +433,9 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       placed.push_back(std::move(mesh));
     }
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
-      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
-                       visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door, visit.station_area,
-                       visit.glass, visit.mirror, visit.name});
+      stack.push_back({*it, visit.node, world_from_node, marks, visit.name});
   }
-  roles.check(names);
-  weights.check(names);
-  doors.check(names);
-  station_areas.check(names);
-  glasses.check(names);
-  mirrors.check(names);
-  details.check(names);
-  accuracies.check(names);
+  patterns.check(names);
   if (hidden > 0)
     notes.push_back(std::to_string(hidden) + " nodes are hidden by the file, and are left out with all below them");
   if (levels > 0)

@@ -40,18 +40,21 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
 // Names are cut to this many bytes, since they are copied to every mesh, table and page.
 constexpr std::size_t kLongestName = 200;
 
+// What a node has from itself and the nodes above it. Patterns match names of nodes.
+struct NodeMarks {
+  std::optional<Role> pattern_role = {};  // from the nearest node whose name matches a pattern
+  std::optional<std::uint32_t> pattern_weight = {};
+  std::optional<double> pattern_detail_mm = {}, pattern_accuracy_mm = {};
+  bool door = false, station_area = false, glass = false, mirror = false;  // true if a pattern matches any of them
+  Marks marks = {};                                                        // from the nearest node that has them
+  bool own_role = false;  // true if a role's pattern matches this node itself
+};
+
 // A node with a mesh.
-struct PlacedMesh {
+struct PlacedMesh : NodeMarks {
   int node = 0, mesh = 0;
   std::string name;  // the node's, the mesh's, that of the nearest node above, or "node N"; at most kLongestName bytes
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
-  std::optional<Role> pattern_role;         // from the nearest node whose name matches a pattern
-  std::optional<std::uint32_t> pattern_weight;
-  std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
-  bool door = false, station_area = false;  // true if a pattern matches it or a node above it
-  Marks marks = {};                         // from the nearest node that has them
-  bool glass = false, mirror = false;       // likewise
-  bool own_role = false;                    // true if a role's pattern matches this node itself
 };
 
 // Flattens the scene. Throws Error: malformed_file (cycles, nodes with two parents, matrices not finite or not affine),
