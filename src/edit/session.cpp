@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -157,73 +158,117 @@ void EditSession::change(const json& request) {
   }
   if (!busy_.empty()) throw Error(Errc::invalid_argument, "wait until this is done, or stop it: " + busy_);
   message_.clear();
-  if (what == "exact")
-    return start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
-  if (what == "improve")
-    return start("improving unlocked stations", [this](const Progress& progress) { improve(progress); });
-  if (what == "save") {
-    keep_(stations_);
-    return start("saving", [this](const Progress& progress) {
-      trace_exactly(progress, [&](const Evaluation& exact) { return save_(exact, progress); });
-    });
-  }
-  bool dragging = false, quick = false;
-  if (what == "move") {
-    const bool end = flag_of(request, "end");
-    if (end) keep_(stations_);  // the drag so far, in case it ends off the ground
-    EditStation& station = with_id(request);
-    if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
-    const std::string name = names()[static_cast<std::size_t>(&station - stations_.data())];
-    auto ground = put(request.value("to", json()), name, request.contains("end") && !end);
-    if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
-    dragging = request.contains("begin") && !flag_of(request, "begin");
-    if (!dragging) remember();
-    ground->setup = station.placed.setup;
-    station.placed = *ground;
-    quick = request.contains("end") && !end;
-  } else if (what == "add") {
-    if (stations_.size() >= max_stations)
-      throw Error(Errc::invalid_argument,
-                  "there are " + std::to_string(max_stations) + " stations, the most there may be");
-    const auto ground = put(request.value("to", json()), "the new station", false);
-    if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
-    if (ground->status != StationStatus::ok) {
-      message_.clear();
-      throw Error(Errc::invalid_argument,
-                  "no station may stand here: no place within " + number(nearest_place_reach_m) + " m is free");
-    }
-    remember();
-    stations_.push_back({.id = next_id_++, .placed = *ground});
-  } else if (what == "remove") {
-    EditStation& station = with_id(request);
-    if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
-    remember();
-    stations_.erase(stations_.begin() + (&station - stations_.data()));
-  } else if (what == "lock") {
-    EditStation& station = with_id(request);
-    if (station.placed.existing) throw Error(Errc::invalid_argument, "a scan was taken here: it stays locked");
-    remember();
-    station.locked = flag_of(request, "locked");
-  } else if (what == "rename") {
-    const auto name = request.find("name");
-    if (name == request.end() || !name->is_string()) throw Error(Errc::invalid_argument, "name: a text is wanted");
-    EditStation& station = with_id(request);
-    std::string text = checked_name(*name);
-    remember();
-    station.name = std::move(text);
-  } else if (what == "undo") {
-    step(undo_, redo_);
-  } else if (what == "redo") {
-    step(redo_, undo_);
-  } else {
-    throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
-  }
-  if (what == "rename")
-    evaluation_.names = names();
-  else if (what != "lock")
-    measure(quick);
+  if (const Job job = job_named(what)) return (this->*job)();
+  const Change change = change_named(what);
+  if (!change) throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
+  const Changed changed = (this->*change)(request);
+  if (changed.needs == Changed::names) evaluation_.names = names();
+  if (changed.needs == Changed::figures) measure(changed.quick);
   ++version_;
-  if (!dragging || flag_of(request, "end")) keep_(stations_);
+  if (changed.keep) keep_(stations_);
+}
+
+EditSession::Change EditSession::change_named(const std::string& what) {
+  static const std::map<std::string, Change> changes{{"move", &EditSession::move_station},
+                                                     {"add", &EditSession::add_station},
+                                                     {"remove", &EditSession::remove_station},
+                                                     {"lock", &EditSession::lock_station},
+                                                     {"rename", &EditSession::rename_station},
+                                                     {"undo", &EditSession::undo},
+                                                     {"redo", &EditSession::redo}};
+  const auto found = changes.find(what);
+  return found == changes.end() ? nullptr : found->second;
+}
+
+EditSession::Job EditSession::job_named(const std::string& what) {
+  static const std::map<std::string, Job> jobs{{"exact", &EditSession::start_exact},
+                                               {"improve", &EditSession::start_improving},
+                                               {"save", &EditSession::start_saving}};
+  const auto found = jobs.find(what);
+  return found == jobs.end() ? nullptr : found->second;
+}
+
+void EditSession::start_exact() {
+  start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
+}
+
+void EditSession::start_improving() {
+  start("improving unlocked stations", [this](const Progress& progress) { improve(progress); });
+}
+
+void EditSession::start_saving() {
+  keep_(stations_);
+  start("saving", [this](const Progress& progress) {
+    trace_exactly(progress, [&](const Evaluation& exact) { return save_(exact, progress); });
+  });
+}
+
+EditSession::Changed EditSession::move_station(const json& request) {
+  const bool end = flag_of(request, "end");
+  if (end) keep_(stations_);  // the drag so far, in case it ends off the ground
+  EditStation& station = with_id(request);
+  if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
+  const std::string name = names()[static_cast<std::size_t>(&station - stations_.data())];
+  const bool goes_on = request.contains("end") && !end;
+  auto ground = put(request.value("to", json()), name, goes_on);
+  if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
+  const bool dragging = request.contains("begin") && !flag_of(request, "begin");
+  if (!dragging) remember();
+  ground->setup = station.placed.setup;
+  station.placed = *ground;
+  return {.quick = goes_on, .keep = !dragging || end};
+}
+
+EditSession::Changed EditSession::add_station(const json& request) {
+  if (stations_.size() >= max_stations)
+    throw Error(Errc::invalid_argument,
+                "there are " + std::to_string(max_stations) + " stations, the most there may be");
+  const auto ground = put(request.value("to", json()), "the new station", false);
+  if (!ground) throw Error(Errc::invalid_argument, "there is no ground to stand on");
+  if (ground->status != StationStatus::ok) {
+    message_.clear();
+    throw Error(Errc::invalid_argument,
+                "no station may stand here: no place within " + number(nearest_place_reach_m) + " m is free");
+  }
+  remember();
+  stations_.push_back({.id = next_id_++, .placed = *ground});
+  return {};
+}
+
+EditSession::Changed EditSession::remove_station(const json& request) {
+  EditStation& station = with_id(request);
+  if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
+  remember();
+  stations_.erase(stations_.begin() + (&station - stations_.data()));
+  return {};
+}
+
+EditSession::Changed EditSession::lock_station(const json& request) {
+  EditStation& station = with_id(request);
+  if (station.placed.existing) throw Error(Errc::invalid_argument, "a scan was taken here: it stays locked");
+  remember();
+  station.locked = flag_of(request, "locked");
+  return {.needs = Changed::nothing};
+}
+
+EditSession::Changed EditSession::rename_station(const json& request) {
+  const auto name = request.find("name");
+  if (name == request.end() || !name->is_string()) throw Error(Errc::invalid_argument, "name: a text is wanted");
+  EditStation& station = with_id(request);
+  std::string text = checked_name(*name);
+  remember();
+  station.name = std::move(text);
+  return {.needs = Changed::names};
+}
+
+EditSession::Changed EditSession::undo(const json&) {
+  step(undo_, redo_);
+  return {};
+}
+
+EditSession::Changed EditSession::redo(const json&) {
+  step(redo_, undo_);
+  return {};
 }
 
 bool EditSession::take(std::span<const TakenScan> scans) {

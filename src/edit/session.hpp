@@ -69,10 +69,9 @@ class EditSession {
 
   // {"do": …}: "move" {"id", "to": [x, y, z], "begin", "end"} to the ground above or below a point of the survey frame
   // (`begin` false continues a drag, `end` true ends it), "add" {"to"}, "remove" {"id"}, "rename" {"id", "name"},
-  // "lock"
-  // {"id", "locked"}, "undo", "redo", "exact", "improve", "save", "stop". A station that is put where none may stand
-  // goes to the nearest place that may hold it, and the message says so. Throws Error invalid_argument, and changes
-  // nothing, if the request is impossible.
+  // "lock" {"id", "locked"}, "undo", "redo", "exact", "improve", "save", "stop". A station that is put where none may
+  // stand goes to the nearest place that may hold it, and the message says so. Throws Error invalid_argument, and
+  // changes nothing, if the request is impossible.
   void change(const nlohmann::json& request);
 
   // Makes scans that were taken existing stations: the planned ones that they are of, which move to where they were
@@ -84,6 +83,26 @@ class EditSession {
 
  private:
   using Stations = std::vector<EditStation>;
+  // What a change of the stations takes afterwards.
+  struct Changed {
+    enum Needs { nothing, names, figures } needs = figures;
+    bool quick = false;  // leaves out what takes longer than a drag allows
+    bool keep = true;    // false: during a drag
+  };
+  using Change = Changed (EditSession::*)(const nlohmann::json& request);
+  using Job = void (EditSession::*)();
+  static Change change_named(const std::string& what);
+  static Job job_named(const std::string& what);
+  Changed move_station(const nlohmann::json& request);
+  Changed add_station(const nlohmann::json& request);
+  Changed remove_station(const nlohmann::json& request);
+  Changed lock_station(const nlohmann::json& request);
+  Changed rename_station(const nlohmann::json& request);
+  Changed undo(const nlohmann::json& request);
+  Changed redo(const nlohmann::json& request);
+  void start_exact();
+  void start_improving();
+  void start_saving();
   EditStation& with_id(const nlohmann::json& request);
   // The station on the ground at `to`, or where it may stand near there; empty if there is no ground. `exactly`: only
   // the former. Adds a sentence to the message if it is not where it was put.
