@@ -204,6 +204,7 @@ GroundField::GroundField(const SceneData& scene, const WalkableOptions& options,
   lay_grid(scene, plane);
   find_samples(scene, turned, plane);
   find_room(scene);
+  close_under_floors();
   find_parts();
 }
 
@@ -341,12 +342,61 @@ void GroundField::find_samples(const SceneData& scene, std::span<const std::uint
     }
 }
 
+namespace {
+
+// Outline of a person as cylinders around one axis: wider ones reach less far up and down.
+struct Outline {
+  std::array<double, kCylinders> radius{};
+  double shorter = 0;  // by which each cylinder ends before the next narrower one, above and below
+  double widest() const { return radius[kCylinders - 1]; }
+};
+
+// Returns the squared distance of a triangle from the axis `p` within the outline of a person between `low` and `high`;
+// nothing if it does not reach into it. `whole`: squared distance of all of the triangle.
+std::optional<double> obstacle(const Corners& t, const Box& box, const glm::dvec2& p, double whole, double low,
+                               double high, const Outline& person) {
+  for (int k = kCylinders - 1; k >= 0; --k) {
+    const double bottom = low + k * person.shorter, top = high - k * person.shorter;
+    if (whole >= person.radius[k] * person.radius[k]) break;
+    if (box.max.z <= bottom || box.min.z >= top) continue;
+    double distance = whole;
+    if (box.min.z < bottom || box.max.z > top) {
+      const Slice part = slice(t, bottom, top);
+      if (part.count == 0) continue;
+      distance = squared_distance(p, std::span(part.corners).first(part.count));
+    }
+    if (distance < person.radius[k] * person.radius[k]) return distance;
+  }
+  return std::nullopt;
+}
+
+// A sample that an obstacle may still change.
+struct OpenSample {
+  glm::dvec2 p;
+  double low, high;
+  bool is_beside;  // known already: only surfaces over it still matter
+};
+
+bool may_mark(const Box& box, const OpenSample& o, const Outline& person, double rounding) {
+  const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),
+               dy = std::max({0.0, box.min.y - o.p.y, o.p.y - box.max.y});
+  if (o.is_beside) return std::max(dx, dy) <= rounding && box.max.z > o.low && box.min.z < o.high;
+  for (int k = 0; k < kCylinders; ++k)
+    if (dx * dx + dy * dy < (person.radius[k] + rounding) * (person.radius[k] + rounding) &&
+        box.max.z > o.low + k * person.shorter && box.min.z < o.high - k * person.shorter)
+      return true;
+  return false;
+}
+
+}  // namespace
+
 void GroundField::find_room(const SceneData& scene) {
   const Grid grid{corner_, cell_, columns_, rows_};
-  std::array<double, kCylinders> radius;
+  Outline person{.shorter = radius_ / kCylinders};
   for (int i = 0; i < kCylinders; ++i)
-    radius[i] = std::max((1 - kToleranceShare) * (i + 1) * radius_ / kCylinders - cell_ / 2, kHalfDiagonal * cell_);
-  const double widest = radius[kCylinders - 1], shorter = radius_ / kCylinders;
+    person.radius[i] =
+        std::max((1 - kToleranceShare) * (i + 1) * radius_ / kCylinders - cell_ / 2, kHalfDiagonal * cell_);
+  const double widest = person.widest();
   const auto mark = [&](std::uint32_t sample, std::uint8_t what) {
     std::atomic_ref<std::uint8_t>(taken_[sample]).fetch_or(what, std::memory_order_relaxed);
   };
@@ -381,26 +431,11 @@ void GroundField::find_room(const SceneData& scene) {
             if (blocks[mesh] == until_opened) at_leaves.local().emplace_back(s, mesh);
             continue;
           }
-          // Returns the squared distance to obstacles in the outline of a person of this height; nothing without any.
-          const auto distance_within = [&](double height) -> std::optional<double> {
-            for (int k = kCylinders - 1; k >= 0; --k) {
-              const double bottom = low + k * shorter, top = height - k * shorter;
-              if (whole >= radius[k] * radius[k]) break;
-              if (box.max.z <= bottom || box.min.z >= top) continue;
-              double distance = whole;
-              if (box.min.z < bottom || box.max.z > top) {
-                const Slice part = slice(t, bottom, top);
-                if (part.count == 0) continue;
-                distance = squared_distance(p, std::span(part.corners).first(part.count));
-              }
-              if (distance < radius[k] * radius[k]) return distance;
-            }
-            return std::nullopt;
-          };
           if (!(whole > 0 && (known & kBeside)))
-            if (const auto distance = distance_within(high)) mark(s, *distance == 0 ? kOverhead : kBeside);
+            if (const auto distance = obstacle(t, box, p, whole, low, high, person))
+              mark(s, *distance == 0 ? kOverhead : kBeside);
           const double stooped = z_[s] + kStoops * height_;
-          if (!(known & kLow) && box.min.z < stooped && distance_within(stooped)) mark(s, kLow);
+          if (!(known & kLow) && box.min.z < stooped && obstacle(t, box, p, whole, low, stooped, person)) mark(s, kLow);
         }
       }
     });
@@ -409,22 +444,7 @@ void GroundField::find_room(const SceneData& scene) {
   // and only triangles that can still change one are examined.
   constexpr std::uint32_t kBlock = 64;
   constexpr std::size_t kMostCompared = 64 * kBlock;  // columns, for which examining each triangle takes equally long
-  struct Open {
-    glm::dvec2 p;
-    double low, high;
-    bool is_beside;  // known already: only surfaces over it still matter
-  };
-  const auto may_mark = [&](const Box& box, const Open& o) {
-    const double dx = std::max({0.0, box.min.x - o.p.x, o.p.x - box.max.x}),
-                 dy = std::max({0.0, box.min.y - o.p.y, o.p.y - box.max.y});
-    if (o.is_beside) return std::max(dx, dy) <= rounding && box.max.z > o.low && box.min.z < o.high;
-    for (int k = 0; k < kCylinders; ++k)
-      if (dx * dx + dy * dy < (radius[k] + rounding) * (radius[k] + rounding) && box.max.z > o.low + k * shorter &&
-          box.min.z < o.high - k * shorter)
-        return true;
-    return false;
-  };
-  const auto look_at_block = [&](std::uint32_t first, std::uint32_t end, std::vector<Open>& open) {
+  const auto look_at_block = [&](std::uint32_t first, std::uint32_t end, std::vector<OpenSample>& open) {
     std::array<Corners, kBlock> corners;
     std::array<std::uint32_t, kBlock> meshes{};
     bool doors = false;
@@ -447,25 +467,29 @@ void GroundField::find_room(const SceneData& scene) {
           const std::uint8_t known = known_of(s);
           if ((known & (kBeside | kOverhead | kLow)) == (kBeside | kOverhead | kLow)) continue;
           const bool only_over = (known & (kBeside | kLow)) == (kBeside | kLow);
-          const Open sample{middle(column), z_[s] + climb_, z_[s] + height_, only_over};
-          if (may_mark(all, sample)) open.push_back(sample);
+          const OpenSample sample{middle(column), z_[s] + climb_, z_[s] + height_, only_over};
+          if (may_mark(all, sample, person, rounding)) open.push_back(sample);
         }
     for (std::uint32_t i = 0; i < end - first; ++i) {
       const Box box = box_of(corners[i]);
-      if (!compared || std::ranges::any_of(open, [&](const Open& o) { return may_mark(box, o); }))
+      if (!compared ||
+          std::ranges::any_of(open, [&](const OpenSample& o) { return may_mark(box, o, person, rounding); }))
         look(corners[i], meshes[i]);
     }
   };
   parallel::for_all(tbb::blocked_range<std::uint32_t>(0, (scene.triangle_count() + kBlock - 1) / kBlock),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
-                      std::vector<Open> open;
+                      std::vector<OpenSample> open;
                       for (std::uint32_t k = range.begin(); k != range.end(); ++k)
                         look_at_block(k * kBlock, std::min(scene.triangle_count(), (k + 1) * kBlock), open);
                     });
   for (const auto& some : at_leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
   parallel::sort(leaves_.begin(), leaves_.end(), std::less<>{});
   leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
-  // Ground below a floor that lies on it offers no more headroom: nobody stands there.
+}
+
+// Ground below a floor that lies on it offers no more headroom: nobody stands there.
+void GroundField::close_under_floors() {
   const auto lies = static_cast<float>(0.3 * climb_);
   for (std::uint32_t s = static_cast<std::uint32_t>(z_.size()); s-- > 1;) {
     const std::uint32_t below = s - 1;

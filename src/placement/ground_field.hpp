@@ -133,6 +133,7 @@ class GroundField {
   void lay_grid(const SceneData& scene, std::optional<Plane> plane);
   void find_samples(const SceneData& scene, std::span<const std::uint32_t> turned, std::optional<Plane> plane);
   void find_room(const SceneData& scene);
+  void close_under_floors();
   // Returns for each sample the first of those connected with it by neighbours with the bits of `taken` clear; the
   // sample itself if its own are not clear.
   std::vector<std::uint32_t> first_of_connected(std::uint8_t taken) const;
