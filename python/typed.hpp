@@ -45,7 +45,7 @@ struct Tuple {
   std::vector<Value> values;
 };
 
-/// What was given for a value, before it is converted.
+/// An object given for a value, before it is converted.
 template <class Value>
 struct Given {
   py::object object;

@@ -3,7 +3,7 @@
 // lib/sheared_triangle.glsl, corners are sheared so that the ray is the z axis. Here all errors are bounded, from the
 // rounding of the ray to float on, so a device may fuse and divide as it likes. It may not rearrange.
 //
-// With u = 2^-24, a corner at depth z and at distance x from the ray is off by at most 2u of the origin's largest
+// A corner at depth z and at distance x from the ray, with u = 2^-24, is off by at most 2u of the origin's largest
 // coordinate, for rounding it in both components; 11u of z, for the direction (2u), its reciprocal (5u), products and
 // differences; and 2u of x. Products in edge functions add 2u. All factors below are larger by half or more.
 #ifndef VANTAGE_LIB_CROSSING

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/plastic_number.hpp"
 
 namespace vantage {
 namespace {
@@ -57,7 +58,6 @@ std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const 
   const GroundByArea ground(mesh);
   std::vector<PlacedStation> allowed;
   if (!(ground.area() > 0)) return allowed;
-  constexpr double kPlastic = 1.32471795724474602596;  // g³ = g + 1
   for (std::size_t first = 0; first < tries && allowed.size() < wanted; first += kTriesAtOnce) {
     const std::size_t here = std::min(kTriesAtOnce, tries - first);
     std::vector<PlacedStation> tried(here);

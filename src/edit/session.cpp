@@ -147,6 +147,16 @@ ordered_json EditSession::state() const {
 }
 
 void EditSession::change(const json& request) {
+  static const std::map<std::string, Command> commands{{"move", &EditSession::move_station},
+                                                       {"add", &EditSession::add_station},
+                                                       {"remove", &EditSession::remove_station},
+                                                       {"lock", &EditSession::lock_station},
+                                                       {"rename", &EditSession::rename_station},
+                                                       {"undo", &EditSession::undo},
+                                                       {"redo", &EditSession::redo},
+                                                       {"exact", &EditSession::start_exact},
+                                                       {"improve", &EditSession::start_improving},
+                                                       {"save", &EditSession::start_saving}};
   const std::scoped_lock lock(mutex_);
   const auto named = request.is_object() ? request.find("do") : request.end();
   if (!request.is_object() || named == request.end() || !named->is_string())
@@ -158,52 +168,35 @@ void EditSession::change(const json& request) {
   }
   if (!busy_.empty()) throw Error(Errc::invalid_argument, "wait until this is done, or stop it: " + busy_);
   message_.clear();
-  if (const Job job = job_named(what)) return (this->*job)();
-  const Change change = change_named(what);
-  if (!change) throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
-  const Changed changed = (this->*change)(request);
-  if (changed.needs == Changed::names) evaluation_.names = names();
-  if (changed.needs == Changed::figures) measure(changed.quick);
+  const auto command = commands.find(what);
+  if (command == commands.end()) throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
+  const std::optional<Changed> changed = (this->*command->second)(request);
+  if (!changed) return;
+  if (changed->needs == Changed::names) evaluation_.names = names();
+  if (changed->needs == Changed::figures) measure(changed->quick);
   ++version_;
-  if (changed.keep) keep_(stations_);
+  if (changed->keep) keep_(stations_);
 }
 
-EditSession::Change EditSession::change_named(const std::string& what) {
-  static const std::map<std::string, Change> changes{{"move", &EditSession::move_station},
-                                                     {"add", &EditSession::add_station},
-                                                     {"remove", &EditSession::remove_station},
-                                                     {"lock", &EditSession::lock_station},
-                                                     {"rename", &EditSession::rename_station},
-                                                     {"undo", &EditSession::undo},
-                                                     {"redo", &EditSession::redo}};
-  const auto found = changes.find(what);
-  return found == changes.end() ? nullptr : found->second;
-}
-
-EditSession::Job EditSession::job_named(const std::string& what) {
-  static const std::map<std::string, Job> jobs{{"exact", &EditSession::start_exact},
-                                               {"improve", &EditSession::start_improving},
-                                               {"save", &EditSession::start_saving}};
-  const auto found = jobs.find(what);
-  return found == jobs.end() ? nullptr : found->second;
-}
-
-void EditSession::start_exact() {
+std::optional<EditSession::Changed> EditSession::start_exact(const json&) {
   start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
+  return std::nullopt;
 }
 
-void EditSession::start_improving() {
+std::optional<EditSession::Changed> EditSession::start_improving(const json&) {
   start("improving unlocked stations", [this](const Progress& progress) { improve(progress); });
+  return std::nullopt;
 }
 
-void EditSession::start_saving() {
+std::optional<EditSession::Changed> EditSession::start_saving(const json&) {
   keep_(stations_);
   start("saving", [this](const Progress& progress) {
     trace_exactly(progress, [&](const Evaluation& exact) { return save_(exact, progress); });
   });
+  return std::nullopt;
 }
 
-EditSession::Changed EditSession::move_station(const json& request) {
+std::optional<EditSession::Changed> EditSession::move_station(const json& request) {
   const bool end = flag_of(request, "end");
   if (end) keep_(stations_);  // the drag so far, in case it ends off the ground
   EditStation& station = with_id(request);
@@ -216,10 +209,10 @@ EditSession::Changed EditSession::move_station(const json& request) {
   if (!dragging) remember();
   ground->setup = station.placed.setup;
   station.placed = *ground;
-  return {.quick = goes_on, .keep = !dragging || end};
+  return Changed{.quick = goes_on, .keep = !dragging || end};
 }
 
-EditSession::Changed EditSession::add_station(const json& request) {
+std::optional<EditSession::Changed> EditSession::add_station(const json& request) {
   if (stations_.size() >= max_stations)
     throw Error(Errc::invalid_argument,
                 "there are " + std::to_string(max_stations) + " stations, the most there may be");
@@ -232,43 +225,43 @@ EditSession::Changed EditSession::add_station(const json& request) {
   }
   remember();
   stations_.push_back({.id = next_id_++, .placed = *ground});
-  return {};
+  return Changed{};
 }
 
-EditSession::Changed EditSession::remove_station(const json& request) {
+std::optional<EditSession::Changed> EditSession::remove_station(const json& request) {
   EditStation& station = with_id(request);
   if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
   remember();
   stations_.erase(stations_.begin() + (&station - stations_.data()));
-  return {};
+  return Changed{};
 }
 
-EditSession::Changed EditSession::lock_station(const json& request) {
+std::optional<EditSession::Changed> EditSession::lock_station(const json& request) {
   EditStation& station = with_id(request);
   if (station.placed.existing) throw Error(Errc::invalid_argument, "a scan was taken here: it stays locked");
   remember();
   station.locked = flag_of(request, "locked");
-  return {.needs = Changed::nothing};
+  return Changed{.needs = Changed::nothing};
 }
 
-EditSession::Changed EditSession::rename_station(const json& request) {
+std::optional<EditSession::Changed> EditSession::rename_station(const json& request) {
   const auto name = request.find("name");
   if (name == request.end() || !name->is_string()) throw Error(Errc::invalid_argument, "name: a text is wanted");
   EditStation& station = with_id(request);
   std::string text = checked_name(*name);
   remember();
   station.name = std::move(text);
-  return {.needs = Changed::names};
+  return Changed{.needs = Changed::names};
 }
 
-EditSession::Changed EditSession::undo(const json&) {
+std::optional<EditSession::Changed> EditSession::undo(const json&) {
   step(undo_, redo_);
-  return {};
+  return Changed{};
 }
 
-EditSession::Changed EditSession::redo(const json&) {
+std::optional<EditSession::Changed> EditSession::redo(const json&) {
   step(redo_, undo_);
-  return {};
+  return Changed{};
 }
 
 bool EditSession::take(std::span<const TakenScan> scans) {

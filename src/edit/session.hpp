@@ -83,26 +83,24 @@ class EditSession {
 
  private:
   using Stations = std::vector<EditStation>;
-  // What a change of the stations takes afterwards.
+  // Work that a change of the stations leaves to do.
   struct Changed {
     enum Needs { nothing, names, figures } needs = figures;
     bool quick = false;  // leaves out what takes longer than a drag allows
     bool keep = true;    // false: during a drag
   };
-  using Change = Changed (EditSession::*)(const nlohmann::json& request);
-  using Job = void (EditSession::*)();
-  static Change change_named(const std::string& what);
-  static Job job_named(const std::string& what);
-  Changed move_station(const nlohmann::json& request);
-  Changed add_station(const nlohmann::json& request);
-  Changed remove_station(const nlohmann::json& request);
-  Changed lock_station(const nlohmann::json& request);
-  Changed rename_station(const nlohmann::json& request);
-  Changed undo(const nlohmann::json& request);
-  Changed redo(const nlohmann::json& request);
-  void start_exact();
-  void start_improving();
-  void start_saving();
+  // Commands of `change()`. Those that start long work change no station, and return nothing.
+  using Command = std::optional<Changed> (EditSession::*)(const nlohmann::json& request);
+  std::optional<Changed> move_station(const nlohmann::json& request);
+  std::optional<Changed> add_station(const nlohmann::json& request);
+  std::optional<Changed> remove_station(const nlohmann::json& request);
+  std::optional<Changed> lock_station(const nlohmann::json& request);
+  std::optional<Changed> rename_station(const nlohmann::json& request);
+  std::optional<Changed> undo(const nlohmann::json& request);
+  std::optional<Changed> redo(const nlohmann::json& request);
+  std::optional<Changed> start_exact(const nlohmann::json& request);
+  std::optional<Changed> start_improving(const nlohmann::json& request);
+  std::optional<Changed> start_saving(const nlohmann::json& request);
   EditStation& with_id(const nlohmann::json& request);
   // The station on the ground at `to`, or where it may stand near there; empty if there is no ground. `exactly`: only
   // the former. Adds a sentence to the message if it is not where it was put.

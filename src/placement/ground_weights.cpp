@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
+#include "core/plastic_number.hpp"
 #include "core/text.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/error.hpp"
@@ -70,7 +71,6 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
     const int n = std::clamp(static_cast<int>(std::ceil(kSamples * size / up)), 1, kMostSamples);
     int on = 0;
     for (int k = 0; k < n; ++k) {
-      constexpr double kPlastic = 1.32471795724474602596;  // g³ = g + 1
       const double s = 0.5 + (k + 1) / kPlastic, t = 0.5 + (k + 1) / (kPlastic * kPlastic);
       const double root = std::sqrt(s - std::floor(s)), along = t - std::floor(t);
       const Vec3 p = data.origin + a * (1 - root) + b * (root * (1 - along)) + c * (root * along);

@@ -101,10 +101,12 @@ ColumnGrid grid_of(const RawScene& raw, UpAxis up_axis) {
   return grid;
 }
 
-// What the lines meet, sorted: column, height and bits of each crossing, and parts of steep surfaces between columns.
+// Surfaces that the lines meet, sorted: column, height and bits of each crossing, and parts of steep ones between
+// columns.
 struct Met {
   std::vector<std::uint64_t> crossings;
   std::vector<WallAt> walls;
+  double upright = 0;  // share of steep faces that are vertical but along no horizontal axis
 };
 
 // Adds what one triangle, relative to the grid's lowest corner, has in the lines. `n`: its normal, of any length.
@@ -145,10 +147,8 @@ void add_triangle(const ColumnGrid& grid, const Corners& t, const glm::dvec3& n,
   }
 }
 
-// Returns what the lines meet of all triangles, and in `upright` the share of steep faces that are vertical but along
-// no horizontal axis.
-Met find_met(const RawScene& raw, UpAxis up_axis, const ColumnGrid& grid, const std::vector<std::uint8_t>& left_out,
-             double& upright) {
+// Returns all that the lines meet.
+Met find_met(const RawScene& raw, UpAxis up_axis, const ColumnGrid& grid, const std::vector<std::uint8_t>& left_out) {
   tbb::enumerable_thread_specific<Met> found;
   constexpr std::size_t kBlock = 256;
   std::vector<std::array<double, 2>> areas((raw.triangles.size() + kBlock - 1) / kBlock);  // in the order of blocks
@@ -173,9 +173,8 @@ Met find_met(const RawScene& raw, UpAxis up_axis, const ColumnGrid& grid, const 
   });
   double turned = 0, steep = 0;
   for (const auto& [a, b] : areas) turned += a, steep += b;
-  upright = steep > 0 ? turned / steep : 0;
 
-  Met met;
+  Met met{.crossings = {}, .walls = {}, .upright = steep > 0 ? turned / steep : 0};
   for (const Met& some : found) {
     met.crossings.insert(met.crossings.end(), some.crossings.begin(), some.crossings.end());
     met.walls.insert(met.walls.end(), some.walls.begin(), some.walls.end());
@@ -193,7 +192,8 @@ Columns::Columns(const RawScene& raw, UpAxis up_axis, const std::vector<std::uin
   size_ = grid.size;
   if (grid.nx == 0) return;
   cell_ = grid.cell, nx_ = grid.nx, ny_ = grid.ny;
-  const Met met = find_met(raw, up_axis, grid, left_out, upright_);
+  const Met met = find_met(raw, up_axis, grid, left_out);
+  upright_ = met.upright;
   first_wall_.assign(2 * std::size_t{count()} + 1, 0);
   for (const WallAt& wall : met.walls) ++first_wall_[wall.edge + 1], walls_.push_back(wall.wall);
   for (std::size_t e = 1; e < first_wall_.size(); ++e) first_wall_[e] += first_wall_[e - 1];

@@ -12,7 +12,7 @@
 namespace vantage {
 
 // Returns the index of the default engine: a hardware GPU with ray queries, else one with our own BVH, else the CPU.
-// With a device, it is the first usable Vulkan engine on it. REQUIRES: embree is listed.
+// If a device is given, it is the first usable Vulkan engine on that. REQUIRES: embree is listed.
 std::size_t default_engine(const std::vector<EngineInfo>& engines,
                            std::optional<std::uint32_t> device_index = std::nullopt);
 

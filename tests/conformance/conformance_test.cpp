@@ -478,6 +478,13 @@ void expect_equal_samples(const NetworkCounts& got, const NetworkCounts& expecte
   }
 }
 
+// Returns every `step`-th voxel from `first` on, below `end`.
+std::vector<std::uint32_t> every(std::uint32_t step, std::uint32_t first, std::uint32_t end) {
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t voxel = first; voxel < end; voxel += step) voxels.push_back(voxel);
+  return voxels;
+}
+
 // Each voxel is its own group, so groups are voxels.
 Tracer::SampleJob voxel_by_voxel(std::span<const std::uint32_t> sample, bool masks) {
   return {sample, static_cast<std::uint32_t>(sample.size()), masks, 0};
@@ -506,9 +513,7 @@ TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
 
 TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
   for (const TestSite& site : sites()) {
-    std::vector<std::uint32_t> sample;
-    for (std::uint32_t voxel_index = 5; voxel_index < site.grid->size(); voxel_index += 29)
-      sample.push_back(voxel_index);
+    const std::vector<std::uint32_t> sample = every(29, 5, site.grid->size());
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 6, 12)};
     const std::vector<std::uint32_t> sizes{4, 6};
     for (const bool noisy : {false, true}) {
@@ -527,9 +532,7 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
 // Input of the coverage matrix: the points themselves, over any number of batches, and none of an interrupted count.
 TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
   for (const TestSite& site : sites()) {
-    std::vector<std::uint32_t> sample;
-    for (std::uint32_t voxel_index = 1; voxel_index < site.grid->size(); voxel_index += 3)
-      sample.push_back(voxel_index);
+    const std::vector<std::uint32_t> sample = every(3, 1, site.grid->size());
     std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 8, 7)};
     for (const TraceStation& station : site.stations) networks.push_back({{station.origin, 0}});
     const std::vector<std::uint32_t> sizes{4, 8, 1, 1, 1, 1};
@@ -560,9 +563,7 @@ TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
 // Input of registration: the masks themselves, so that its sums are the same on every engine.
 TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
   for (const TestSite& site : sites()) {
-    std::vector<std::uint32_t> sample;
-    for (std::uint32_t voxel_index = 2; voxel_index < site.grid->size(); voxel_index += 3)
-      sample.push_back(voxel_index);
+    const std::vector<std::uint32_t> sample = every(3, 2, site.grid->size());
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 40, 7)};
     const std::vector<std::uint32_t> sizes{4, 40};
     std::vector<std::vector<std::uint64_t>> masks(networks.size());
@@ -587,10 +588,7 @@ TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
 // The sums themselves, to the last bit: of few stations and many, some pairs of which share nothing.
 TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
   for (const TestSite& site : sites()) {
-    std::vector<std::uint32_t> sample;
-    for (std::uint32_t voxel_index = 0; voxel_index < std::min<std::uint32_t>(site.grid->size(), 30'000);
-         voxel_index += 17)
-      sample.push_back(voxel_index);
+    const std::vector<std::uint32_t> sample = every(17, 0, std::min<std::uint32_t>(site.grid->size(), 30'000));
     std::vector<std::vector<TraceStation>> networks{
         site.stations, random_stations(site, 40, 7), {site.stations[0]}, random_stations(site, 17, 8)};
     networks[0].erase(networks[0].begin() + 1);  // an inactive station keeps its place
@@ -634,8 +632,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
 // Many scanners in one place: once the first saturate a voxel, the others need not look at it.
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];
-  std::vector<std::uint32_t> sample;
-  for (std::uint32_t voxel_index = 0; voxel_index < site.grid->size(); voxel_index += 7) sample.push_back(voxel_index);
+  const std::vector<std::uint32_t> sample = every(7, 0, site.grid->size());
   std::vector<std::vector<TraceStation>> networks(1);
   for (std::uint32_t place = 0; place < 32; ++place) networks[0].push_back({site.stations[0].origin, place});
   const std::vector<std::uint32_t> sizes{32};
@@ -661,9 +658,7 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
 // Near and far, full and not, half hidden and oblique: rays left out must not show.
 TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
   for (const TestSite& site : sites()) {
-    std::vector<std::uint32_t> sample;
-    for (std::uint32_t voxel_index = 2; voxel_index < site.grid->size(); voxel_index += 13)
-      sample.push_back(voxel_index);
+    const std::vector<std::uint32_t> sample = every(13, 2, site.grid->size());
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 12, 21)};
     const std::vector<std::uint32_t> sizes{4, 12};
     for (const bool noisy : {false, true}) {
@@ -693,8 +688,7 @@ TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
 
 TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
   const TestSite& site = sites()[2];
-  std::vector<std::uint32_t> sample;
-  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 31) sample.push_back(voxel_index);
+  const std::vector<std::uint32_t> sample = every(31, 3, site.grid->size());
   std::vector<std::vector<TraceStation>> networks;
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t n = 0; n < 6; ++n) {
@@ -728,8 +722,7 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
 // After many stations that see nothing, more pairs are open at once than a device has room for.
 TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
   const TestSite& site = sites()[2];
-  std::vector<std::uint32_t> sample;
-  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 7) sample.push_back(voxel_index);
+  const std::vector<std::uint32_t> sample = every(7, 3, site.grid->size());
   std::vector<TraceStation> far = site.stations;
   for (TraceStation& station : far) station.origin.x += 1000;
   const std::vector<std::vector<TraceStation>> near_ones{site.stations}, far_ones{far};
@@ -750,8 +743,7 @@ TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
 // Tested by progress: a device reports every submission, and the first has one dispatch of rays if these are limited.
 TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
   const TestSite& site = sites()[2];
-  std::vector<std::uint32_t> sample;
-  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 31) sample.push_back(voxel_index);
+  const std::vector<std::uint32_t> sample = every(31, 3, site.grid->size());
   const std::vector<std::vector<TraceStation>> networks{site.stations};
   const std::vector<std::uint32_t> sizes{4};
   const auto first_report = [&](std::uint64_t max_rays) {

@@ -327,7 +327,7 @@ class Converter {
       surface->write(buffer, nodes, meshes, translation);
     json roots = json::array();
     for (std::size_t k = 0; k < nodes.size(); ++k) roots.push_back(k);
-    // Without a unit, the axes stay those that the user knows; the scene's reader recognises or asks for the unit.
+    // The axes stay those that the user knows if there is no unit; the scene's reader recognises it or asks.
     json vantage{{"up", metric_ ? "y" : "z"}, {"scanned", true}};
     if (metric_) vantage["unit"] = "m";
     const std::string& crs = source_->crs();

@@ -29,7 +29,7 @@ export function geolocation(step, metres, mentions) {
     grow = 1;
   }
   const long = Math.hypot(abscissa, ordinate) || 1, [c, s] = [abscissa / long, ordinate / long], [fx, fy, fz] = factors.map((f) => f * grow);
-  // With Y up, (x, y, z) becomes (x, z, -y).
+  // (x, y, z) becomes (x, z, -y) with Y up.
   const place = [c * fx, 0, -s * fx, 0, 0, fz, 0, 0, s * fy, 0, c * fy, 0, east * unit, height * unit, -north * unit, 1];
   return { crs: metric ? crs : "", feet: Boolean(crs) && !metric, name, place, notes };
 }

@@ -40,7 +40,7 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
 // Names are cut to this many bytes, since they are copied to every mesh, table and page.
 constexpr std::size_t kLongestName = 200;
 
-// What a node has from itself and the nodes above it. Patterns match names of nodes.
+// Marks that a node has from itself and the nodes above it. Patterns match names of nodes.
 struct NodeMarks {
   std::optional<Role> pattern_role = {};  // from the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight = {};
