@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-struct Objectives {
+struct Estimates {
   double coverage = 0, overlap = 0, coverage_se = 0, overlap_se = 0;
 };
 
@@ -39,7 +39,7 @@ struct Trial {
   std::uint32_t rounds = 0;
   bool tired = false;
   double rays = 0;  // a candidate
-  std::vector<Objectives> values = {};
+  std::vector<Estimates> values = {};
 
   double milliseconds() const { return mean(best_ms); }
   double cpu_milliseconds() const { return mean(best_cpu_ms); }
@@ -64,7 +64,7 @@ const char* name_of(Way way) {
   return "";
 }
 
-Objectives estimate(const NetworkCounts& counts, const Simulator& simulator, bool overlap) {
+Estimates estimate(const NetworkCounts& counts, const Simulator& simulator, bool overlap) {
   const Estimate c = coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count());
   const Estimate o = overlap ? overlap_estimate(counts, simulator.voxel_count()) : Estimate{};
   return {c.value, o.value, c.standard_error, o.standard_error};
@@ -99,7 +99,7 @@ void time_together(Trial& trial, std::span<const Network> population, std::size_
   const Stopwatch watch;
   const double cpu = cpu_ms();
   const std::vector<NetworkCounts> counts = trial.simulator->evaluate_sampled(population, sample);
-  std::vector<Objectives> values;
+  std::vector<Estimates> values;
   for (const NetworkCounts& c : counts) values.push_back(estimate(c, *trial.simulator, trial.overlap));
   const double ms = watch.seconds() * 1e3 / static_cast<double>(population.size());
   const double cpu_spent = (cpu_ms() - cpu) / static_cast<double>(population.size());
@@ -119,7 +119,7 @@ struct Rms {
 };
 
 template <class Get>
-Rms error_of(const Trial& trial, const std::vector<Objectives>& truth, Get get) {
+Rms error_of(const Trial& trial, const std::vector<Estimates>& truth, Get get) {
   Rms error;
   const double n = static_cast<double>(trial.values.size());
   for (std::size_t k = 0; k < trial.values.size(); ++k) {
@@ -134,7 +134,7 @@ Rms error_of(const Trial& trial, const std::vector<Objectives>& truth, Get get) 
 template <class Get>
 double rms_of(const Trial& trial, Get get) {
   double sum = 0;
-  for (const Objectives& value : trial.values) sum += get(value) * get(value);
+  for (const Estimates& value : trial.values) sum += get(value) * get(value);
   return std::sqrt(sum / static_cast<double>(trial.values.size()));
 }
 
@@ -174,13 +174,13 @@ class EngineRun {
   }
 
   std::string table() const {
-    const std::vector<Objectives>& truth = trial_of(Way::every_ray, true).values;
+    const std::vector<Estimates>& truth = trial_of(Way::every_ray, true).values;
     std::string text;
     for (const Trial& trial : trials_) {
-      const Rms c = error_of(trial, truth, [](const Objectives& o) { return o.coverage; });
-      const Rms o = trial.overlap ? error_of(trial, truth, [](const Objectives& v) { return v.overlap; }) : Rms{};
-      const double c_se = rms_of(trial, [](const Objectives& v) { return v.coverage_se; });
-      const double o_se = rms_of(trial, [](const Objectives& v) { return v.overlap_se; });
+      const Rms c = error_of(trial, truth, [](const Estimates& o) { return o.coverage; });
+      const Rms o = trial.overlap ? error_of(trial, truth, [](const Estimates& v) { return v.overlap; }) : Rms{};
+      const double c_se = rms_of(trial, [](const Estimates& v) { return v.coverage_se; });
+      const double o_se = rms_of(trial, [](const Estimates& v) { return v.overlap_se; });
       char line[400];
       std::snprintf(line, sizeof line, "%s,%s,%s,%s,%.4f,%.4f,%.2f,%.2f,%.0f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%u\n",
                     to_string(info_.engine).c_str(), name_of(trial.way), number(trial.amount).c_str(),
@@ -194,7 +194,7 @@ class EngineRun {
   }
 
   std::unique_ptr<Canvas> picture() const {
-    const std::vector<Objectives>& truth = trial_of(Way::every_ray, true).values;
+    const std::vector<Estimates>& truth = trial_of(Way::every_ray, true).values;
     std::vector<ErrorDot> dots;
     for (const Trial& trial : trials_) {
       if (!trial.overlap) continue;
@@ -202,10 +202,10 @@ class EngineRun {
       dots.push_back({.way = trial.way,
                       .label = sampled ? short_count(trial.amount) : "\u00d7" + number(trial.amount),
                       .milliseconds = time_of(trial),
-                      .coverage_rms = error_of(trial, truth, [](const Objectives& o) { return o.coverage; }).rms,
-                      .overlap_rms = error_of(trial, truth, [](const Objectives& o) { return o.overlap; }).rms,
-                      .coverage_se = rms_of(trial, [](const Objectives& o) { return o.coverage_se; }),
-                      .overlap_se = rms_of(trial, [](const Objectives& o) { return o.overlap_se; })});
+                      .coverage_rms = error_of(trial, truth, [](const Estimates& o) { return o.coverage; }).rms,
+                      .overlap_rms = error_of(trial, truth, [](const Estimates& o) { return o.overlap; }).rms,
+                      .coverage_se = rms_of(trial, [](const Estimates& o) { return o.coverage_se; }),
+                      .overlap_se = rms_of(trial, [](const Estimates& o) { return o.overlap_se; })});
     }
     const Simulator& full = *simulators_.front();
     std::size_t fewest = population_[0].size(), most = fewest;
@@ -280,7 +280,7 @@ class EngineRun {
         const SampleOptions sample{.voxels = static_cast<std::uint64_t>(trial.amount)};
         for (const NetworkCounts& counts : simulator->evaluate_sampled(population_.first(compared_), sample)) {
           trial.values.push_back(estimate(counts, *simulator, true));
-          const Objectives& both = trial.values.back();  // coverage is the same with masks and without
+          const Estimates& both = trial.values.back();  // coverage is the same with masks and without
           alone->values.push_back({.coverage = both.coverage, .coverage_se = both.coverage_se});
         }
       }

@@ -15,18 +15,18 @@
 namespace vantage::bench {
 namespace {
 
-struct Dot {
+struct GapDot {
   std::size_t stations, candidates;
   double bound, found;
 };
 
-constexpr std::array<Colour, 4> kColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kGapColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
-void draw(const std::string& file, const GapOptions& options, const std::vector<Dot>& dots) {
+void draw(const std::string& file, const GapOptions& options, const std::vector<GapDot>& dots) {
   constexpr double kWidth = 820, kHeight = 520;
   Canvas canvas(kWidth, kHeight);
   double low = 1, high = 0;
-  for (const Dot& dot : dots) low = std::min(low, dot.found), high = std::max(high, dot.bound);
+  for (const GapDot& dot : dots) low = std::min(low, dot.found), high = std::max(high, dot.bound);
   const auto [fewest, most] = std::ranges::minmax(options.candidates);
   const Axis x{.label = "Candidates",
                .low = static_cast<double>(fewest) / 1.15,
@@ -38,10 +38,10 @@ void draw(const std::string& file, const GapOptions& options, const std::vector<
                         std::to_string(options.sample) + " voxels");
   Point at{kWidth - 180, 90};
   for (std::size_t s = 0; s < options.counts.size(); ++s) {
-    const Colour colour = kColours[s % kColours.size()];
+    const Colour colour = kGapColours[s % kGapColours.size()];
     std::vector<Point> bound, found, between;
     double gap = 0;
-    for (const Dot& dot : dots) {
+    for (const GapDot& dot : dots) {
       if (dot.stations != options.counts[s]) continue;
       bound.push_back(chart.at(static_cast<double>(dot.candidates), dot.bound));
       found.push_back(chart.at(static_cast<double>(dot.candidates), dot.found));
@@ -84,7 +84,7 @@ void run_gap(const GapOptions& options) {
   const Candidates all =
       find_candidates(site, {.first = most, .most = most, .sample_voxels = options.sample, .max_seconds = 0});
   std::printf("stations,candidates,bound,found,gap\n");
-  std::vector<Dot> dots;
+  std::vector<GapDot> dots;
   for (const std::size_t stations : options.counts)
     for (const std::size_t candidates : options.candidates) {
       if (candidates > all.stations().size()) continue;

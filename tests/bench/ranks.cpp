@@ -126,14 +126,14 @@ double mean_seconds(const RanksModel& model, std::size_t ranks, std::size_t popu
   return sum / rounds;
 }
 
-struct Dot {
+struct RankDot {
   std::size_t population, ranks;
   double times;
 };
 
-constexpr std::array<Colour, 4> kColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
+constexpr std::array<Colour, 4> kRankColours{{style::kBlue, style::kOrange, {0.10, 0.50, 0.32}, {0.48, 0.25, 0.60}}};
 
-void draw(const RanksOptions& options, const RanksModel& model, const std::vector<Dot>& dots) {
+void draw(const RanksOptions& options, const RanksModel& model, const std::vector<RankDot>& dots) {
   constexpr double kWidth = 860, kHeight = 560;
   Canvas canvas(kWidth, kHeight);
   const double most = static_cast<double>(std::ranges::max(options.ranks));
@@ -150,10 +150,10 @@ void draw(const RanksOptions& options, const RanksModel& model, const std::vecto
   canvas.line(chart.at(1, 1), chart.at(most, most), ideal);
   Point at{kWidth - 190, 100};
   for (std::size_t p = 0; p < options.populations.size(); ++p) {
-    const Colour colour = kColours[p % kColours.size()];
+    const Colour colour = kRankColours[p % kRankColours.size()];
     std::vector<Point> line;
     double highest = 0;
-    for (const Dot& dot : dots) {
+    for (const RankDot& dot : dots) {
       if (dot.population != options.populations[p]) continue;
       line.push_back(chart.at(static_cast<double>(dot.ranks), dot.times));
       highest = std::max(highest, dot.times);
@@ -289,7 +289,7 @@ void run_ranks(const RanksOptions& options) {
       1e3 * mean(), 1e3 * least, 1e3 * most, 1e3 * model.piece_s, model.ask_bytes, model.answer_bytes,
       1e6 * model.messages_s, 1e6 * model.member_s);
   std::printf("population,search_us_a_network,ranks,networks_a_second,times_one,share_of_ideal\n");
-  std::vector<Dot> dots;
+  std::vector<RankDot> dots;
   for (const std::size_t population : options.populations) {
     model.search_s = search_seconds(options.site.stations().size(), population);
     const double alone = mean_seconds(model, 1, population);

@@ -14,7 +14,7 @@
 namespace vantage::bench {
 namespace {
 
-struct Way {
+struct TimedWay {
   std::string name;
   std::size_t tracer;
   bool skip;
@@ -23,7 +23,7 @@ struct Way {
   NetworkCounts counts{};
 };
 
-bool same(const NetworkCounts& a, const NetworkCounts& b) {
+bool same_values(const NetworkCounts& a, const NetworkCounts& b) {
   return a.saturated == b.saturated && a.partial_points == b.partial_points && a.seen == b.seen && a.shared == b.shared;
 }
 
@@ -50,7 +50,7 @@ void run_rates(const RatesOptions& options) {
   TracedSite site = options.site.traced(scene, network);
 
   std::vector<std::unique_ptr<Tracer>> tracers;
-  std::vector<Way> ways;
+  std::vector<TimedWay> ways;
   const auto add = [&](const EngineInfo& info, const std::string& suffix) {
     const Stopwatch watch;
     tracers.push_back(make_tracer(
@@ -97,7 +97,7 @@ void run_rates(const RatesOptions& options) {
 
   // The first round warms up and is not counted.
   for (std::uint32_t round = 0; round <= options.site.repeats; ++round)
-    for (Way& way : ways) {
+    for (TimedWay& way : ways) {
       const Stopwatch watch;
       const std::clock_t cpu_start = std::clock();
       NetworkCounts counts = tracers[way.tracer]->count(site.stations, static_cast<std::uint32_t>(site.stations.size()),
@@ -120,11 +120,11 @@ void run_rates(const RatesOptions& options) {
       "counts_as_"
       "without_skipping\n");
   for (std::size_t k = 0; k < ways.size(); ++k) {
-    const Way& way = ways[k];
+    const TimedWay& way = ways[k];
     std::printf("%s,%d,%.3f,%.3f,%.3f,%llu,%.2f,%.9f,%d\n", way.name.c_str(), way.skip, way.best * 1e3,
                 way.device * 1e3, way.cpu * 1e3, static_cast<unsigned long long>(way.counts.rays),
                 static_cast<double>(rays * site.stations.size()) / way.best * 1e-6,
-                coverage(way.counts, site.goal_density), same(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
+                coverage(way.counts, site.goal_density), same_values(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
   }
 }
 
