@@ -144,6 +144,9 @@ struct PlanConfig {
 /// All settings except a caller's own optimiser, and the checkpoint's, on which no result depends.
 Settings settings(const PlanConfig& config);
 
+/// One row for each setting of a search, except `start`, `seed`, `optimiser` and `checkpoint`.
+const SettingTable<PlanConfig>& plan_settings();
+
 /// One line of the history, an iteration each.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;  ///< Number of the iteration, from 1, and evaluations up to its end.

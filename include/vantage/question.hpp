@@ -51,8 +51,6 @@ struct SurveyQuestion {
 
 /// One row for each setting. `existing` and `existing_targets` have none: users give them in several ways.
 const SettingTable<SurveyQuestion>& question_settings();
-/// One row for each setting of a search, except `start` and `checkpoint`.
-const SettingTable<PlanConfig>& plan_settings();
 
 /// Makes the problem of a question on a site; rounds begin and end at the site's entrance. Throws Error
 /// invalid_argument.

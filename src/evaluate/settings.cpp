@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/require_above_zero.hpp"
 #include "core/setting_list.hpp"
 #include "core/setting_table.hpp"
 #include "core/text.hpp"
@@ -97,6 +98,25 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
           })
           .take();
   return table;
+}
+
+Settings settings(const TargetOptions& options) {
+  return SettingList()
+      .add("target_diameter_m", options.diameter_m, {"target-diameter"})
+      .add("target_height_m", options.height_m, {"target-height"})
+      .add("target_sigma_m", options.sigma_m, {"target-sigma"})
+      .add("target_points", options.least_points)
+      .add("targets_least", options.least)
+      .add("targets_most", options.most)
+      .add("accuracy_class", to_string(wanted_class(options)), {"accuracy-class"})
+      .add("target_largest_rms_m", options.largest_rms_m)
+      .add("target_exact", options.exact)
+      .take();
+}
+
+void check(const TargetOptions& options) {
+  check_settings(target_settings(), options);
+  if (options.largest_rms_m) require_above_zero("targets", "largest_rms_m", *options.largest_rms_m);
 }
 
 const SettingTable<TargetOptions>& target_settings() {

@@ -8,8 +8,6 @@
 #include <numbers>
 
 #include "core/parse.hpp"
-#include "core/require_above_zero.hpp"
-#include "core/setting_list.hpp"
 #include "core/site_reach.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "scan/noise_model.hpp"
@@ -78,25 +76,6 @@ AccuracyClass accuracy_class_from_string(const std::string& text) {
 double largest_error_m(AccuracyClass accuracy) noexcept { return kClasses[static_cast<std::size_t>(accuracy)].error_m; }
 
 double error_at_95_percent(double rms_m) noexcept { return 1.96 * rms_m; }
-
-Settings settings(const TargetOptions& options) {
-  return SettingList()
-      .add("target_diameter_m", options.diameter_m, {"target-diameter"})
-      .add("target_height_m", options.height_m, {"target-height"})
-      .add("target_sigma_m", options.sigma_m, {"target-sigma"})
-      .add("target_points", options.least_points)
-      .add("targets_least", options.least)
-      .add("targets_most", options.most)
-      .add("accuracy_class", to_string(wanted_class(options)), {"accuracy-class"})
-      .add("target_largest_rms_m", options.largest_rms_m)
-      .add("target_exact", options.exact)
-      .take();
-}
-
-void check(const TargetOptions& options) {
-  check_settings(target_settings(), options);
-  if (options.largest_rms_m) require_above_zero("targets", "largest_rms_m", *options.largest_rms_m);
-}
 
 AccuracyClass wanted_class(const TargetOptions& options) noexcept {
   return options.accuracy_class.value_or(AccuracyClass::loa30);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
 
-#include "core/setting_list.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "objective/whole_counts.hpp"
 #include "vantage/error.hpp"
@@ -12,23 +9,6 @@
 #include "vantage/scanner.hpp"
 
 namespace vantage {
-
-std::string to_string(RegistrationSurfaces surfaces) {
-  return surfaces == RegistrationSurfaces::all ? "all" : "surveyed";
-}
-
-Settings settings(const RegistrationOptions& options) {
-  return SettingList()
-      .add("rho_m", options.model.rho_m, {"registration-rho"})
-      .add("patch_m", options.model.patch_m, {"registration-patch"})
-      .add("position_m", options.position_m, {"registration-position"})
-      .add("heading_deg", options.heading, {"registration-heading"})
-      .add("tilt_deg", options.tilt_of_scanner ? std::optional<Angle>() : options.tilt, {"registration-tilt"})
-      .add("surfaces", to_string(options.surfaces), {"registration-surfaces"})
-      .take();
-}
-
-void check(const RegistrationOptions& options) { check_settings(registration_settings(), options); }
 
 RegistrationOptions levelled_by(RegistrationOptions options, std::span<const Scanner> scanners) {
   if (!options.tilt_of_scanner) return options;

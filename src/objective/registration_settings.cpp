@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+#include <string>
+
+#include "core/setting_list.hpp"
 #include "core/setting_table.hpp"
 #include "vantage/measure.hpp"
 
@@ -8,6 +12,23 @@ namespace {
 constexpr Interval kTilts{.low = 0, .high = 180};  // degrees
 
 }  // namespace
+
+std::string to_string(RegistrationSurfaces surfaces) {
+  return surfaces == RegistrationSurfaces::all ? "all" : "surveyed";
+}
+
+Settings settings(const RegistrationOptions& options) {
+  return SettingList()
+      .add("rho_m", options.model.rho_m, {"registration-rho"})
+      .add("patch_m", options.model.patch_m, {"registration-patch"})
+      .add("position_m", options.position_m, {"registration-position"})
+      .add("heading_deg", options.heading, {"registration-heading"})
+      .add("tilt_deg", options.tilt_of_scanner ? std::optional<Angle>() : options.tilt, {"registration-tilt"})
+      .add("surfaces", to_string(options.surfaces), {"registration-surfaces"})
+      .take();
+}
+
+void check(const RegistrationOptions& options) { check_settings(registration_settings(), options); }
 
 const SettingTable<RegistrationOptions>& registration_settings() {
   static const SettingTable<RegistrationOptions> table = [] {

@@ -3,6 +3,7 @@
 
 #include "core/options_json.hpp"
 #include "core/setting_list.hpp"
+#include "core/setting_table.hpp"
 #include "core/text.hpp"
 #include "vantage/problem.hpp"
 
@@ -105,6 +106,89 @@ Settings settings(const PlanConfig& config) {
            {unless(config.stagnation_iterations == 0, "stagnation"), false})
       .add("seed", config.seed.value_or(1), {"seed"})
       .take();
+}
+
+const SettingTable<PlanConfig>& plan_settings() {
+  using Config = PlanConfig;
+  static const SettingTable<Config> table =
+      SettingRows<Config>()
+          .group("Search")
+          .count("population", "M",
+                 "Networks per iteration; with one objective 10, or 20 if the number is searched; else 100",
+                 &Config::population, 2, 100'000)
+          .advanced()
+          .count("iterations", "K", "Iterations of M networks each; depends on the site, or 100 for problems by name",
+                 &Config::iterations, 1, 100'000'000)
+          .advanced()
+          .count("batch", "B", "Networks that the steady state asks for at once; depends on the engine by default",
+                 &Config::batch, 1, 100'000)
+          .advanced()
+          .count("redraws", "N", "Attempts to redraw stations in holes or clashes; 8 otherwise", &Config::redraws, 0,
+                 10'000)
+          .advanced()
+          .count("stagnation", "K", "Stop when nothing has improved for K iterations", &Config::stagnation_iterations,
+                 1, 100'000'000)
+          .advanced()
+          .number("sigma", "S", "First step, as a share of the search area", &Config::sigma0,
+                  {.low = 0, .high = 10, .low_included = false})
+          .advanced()
+          .custom("scheme", "SCHEME", "Scheme of MO-CMA-ES: steady-state or generational",
+                  [](Config& c, const std::string& text, const std::string& what) {
+                    if (text != "steady-state" && text != "generational")
+                      throw Error(Errc::invalid_argument,
+                                  what + ": '" + text + "' is neither steady-state nor generational");
+                    c.scheme = text == "generational" ? MoScheme::generational : MoScheme::steady_state;
+                  })
+          .advanced()
+          .custom("max-time", "T", "Time limit of the whole plan: 90, 90s, 15min or 2h",
+                  [](Config& c, const std::string& text, const std::string& what) {
+                    c.max_seconds = parse_duration(text, what);
+                  })
+          .checked([](const Config& c, const std::string& what) { check_number(c.max_seconds, what, kAnySeconds); })
+          .optional(
+              "target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
+              &Config::target_hypervolume,
+              [](const std::string& text, const std::string& what) { return parse_number(text, what, kAnyShare); })
+          .advanced()
+          .checked([](const Config& c, const std::string& what) {
+            if (c.target_hypervolume) check_number(*c.target_hypervolume, what, kAnyShare);
+          })
+          .flag("exact", "Search with every ray instead of a sample of voxels", &Config::exact)
+          .custom(
+              "sample", "N|P%",
+              "Number or share of voxels for the whole search; otherwise 20000 for coverage alone, 100000 with "
+              "overlap, "
+              "and for a front 5000, redrawn every 20 iterations",
+              [](Config& c, const std::string& text, const std::string& what) {
+                const SampleSize size = parse_sample(text, what);
+                c.sample_voxels = size.voxels.value_or(0), c.sample_share = size.share;
+              },
+              [](const Config& c) { return c.sample_voxels > 0 || c.sample_share; })
+          .advanced()
+          .checked([](const Config& c, const std::string& what) {
+            if (c.sample_share) check_number(*c.sample_share, what, {.low = 0, .high = 1, .low_included = false});
+          })
+          .excludes({"exact"})
+          .optional("renew", "K",
+                    "Redraw the voxels every K iterations, so that no network survives by luck, and choose the front "
+                    "from the archive by every ray at the end",
+                    &Config::renew_iterations,
+                    [](const std::string& text, const std::string& what) {
+                      return static_cast<std::size_t>(parse_count(text, what, 1, 100'000'000));
+                    })
+          .advanced()
+          .excludes({"exact"})
+          .group("Results")
+          .custom("save-every", "T", "Time between checkpoints, from which a run can be resumed; 1min otherwise",
+                  [](Config& c, const std::string& text, const std::string& what) {
+                    c.checkpoint_seconds = parse_duration(text, what);
+                  })
+          .advanced()
+          .checked(
+              [](const Config& c, const std::string& what) { check_number(c.checkpoint_seconds, what, kAnySeconds); })
+          .flag("resume", "Continue from the folder's checkpoint", &Config::resume)
+          .take();
+  return table;
 }
 
 }  // namespace vantage
