@@ -1,6 +1,6 @@
 # Several sources at a time: headers are read once for all of them, and a first build takes a third of the time. With
 # -DCMAKE_UNITY_BUILD=ON, as setup.sh has it; a build to work in is better off without.
-# vantage_unity(<target>): twelve sources of one folder below src at most, so that what a module compiles with hangs on that module alone.
+# vantage_unity(<target>): twenty-four sources of one folder below src at most, so that what a module compiles with hangs on that module alone.
 function(vantage_unity target)
   if(NOT CMAKE_UNITY_BUILD)
     return()
@@ -15,7 +15,7 @@ function(vantage_unity target)
     if(NOT DEFINED count_${module})
       set(count_${module} 0)
     endif()
-    math(EXPR part "${count_${module}} / 12")
+    math(EXPR part "${count_${module}} / 24")
     math(EXPR count_${module} "${count_${module}} + 1")
     set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${module}_${part})
   endforeach()

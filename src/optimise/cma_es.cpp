@@ -44,8 +44,6 @@ constexpr std::size_t kSwapsFrom = 5;
 constexpr double kNextStep = 0.5, kLateStep = 0.1;
 constexpr std::string_view kCmaEs = "CMA-ES";
 
-std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-
 // Learning rates and weights, which depend only on n and λ.
 struct Strategy {
   Strategy() = default;

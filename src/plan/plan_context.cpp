@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kSurroundingsVoxels = 10'000;
 // Ground of a site on which a scan has that many of them. On a larger site the sample for links has as many voxels per
 // square metre.
-constexpr double kGroundOfSample_m2 = 4000;
+constexpr double kGroundOfLinks_m2 = 4000;
 
 }  // namespace
 
@@ -55,7 +55,7 @@ const OnSite& PlanContext::on_site() {
 std::uint64_t PlanContext::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
 
 std::uint64_t PlanContext::link_voxels() const {
-  const double samples = std::max(ground_area_m2(site_.area().mesh()) / kGroundOfSample_m2, 1.0);
+  const double samples = std::max(ground_area_m2(site_.area().mesh()) / kGroundOfLinks_m2, 1.0);
   return static_cast<std::uint64_t>(static_cast<double>(surroundings_voxels()) * samples);
 }
 
