@@ -345,7 +345,9 @@ void add_exact(py::module_& m) {
           .add("link", &ExactConfig::link, "Least scan overlap of the links that connect it; 0: none.")
           .add("apart_m", &ExactConfig::apart_m, "Least distance between heads.")
           .add("max_seconds", &ExactConfig::max_seconds, "Time for branch and bound.")
-          .add("existing", &ExactConfig::existing, "Heads of existing stations.");
+          .add("existing", &ExactConfig::existing, "Heads of existing stations.")
+          .add("existing_setups", &ExactConfig::existing_setups,
+               "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
       "exact_network",
       [options](GuardedSite& self, std::size_t stations, Listener progress, const py::kwargs& given) {

@@ -278,7 +278,7 @@ void add_evaluations(py::module_& m) {
       .def("__repr__", [](const Evaluation& e) {
         if (e.counts.cancelled) return std::string("<vantage.Evaluation: cancelled>");
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
-               (e.counts.cancelled ? "cancelled" : std::string(py::str(py::float_(value_of(e, "coverage"))))) + ">";
+               std::string(py::str(py::float_(value_of(e, "coverage")))) + ">";
       });
   add_pickle(type);
 }

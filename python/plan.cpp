@@ -198,11 +198,11 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
   const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
   LongCall call(std::move(progress));
   call.run([&] {
-    VoxelField field;
-    const NetworkCounts seen =
-        site.simulator().evaluate(to_network(chosen.stations), {.field = &field}, call.progress(0, 0.3));
+    VoxelField field = chosen.field;
+    if (field.count.empty())
+      site.simulator().evaluate(to_network(chosen.stations), {.field = &field}, call.progress(0, 0.3));
     MissedVoxels missed;
-    if (!seen.cancelled) missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
+    if (!call.stop().stop_requested()) missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
     if (!call.stop().stop_requested())
       write_report(file, plan.result, site, {.title = title.value_or(""), .field = &field, .missed = &missed},
                    call.progress(0.6, 1));
@@ -291,7 +291,8 @@ void add_results(py::module_& m) {
           py::arg("progress") = py::none(),
           "Writes the result folder, all that `vantage plan` writes of a plan: tables, drawings, pictures, captured "
           "and "
-          "missed\nsurface, reports (docs/files.md). Counts the answer with every ray once. Returns the names of files "
+          "missed\nsurface, reports (docs/files.md). Counts the answer with every ray, unless its points were kept. "
+          "Returns the names of files "
           "that were left out\nsince `max_seconds` were over, or progress returned False. title: of the reports; None: "
           "the site's name.\ndoubles: as for `write_point_cloud`. Raises\nError: io, invalid_argument.")
       .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = py::none(),

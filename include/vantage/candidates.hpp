@@ -93,7 +93,7 @@ struct CandidateConfig {
   double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
 };
 
-/// Its members as named values, for results and configuration files.
+/// Its members as named values, for results.
 Settings settings(const CandidateConfig& config);
 
 /// Evenly spread allowed positions, and the coverage of stations on them.
@@ -166,7 +166,8 @@ struct ExactConfig {
   double link = 0;          ///< Least scan overlap of the links that connect the network; 0: it need not be connected.
   double apart_m = 0;       ///< Least distance between heads.
   double max_seconds = 60;  ///< Time for branch and bound. If it ends first, the result depends on the machine.
-  std::vector<Vec3> existing = {};  ///< Heads of existing stations; neither counted nor returned.
+  std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::existing_setups`.
 };
 
 /// Result of exact_network().

@@ -214,7 +214,7 @@ struct BoundConfig {
   double exact_seconds = 0;  ///< Time for branch and bound; 0: greedy and swaps alone choose.
 };
 
-/// Its members as named values, for results and configuration files.
+/// Its members as named values, for results.
 Settings settings(const BoundConfig& config);
 
 /// The most coverage of `problem.most` further candidates: a good network, and a bound for all networks of as many.

@@ -133,9 +133,9 @@ struct Evaluation {
   std::optional<StationLinks> links() const;
 };
 
-/// The round over the stations besides existing ones, along the links if they are known. `most_min` as in
-/// `OnSite::visit()`.
-Visit visit_of(const Evaluation& evaluation, const OnSite& on_site,
+/// The round over a network's stations besides existing ones, which come first in it, along the links if they are
+/// known. `most_min` as in `OnSite::visit()`.
+Visit visit_of(std::span<const PlacedStation> stations, const std::optional<StationLinks>& links, const OnSite& on_site,
                double most_min = std::numeric_limits<double>::infinity());
 /// Links between heights that differ by a storey, 1.8 m or more, without which the network falls into more components,
 /// as far as a way on foot exists that is longer than 15 m, and than 1.5 times the line between the heads. Links

@@ -95,7 +95,8 @@ void write_stations_csv(const std::filesystem::path& file, std::span<const Place
                         std::span<const Scanner> scanners = {}, std::span<const std::string> names = {});
 
 /// Sessions of an evaluated network as CSV, a line for each station in the order of its session:
-/// `session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min`. Minutes count from the session's start;
+/// `session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min,wait_min,begin,end`, and `batteries` if
+/// scanners have a known life of one. Minutes count from the session's start; `begin` and `end` are times of day;
 /// `walk_m` is the way to the station; `station` is its line in stations.csv. REQUIRES: the evaluation has a visit.
 void write_sessions_csv(const std::filesystem::path& file, const Evaluation& evaluation);
 
@@ -153,16 +154,12 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 /// parameter.
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
-/// The figures of one network, as JSON text: keys coverage, coverage_se, overlap, overlap_se, overlap_matrix,
-/// scan_overlap_matrix, attainable, attainable_se, captured, captured_se, minutes_on_site, sessions,
-/// registration{error_mm, standard_error_mm, worst_mm, worst_station, stations}, dropped, voxels, goal_density, rays,
-/// sample, summary. Null: not known. Stations count from
-/// 1. Axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
+/// The figures of one network, as JSON text; docs/command_line.md lists its keys (`evaluate --json`). Null: not known.
+/// Stations count from 1. Axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
 std::string evaluation_json(const Evaluation& evaluation);
 
-/// Returns the text of `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds,
-/// engine, device, seed, parameters, version. Every network of the front has its values by their objectives' names. All
-/// numbers (`entry`, `answer`, stations of links) count from 1.
+/// Returns the text of `front.json`; docs/command_line.md lists its keys. Every network of the front has its values by
+/// their objectives' names. All numbers (`entry`, `answer`, stations of links) count from 1.
 std::string front_json(const PlanResult& result, const Simulator& simulator);
 /// A line for each network of the front: its values by the search and by every ray, violation, and stations. Throws
 /// Error io.

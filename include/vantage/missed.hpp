@@ -43,9 +43,6 @@ struct MissedOptions {
   Angle flat = Angle::degrees(80);  ///< Largest incidence, from the normal, of a surface that is not seen too flatly.
 };
 
-/// Its members as named values, for results and configuration files.
-Settings settings(const MissedOptions& options);
-
 /// Status of one voxel, with shares of its goal density in [0, 1].
 struct VoxelStatus {
   WhyMissed why = WhyMissed::captured;  ///< Its status.

@@ -134,7 +134,7 @@ class OnSite {
   std::vector<std::uint8_t> longer(std::span<const Vec3> points, std::span<const Way> than) const;
   /// Orders the stations by nearest neighbour, then improves the order by reversing parts of it (2-opt) and moving up
   /// to three stations elsewhere (Or-opt), until neither helps. With `link`, consecutive stations are linked as far as
-  /// the links allow by a walk that is at most 1.25 times as long, and takes `most_min` or less. The round is begun at
+  /// the links allow by a walk that is at most 1.3 times as long, and takes `most_min` or less. The round is begun at
   /// the end that is nearer to the entrance. Throws Error invalid_argument for a station that is not within 1000 km of
   /// the scene, and std::out_of_range for a scanner that does not exist.
   Visit visit(std::span<const PlacedStation> stations, const LinkStrength& link = {},

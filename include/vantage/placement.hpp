@@ -179,6 +179,8 @@ struct PlacedStation {
 /// True if the station counts in measures: it is not in a hole, a solid or a clash. An existing station was scanned, so
 /// it counts despite a clash in the model. Heads off the ground and outside the search area count.
 bool active(const PlacedStation& station);
+/// Number of existing stations in a network. They come first in it.
+std::size_t existing_count(std::span<const PlacedStation> stations);
 
 /// The security volume of section 4.3: two spheres above the ground.
 struct SecurityVolume {

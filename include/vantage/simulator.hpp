@@ -47,7 +47,7 @@ struct SimulatorConfig {
   std::uint64_t seed = 1;                   ///< Seed of noise and of the voxel sample.
   bool validation = false;                  ///< Loads the Vulkan validation layer; its errors become `Error`s.
   std::uint64_t max_rays_per_dispatch = 0;  ///< 0: chosen so that a dispatch stays well below a watchdog's limit.
-  /// Nothing is built if `estimate_memory` exceeds this. 0: half of the free memory.
+  /// Nothing is built that is estimated to need more. 0: half of the free memory.
   std::uint64_t max_memory_bytes = 0;
 };
 

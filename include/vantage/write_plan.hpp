@@ -62,8 +62,8 @@ struct WrittenFolder {
 /// - if the registration error is known, ellipses in the plan, and registration.ply, .png and .svg;
 /// - report.html and report.pdf.
 ///
-/// Counts the answer with every ray once. Throws Error: io; invalid_argument (an empty front), malformed_file (a logo
-/// that is no picture); and as the simulator does.
+/// Counts the answer with every ray, unless `Evaluation::field` has its points. Throws Error: io; invalid_argument (an
+/// empty front), malformed_file (a logo that is no picture); and as the simulator does.
 WrittenFolder write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                          const FolderOptions& options = {}, const FolderWatch& watch = {});
 

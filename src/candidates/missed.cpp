@@ -131,13 +131,6 @@ std::string to_string(WhyMissed why) {
   return "";
 }
 
-Settings settings(const MissedOptions& options) {
-  return SettingList()
-      .add("missed_candidates", options.candidates)
-      .add("missed_flat_deg", options.flat.in_degrees())
-      .take();
-}
-
 std::vector<VoxelStatus> why_missed(Site& site, std::span<const PlacedStation> candidates,
                                     std::span<const std::uint32_t> voxels, std::span<const std::uint32_t> points,
                                     const MissedOptions& options, const Progress& progress) {

@@ -4,6 +4,7 @@
 
 #include "candidates/sample_seen.hpp"
 #include "core/add_saturating.hpp"
+#include "core/first_numbers.hpp"
 #include "scan/sides_of.hpp"
 #include "trace/sample_counts.hpp"
 #include "vantage/candidates.hpp"
@@ -63,12 +64,7 @@ Estimate SampledCoverage::coverage(std::span<const std::size_t> stations) const 
   return coverage_of(amounts);
 }
 
-Estimate SampledCoverage::coverage() const {
-  std::vector<std::uint32_t> amounts(matrix_.elements());
-  for (std::size_t k = 0; k < size(); ++k)
-    for (const CoverageMatrix::Entry& one : matrix_.column(k)) add_saturating(amounts[one.element], one.amount);
-  return coverage_of(amounts);
-}
+Estimate SampledCoverage::coverage() const { return coverage(first_numbers(size())); }
 
 SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStation> stations,
                                 std::uint64_t sample_voxels, const Progress& progress, CountTo count_to) {

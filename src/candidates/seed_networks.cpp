@@ -74,7 +74,7 @@ ExactResult exact_network(Site& site, const ExactConfig& config, const Progress&
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");
-  const Positions positions = positions_to_choose(site, config.candidates, config.existing, {});
+  const Positions positions = positions_to_choose(site, config.candidates, config.existing, config.existing_setups);
   const std::vector<PlacedStation>& stations = positions.stations;
 
   ExactResult result;

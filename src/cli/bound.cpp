@@ -177,6 +177,8 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
     program.console.print(bounds.text);
     return exit_ok;
   }
+  nlohmann::ordered_json parameters = settings_json(settings(options.candidates));
+  parameters.update(settings_json(settings(options.bound)));
   program.console.print(nlohmann::json{{"attainable", attainable.value},
                                        {"attainable_se", attainable.standard_error},
                                        {"last_doubling", candidates.change()},
@@ -192,6 +194,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
                                        {"device", simulator.engine().device},
                                        {"seed", site.simulator_config().seed},
                                        {"options", options_json(site.settings())},
+                                       {"parameters", parameters},
                                        {"version", version()}});
   return exit_ok;
 }

@@ -16,7 +16,9 @@
 
 namespace vantage::cli {
 
-// exit_unmet: there are results, but no network meets the requirements, or floor as large as a room is not entered.
+// exit_unmet: there are results, but not what was asked: no network meets the requirements, floor as large as a room is
+// not entered, the ground is a plane laid below the model, a room has no session in its hours, or `next` finds stations
+// that are still to come.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unmet = 3 };
 
 // Surroundings of a command.

@@ -145,7 +145,8 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
                                            .link = link,
                                            .apart_m = least(Objective::Kind::distance),
                                            .max_seconds = seconds,
-                                           .existing = problem.existing},
+                                           .existing = problem.existing,
+                                           .existing_setups = problem.existing_setups},
                                           {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (exact.cancelled) return heads;
@@ -331,8 +332,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const bool in_windows = closed_stations(result.front[answer(result)]) == 0;
   const int code = whole && in_windows && (result.problem.requirements.empty() || met(result)) ? exit_ok : exit_unmet;
   const auto show = [&] {
-    program.console.print(options.json ? front_json(result, simulator) + "\n"
-                                       : plan_text(result, answer(result), folder.string()));
+    program.console.print(options.json ? front_json(result, simulator) + "\n" : plan_text(result, folder.string()));
     return code;
   };
   if (config.resume) {

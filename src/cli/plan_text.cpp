@@ -62,8 +62,9 @@ std::string front_text(const PlanResult& result, std::size_t chosen) {
 
 }  // namespace
 
-std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
+std::string plan_text(const PlanResult& result, const std::string& folder) {
   std::string text;
+  const std::size_t chosen = answer(result);
   const PlanEntry& entry = result.front[chosen];
   if (result.scene && result.area && result.area->on_plane())
     text = ground_lines(*result.scene, *result.area, entry.stations).front().text + "\n";
@@ -82,7 +83,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   if (shown < entry.stations.size())
     text += fmt::format("and {} more in stations.csv\n", entry.stations.size() - shown);
   text += "\n";
-  text += chosen == answer(result) ? summary_text(result) : summary_text(entry, advised_requirements(result));
+  text += summary_text(result);
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";
 }

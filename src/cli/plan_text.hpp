@@ -9,6 +9,6 @@
 namespace vantage::cli {
 
 // Text of a plan for a terminal: the front, the chosen network's stations and its summary.
-std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder);
+std::string plan_text(const PlanResult& result, const std::string& folder);
 
 }  // namespace vantage::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts in every result: duration and engine.
+// What commands with results share: their duration and engine, and the folder.
 #pragma once
 
 #include <chrono>

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/part_of.hpp"
 #include "core/seconds_since.hpp"
 #include "core/setting_list.hpp"
 #include "cover/benders_master.hpp"
@@ -97,9 +98,8 @@ CoverSolution max_cover(const CoverProblem& asked, const BoundConfig& config, co
       result.chosen.end());
   const auto solve = [&](BendersMaster& master, std::size_t first, double from) {
     master.cut_at(as_shares(found, first));
-    const auto share = [&](double done) { progress(from + 0.5 * done); };
     return master.max_coverage(static_cast<double>(problem.most), config.tolerance, config.max_seconds,
-                               {share, progress.stop});
+                               between(progress, from, from + 0.5));
   };
   const std::size_t half = std::max<std::size_t>(candidates / 2, 1);
   BendersMaster coarse(problem, half), master(problem, candidates);

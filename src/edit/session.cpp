@@ -388,7 +388,7 @@ void EditSession::measure(bool quick) {
   evaluation_.exact = false;  // links come from a sample, even if coverage does not
   if (!quick) {
     if (stations.size() <= kQuickStations && !stations.empty()) {
-      evaluation_.visit = visit_of(evaluation_, *on_site_);
+      evaluation_.visit = visit_of(stations, evaluation_.links(), *on_site_);
       if (const auto error_mm = registered(all)) evaluation_.values["registration"] = *error_mm;
     }
     look_closer(evaluation_,

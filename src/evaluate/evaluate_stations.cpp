@@ -4,10 +4,9 @@
 #include <string>
 
 #include "core/parse.hpp"
+#include "core/part_of.hpp"
 #include "core/site_reach.hpp"
 #include "evaluate/evaluator.hpp"
-#include "evaluate/steep_checks.hpp"
-#include "evaluate/through_glass.hpp"
 #include "vantage/error.hpp"
 #include "vantage/evaluation.hpp"
 
@@ -66,8 +65,7 @@ void check_positions(const Vec3& origin, std::span<const PlacedStation> stations
 // A day that is too short for a station is told before anything is counted.
 void check_day(const std::vector<PlacedStation>& stations, const OnSite& on_site) {
   if (!on_site.options().day_min) return;
-  Evaluation plain{.stations = stations};
-  plain.visit = visit_of(plain, on_site);
+  Evaluation plain{.stations = stations, .visit = visit_of(stations, std::nullopt, on_site)};
   add_sessions(plain, on_site);
   if (!plain.visit->not_split.empty()) throw Error(Errc::invalid_argument, plain.visit->not_split);
 }
@@ -93,20 +91,16 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
 
   // The rest of the time counts what is attainable.
   const double counting = options.attainable ? 0.8 : 1;
-  const auto share = [&](double from, double to) -> Progress {
-    return {.report = [&progress, from, to](double done) { progress(from + (to - from) * done); },
-            .stop = progress.stop};
-  };
   const auto work = [&] { return site.simulator.work() + (site.surroundings ? site.surroundings->work() : Work{}); };
   const Work before = work();
-  CountedNetworks counts = evaluator.count(networks, options.field, share(0, counting));
+  CountedNetworks counts = evaluator.count(networks, options.field, between(progress, 0, counting));
   AttainableCounts attainable;
   std::vector<CapturedShares> captured;
   if (options.attainable) {
     attainable = *options.attainable;
     for (const Objective& measure : evaluator.measures())
       if (!measure.meshes.empty()) attainable.tell_of(site.simulator, measure.meshes);
-    const Progress raising = share(counting, 0.95), silent{.stop = progress.stop};
+    const Progress raising = between(progress, counting, 0.95), silent{.stop = progress.stop};
     bool whole = true;
     for (const Network& network : networks)
       whole = whole && raise_attainable(attainable, site.simulator, network, networks.size() == 1 ? raising : silent);
@@ -123,17 +117,13 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     CountedNetwork network{.stations = stations[k],
                            .surveyed = counts.surveyed[k],
                            .surroundings = counts.surroundings.empty() ? nullptr : &counts.surroundings[k],
-                           .captured = captured.empty() ? CapturedShares{} : captured[k]};
+                           .captured = captured.empty() ? CapturedShares{} : captured[k],
+                           .field = options.field ? &counts.field : nullptr};
+    if (options.attainable) network.attainable = attainable.coverage();
     std::optional<Visit> visit;
     if (site.on_site) network.visit = &visit.emplace(evaluator.visit(network, most_minutes(options.requirements)));
-    Evaluation& one = made.emplace_back(evaluator.evaluate(network));
-    if (options.attainable) one.attainable = attainable.coverage(), one.attainable_growth = options.attainable_growth;
-    look_closer(one, site);
-    if (site.clash) add_steep_checks(one, site.simulator, *site.clash);
-    look_through_glass(one, site.simulator, progress);
-    one.violation = violation_of(one, options.requirements);
+    complete(made.emplace_back(evaluator.evaluate(network)), site, progress);
   }
-  if (options.field && !made.front().counts.cancelled) made.front().field = std::move(counts.field);
   for (Evaluation& one : made) one.work = work() - before;
   return made;
 }

@@ -19,11 +19,10 @@ Network to_network(std::span<const PlacedStation> stations) {
   return network;
 }
 
-Visit visit_of(const Evaluation& evaluation, const OnSite& on_site, double most_min) {
-  const auto existing =
-      static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
-  const std::span<const PlacedStation> placed = std::span(evaluation.stations).subspan(existing);
-  const std::optional<StationLinks> links = evaluation.links();
+Visit visit_of(std::span<const PlacedStation> stations, const std::optional<StationLinks>& links, const OnSite& on_site,
+               double most_min) {
+  const std::size_t existing = existing_count(stations);
+  const std::span<const PlacedStation> placed = stations.subspan(existing);
   if (!links) return on_site.visit(placed);
   return on_site.visit(
       placed,
@@ -37,7 +36,7 @@ Visit visit_of(const Evaluation& evaluation, const OnSite& on_site, double most_
 void add_sessions(Evaluation& evaluation, const OnSite& on_site) {
   if (!evaluation.visit || !on_site.options().day_min) return;
   const std::vector<PlacedStation>& stations = evaluation.stations;
-  const auto existing = static_cast<std::size_t>(std::ranges::count(stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(stations);
   LinkStrength link;
   const std::optional<StationLinks> links = evaluation.links();
   // Scans that were taken before are there in every session.

@@ -11,6 +11,8 @@
 #include "core/text.hpp"
 #include "evaluate/scan_data.hpp"
 #include "evaluate/sight_targets.hpp"
+#include "evaluate/steep_checks.hpp"
+#include "evaluate/through_glass.hpp"
 #include "evaluate/visibility.hpp"
 #include "objective/registered_sample.hpp"
 #include "placement/nearest_place.hpp"
@@ -72,10 +74,6 @@ std::string calibrations_text(std::span<const PlacedStation> stations, std::span
   return all;
 }
 
-std::size_t existing_of(std::span<const PlacedStation> stations) {
-  return static_cast<std::size_t>(std::ranges::count(stations, true, &PlacedStation::existing));
-}
-
 }  // namespace
 
 Evaluator::Evaluator(const EvaluationSite& site, EvaluationOptions options, std::vector<Objective> measures)
@@ -119,7 +117,7 @@ CountedNetworks Evaluator::count(std::span<const Network> networks, bool field, 
 }
 
 MeasuredNetwork Evaluator::measured(const CountedNetwork& network, const RequiredInputs& needs) const {
-  const std::size_t existing = existing_of(network.stations);
+  const std::size_t existing = existing_count(network.stations);
   const auto visible_parts = [&] {
     return visibility_parts([&](const Vec3& a, const Vec3& b) { return site_.clash->sees(a, b); },
                             site_.simulator.scanner().max_range_m, to_network(network.stations));
@@ -143,11 +141,12 @@ MeasuredNetwork Evaluator::measured(const CountedNetwork& network, const Require
 }
 
 Visit Evaluator::visit(const CountedNetwork& network, double most_min) const {
-  Evaluation linked{.stations = {network.stations.begin(), network.stations.end()},
-                    .overlap_matrix = needs_.pairs ? overlap_matrix(network.surveyed) : OverlapMatrix{}};
-  if (network.surroundings) linked.scan_overlap_matrix = scan_overlap_matrix(*network.surroundings);
-  linked.link_overlap = options_.link_overlap, linked.link = options_.link;
-  return visit_of(linked, *site_.on_site, most_min);
+  std::optional<StationLinks> links;
+  if (network.surroundings)
+    links = station_links(scan_overlap_matrix(*network.surroundings), options_.link, network.stations);
+  else if (needs_.pairs)
+    links = station_links(overlap_matrix(network.surveyed), options_.link_overlap, network.stations);
+  return visit_of(network.stations, links, *site_.on_site, most_min);
 }
 
 Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
@@ -173,6 +172,10 @@ Evaluation Evaluator::evaluate(const CountedNetwork& network) const {
     made.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
   }
   if (network.visit) made.visit = *network.visit;
+  made.attainable = network.attainable;
+  if (made.attainable) made.attainable_growth = options_.attainable_growth;
+  if (network.field) made.field = std::move(*network.field);
+  made.violation = violation_of(made, options_.requirements);
   return made;
 }
 
@@ -184,7 +187,7 @@ void take_options(Evaluation& evaluation, const EvaluationOptions& options) {
 }
 
 void add_round(Evaluation& evaluation, const OnSite& on_site, double most_min) {
-  evaluation.visit = visit_of(evaluation, on_site, most_min);
+  evaluation.visit = visit_of(evaluation.stations, evaluation.links(), on_site, most_min);
   if (const auto time = evaluation.values.find("time"); time != evaluation.values.end())
     if (!std::isnan(time->second.value)) time->second.value = evaluation.visit->minutes;
 }
@@ -196,6 +199,12 @@ void look_closer(Evaluation& evaluation, const EvaluationSite& site) {
   }
   if (site.area && site.clash)
     evaluation.moves = station_moves(*site.area, *site.clash, site.simulator.scanner().height_m, evaluation.stations);
+}
+
+void complete(Evaluation& evaluation, const EvaluationSite& site, const Progress& progress) {
+  look_closer(evaluation, site);
+  look_through_glass(evaluation, site.simulator, progress);
+  if (site.clash) add_steep_checks(evaluation, site.simulator, *site.clash);
 }
 
 }  // namespace vantage

@@ -30,6 +30,8 @@ struct CountedNetwork {
   const NetworkCounts* surroundings = nullptr;  // null: not counted
   CapturedShares captured = {};                 // by the attainable counts, if a measure needs them
   const Visit* visit = nullptr;                 // the round, if it is worked out; null: `time` is of the shortest one
+  std::optional<Estimate> attainable = {};      // coverage by the attainable counts, if they are known
+  VoxelField* field = nullptr;                  // points of every voxel, moved from; null: not kept
 };
 
 class Evaluator {
@@ -62,5 +64,7 @@ void add_round(Evaluation& evaluation, const OnSite& on_site, double most_min);
 // Figures of a network that is shown, as far as the site has parts for them: sessions and ties of storeys along its
 // round, and moves of stations that do not stand well.
 void look_closer(Evaluation& evaluation, const EvaluationSite& site);
+// The same, and what takes rays: links that glass stops, and places of checks. A stop leaves the links out.
+void complete(Evaluation& evaluation, const EvaluationSite& site, const Progress& progress);
 
 }  // namespace vantage

@@ -347,10 +347,10 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
   if (evaluation.visit)
     if (const auto uses = batteries_of(*evaluation.visit); !uses.empty()) json["batteries"] = batteries_json(uses);
-  const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(evaluation.stations);
   if (evaluation.visit && !evaluation.visit->sessions.empty())
-    json["sessions"] = sessions_json(evaluation.visit->sessions, kept);
-  if (evaluation.visit && evaluation.visit->bound > 0) json["closed"] = closed_json(evaluation.visit->closed, kept);
+    json["sessions"] = sessions_json(evaluation.visit->sessions, existing);
+  if (evaluation.visit && evaluation.visit->bound > 0) json["closed"] = closed_json(evaluation.visit->closed, existing);
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
   if (!evaluation.targets.empty()) json["targets"] = targets_json(evaluation.targets);

@@ -11,7 +11,7 @@ namespace vantage {
 
 void write_sessions_csv(const std::filesystem::path& file, const Evaluation& evaluation) {
   const std::vector<std::string> names = station_names(evaluation.stations, evaluation.names);
-  const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(evaluation.stations);
   const std::vector<Session>& sessions = evaluation.visit->sessions;
   const bool batteries = !batteries_of(*evaluation.visit).empty();
   std::string text = "session,day,crew,order,station,name,walk_m,arrive_min,stay_min,leave_min,wait_min,begin,end";
@@ -21,7 +21,7 @@ void write_sessions_csv(const std::filesystem::path& file, const Evaluation& eva
     std::size_t taken = 0;
     for (const BatteryUse& use : one.batteries) taken += use.batteries;
     for (std::size_t k = 0; k < one.order.size(); ++k) {
-      const std::size_t station = kept + one.order[k];
+      const std::size_t station = existing + one.order[k];
       const double arrive = one.arrive_min[k], stay = one.stay_min[k];
       const double wait = k < one.wait_min.size() ? one.wait_min[k] : 0;
       text += number(s + 1) + "," + number(one.day) + "," + number(one.crew) + "," + number(k + 1) + "," +

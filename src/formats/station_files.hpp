@@ -28,25 +28,17 @@ struct GeodeticPoint {
 // outside of it.
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points);
 
-// GeoJSON (RFC 7946): a FeatureCollection with a Point for each station below its tripod, [longitude, latitude, z]
-// with ten and four digits. Properties: name, status, existing, head_height_m, and in the survey frame x, y, z
-// of the head and ground_z. A station without ground has no geometry. Throws Error: io, as `to_wgs84`.
+// The formats of `write_stations()` (vantage/export.hpp), which says what each holds. GeoJSON and KML throw Error: io,
+// as `to_wgs84`; DXF: io, invalid_argument (sizes that do not match).
 void write_stations_geojson(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
-
-// KML 2.2 (OGC 07-147r2): a Placemark for each station with ground, with the same position and figures. Existing
-// stations, and those left out, have icons of another colour. Throws Error: io, as `to_wgs84`.
 void write_stations_kml(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
+// `links`: of these stations, or without values. The outline and holes of the area are closed polylines.
+void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
+                        const SearchArea& area);
 
 // Writes stations.dxf and, if the site has a coordinate system, stations.geojson and stations.kml. If stations cannot
 // be put on WGS 84 by it, these two are left out, and `SiteOptions::warn` is told why.
 void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,
                          Site& site);
-
-// DXF (release 12, ASCII), metres, survey frame. Layers: STATIONS, STATIONS_EXISTING and STATIONS_LEFT_OUT (a point and
-// a circle below the tripod), STATION_NAMES (text), LINKS (lines between the grounds of linked stations), SEARCH_AREA
-// (closed polylines: its outline and its holes). `links`: of these stations, or without values. Throws Error: io,
-// invalid_argument (sizes that do not match).
-void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
-                        const SearchArea& area);
 
 }  // namespace vantage

@@ -51,9 +51,9 @@ double wrapped_degrees(Angle angle) {
 WaypointRound waypoints_of(const Round& round, const Evaluation& evaluation, std::span<const Scanner> scanners,
                            const std::vector<std::string>& names) {
   WaypointRound made{.round = &round};
-  const auto kept = static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(evaluation.stations);
   for (std::size_t k = 0; k < round.order.size(); ++k) {
-    const std::size_t station = kept + round.order[k];
+    const std::size_t station = existing + round.order[k];
     const PlacedStation& s = evaluation.stations[station];
     const Scanner& scanner = scanners[s.setup.scanner];
     const double first_azimuth = (scanner.heading.in_degrees() - scanner.horizontal_angle.in_degrees() / 2) +

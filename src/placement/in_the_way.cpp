@@ -19,6 +19,11 @@ constexpr double kInterval_m = 0.1, kRise_m = 0.1, kLevel_m = 0.03;  // over an 
 constexpr double kFall_m = 0.28, kLargestFall_m = 1.1;               // over two treads
 constexpr double kOver_m = 0.5;  // above the ground, where the search for ground begins
 
+// Feet of a tripod whose head is at eye level stand this far from its axis. A drop goes on for some more: a gap in the
+// floor is none.
+constexpr double kFoot_m = 0.45, kGap_m = 0.15;
+constexpr double kDrop_m = 0.5, kLargestDrop_m = 100;  // a kerb and a high step are less; nothing below: the model ends
+
 Vec3 level_way(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
 
 }  // namespace
@@ -73,9 +78,24 @@ bool on_steps(const ClashChecker& clash, const Vec3& ground) {
   return false;
 }
 
-bool in_the_way(const ClashChecker& clash, const Vec3& ground) {
+bool at_brink(const ClashChecker& clash, const Vec3& ground) {
+  constexpr int kWays = 16;
+  const Vec3 over = ground + Vec3{0, 0, kOver_m};
+  const auto falls = [&](const Vec3& there) {
+    const std::optional<Vec3> found = clash.ground_below(there, kOver_m + kLargestDrop_m);
+    return found && ground.z - found->z > kDrop_m;
+  };
+  for (int k = 0; k < kWays; ++k) {
+    const Vec3 way = level_way(2 * std::numbers::pi * k / kWays);
+    const Vec3 foot = over + way * kFoot_m, beyond = over + way * (kFoot_m + kGap_m);
+    if (falls(foot) && falls(beyond) && clash.sees(over, beyond)) return true;
+  }
+  return false;
+}
+
+bool better_aside(const ClashChecker& clash, const Vec3& ground) {
   const Vec3 at = ground + Vec3{0, 0, kDoor_m};
-  return on_steps(clash, ground) || in_passage(clash, at) || in_swing(clash, at);
+  return on_steps(clash, ground) || at_brink(clash, ground) || in_passage(clash, at) || in_swing(clash, at);
 }
 
 }  // namespace vantage

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "vantage/placement.hpp"
 
 namespace vantage {
@@ -62,6 +64,10 @@ std::string to_string(ClosedKind kind) {
     case ClosedKind::low: return "low";
   }
   return "unknown";
+}
+
+std::size_t existing_count(std::span<const PlacedStation> stations) {
+  return static_cast<std::size_t>(std::ranges::count(stations, true, &PlacedStation::existing));
 }
 
 bool active(const PlacedStation& station) {

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "evaluate/evaluator.hpp"
-#include "evaluate/steep_checks.hpp"
-#include "evaluate/through_glass.hpp"
 #include "plan/answer_targets.hpp"
 #include "plan/fewest_choice.hpp"
 #include "plan/trade_off.hpp"
@@ -84,12 +82,10 @@ void complete_front(PlanResult& result, PlanContext& context, Site& site, const 
     for (PlanEntry& entry : result.front) entry.attainable_growth = result.candidates->growth();
   if (result.front.empty()) return;
   work_out_rounds(result, context, progress);
-  PlanEntry& chosen = result.front[answer(result)];
-  look_closer(chosen, {.simulator = site.simulator(), .on_site = &context.on_site()});
-  look_through_glass(chosen, site.simulator(), progress);
   put_answer_in_trade_off(result);
   add_targets(result, site, context.measures(), progress);
-  add_steep_checks(result.front[answer(result)], site.simulator(), site.clash());
+  complete(result.front[answer(result)],
+           {.simulator = site.simulator(), .on_site = &context.on_site(), .clash = &site.clash()}, progress);
 }
 
 }  // namespace vantage

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -112,6 +111,103 @@ void erase_said(std::vector<T>& all, const std::vector<bool>& said) {
   std::erase_if(all, [&](const T&) { return said[k++]; });
 }
 
+std::vector<PlacedNetwork> networks_of(std::span<const PlanEntry> entries) {
+  std::vector<PlacedNetwork> networks;
+  for (const PlanEntry& entry : entries) networks.push_back(entry.stations);
+  return networks;
+}
+
+// The front as entries, with what the search kept of them.
+std::vector<PlanEntry> searched_entries(const SearchOutcome& found, const DecisionSpace& space,
+                                        const SurveyProblem& problem, const Measures& measures) {
+  std::vector<PlanEntry> entries;
+  for (const ParetoPoint& point : found.front) {
+    PlanEntry& entry = entries.emplace_back();
+    entry.x = point.x;
+    entry.stations = space.decode(point.x);
+    take_options(entry, evaluation_options(problem));
+    for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
+    take_objectives(entry, point, problem);
+    take_by_positions(entry, problem, measures);
+    entry.values = entry.searched;
+  }
+  return entries;
+}
+
+// Estimates the entries of a sampled search again, which kept no standard errors, and no measures that are no
+// objectives. The same sample is drawn again. Returns false if it was stopped.
+bool estimate_again(std::vector<PlanEntry>& entries, const SearchOutcome& found, std::uint64_t sample_voxels,
+                    const Measures& measures, NetworkEvaluator& evaluator, const std::stop_token& stop) {
+  const VoxelWindow sample = found.sample.voxels > 0 ? found.sample : VoxelWindow{sample_voxels};
+  const auto estimates = evaluator.estimate(networks_of(entries), sample, NetworkEvaluator::Which::all, {.stop = stop});
+  if (!estimates) return false;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    for (std::size_t m = 0; m < measures.all.size(); ++m) {
+      const bool pooled = k < found.estimates.size() && m < measures.searched;
+      entries[k].searched.at(measures.all[m].name) = pooled ? found.estimates[k][m] : (*estimates)[k][m];
+    }
+    entries[k].values = entries[k].searched;
+  }
+  return true;
+}
+
+// Tells about the confirmation of a front's networks: `done` whole ones, and a part of the next.
+class ConfirmReport {
+ public:
+  ConfirmReport(const PlanWatch& watch, const SearchOutcome& found, std::size_t networks)
+      : watch_(watch), found_(found), networks_(networks) {}
+
+  double seconds() const { return seconds_since(start_); }
+  void operator()(double done) const {
+    if (!watch_.report) return;
+    constexpr double kRounding = 1e-9;
+    const auto whole = static_cast<std::size_t>(done + kRounding);
+    const double rate = seconds() > 0 ? done / seconds() : 0;
+    // The times of stations differ severalfold, and an engine may trace those of the first network along with others. A
+    // part of it tells nothing yet about the whole.
+    const bool telling = rate > 0 && (whole > 0 || networks_ == 1);
+    watch_.report({.iteration = whole,
+                   .iterations = networks_,
+                   .evaluations = found_.evaluations,
+                   .hypervolume = found_.hypervolume,
+                   .evaluations_per_second = rate,
+                   .seconds_left = telling ? (static_cast<double>(networks_) - done) / rate : -1,
+                   .phase = "confirm",
+                   .done = done / static_cast<double>(std::max<std::size_t>(networks_, 1))});
+  }
+
+ private:
+  const PlanWatch& watch_;
+  const SearchOutcome& found_;
+  std::size_t networks_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Evaluates the entries with every ray. The answer comes first, as far as it is known: a stop leaves that measured.
+void confirm_entries(std::vector<PlanEntry>& entries, const SearchOutcome& found, const SurveyProblem& problem,
+                     NetworkEvaluator& evaluator, const PlanWatch& watch) {
+  const ConfirmReport report(watch, found, entries.size());
+  report(0);
+  if (entries.empty()) return;
+  const auto confirm = [&](std::size_t first, std::size_t many) {
+    const std::span<PlanEntry> some = std::span(entries).subspan(first, many);
+    const auto part = [&](double share) { report(static_cast<double>(first) + share * static_cast<double>(many)); };
+    std::vector<std::optional<Evaluation>> confirmed =
+        evaluator.confirm(networks_of(some), {.report = part, .stop = watch.abort});
+    for (std::size_t k = 0; k < many; ++k)
+      if (confirmed[k]) static_cast<Evaluation&>(some[k]) = std::move(*confirmed[k]);
+  };
+  for (PlanEntry& entry : entries) entry.violation = violation_of(entry, problem.requirements);
+  const auto chosen = static_cast<std::ptrdiff_t>(answer(entries, problem));
+  std::rotate(entries.begin(), entries.begin() + chosen, entries.begin() + chosen + 1);
+  confirm(0, 1);
+  const auto stations = entries.front().stations.size();
+  if (entries.front().exact && watch.seconds_after)
+    watch.seconds_after(stations, report.seconds() / static_cast<double>(std::max<std::size_t>(stations, 1)));
+  if (entries.size() > 1) confirm(1, entries.size() - 1);
+  report(static_cast<double>(entries.size()));
+}
+
 }  // namespace
 
 EvaluationOptions evaluation_options(const SurveyProblem& problem) {
@@ -124,97 +220,20 @@ EvaluationOptions evaluation_options(const SurveyProblem& problem) {
 ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& space, const SurveyProblem& problem,
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch) {
-  ConfirmedFront front;
+  ConfirmedFront front{.entries = searched_entries(found, space, problem, measures)};
   std::vector<PlanEntry>& entries = front.entries;
-  std::vector<PlacedNetwork> networks;
-  const EvaluationOptions options = evaluation_options(problem);
-  for (const ParetoPoint& point : found.front) {
-    PlanEntry& entry = entries.emplace_back();
-    entry.x = point.x;
-    entry.stations = space.decode(point.x);
-    take_options(entry, options);
-    for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
-    take_objectives(entry, point, problem);
-    take_by_positions(entry, problem, measures);
-    entry.values = entry.searched;
-    networks.push_back(entry.stations);
-  }
-
-  // A sampled search did not keep standard errors, nor measures that are no objectives. The same sample is drawn again.
   const bool sampled = sample_voxels > 0;
-  if (sampled && !networks.empty()) {
-    if (const auto estimates =
-            evaluator.estimate(networks, found.sample.voxels > 0 ? found.sample : VoxelWindow{sample_voxels},
-                               NetworkEvaluator::Which::all, {.stop = watch.abort})) {
-      for (std::size_t k = 0; k < entries.size(); ++k) {
-        for (std::size_t m = 0; m < measures.all.size(); ++m) {
-          const bool pooled = k < found.estimates.size() && m < measures.searched;
-          entries[k].searched.at(measures.all[m].name) = pooled ? found.estimates[k][m] : (*estimates)[k][m];
-        }
-        entries[k].values = entries[k].searched;
-      }
-      // A single voxel that only every ray sees may decide whether a requirement is violated.
-      if (problem.requirements.empty()) {
-        const std::vector<bool> need_not = beaten(entries, problem, measures);
-        erase_said(entries, need_not);
-        erase_said(networks, need_not);
-        front.spared = found.front.size() - entries.size();
-      }
-    }
+  const bool estimated =
+      sampled && !entries.empty() && estimate_again(entries, found, sample_voxels, measures, evaluator, watch.abort);
+  // A single voxel that only every ray sees may decide whether a requirement is violated.
+  if (estimated && problem.requirements.empty()) {
+    erase_said(entries, beaten(entries, problem, measures));
+    front.spared = found.front.size() - entries.size();
   }
-
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  const auto report = [&](std::size_t done, double part) {
-    if (!watch.report) return;
-    const double seconds = seconds_since(start);
-    const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
-    // The times of stations differ severalfold, and an engine may trace those of the first network along with others. A
-    // part of it tells nothing yet about the whole.
-    const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
-    watch.report(
-        {.iteration = done,
-         .iterations = entries.size(),
-         .evaluations = found.evaluations,
-         .hypervolume = found.hypervolume,
-         .evaluations_per_second = rate,
-         .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
-         .phase = "confirm",
-         .done = (static_cast<double>(done) + part) / static_cast<double>(std::max<std::size_t>(entries.size(), 1))});
-  };
-  report(0, 0);
-  const auto confirm = [&](std::size_t first, std::size_t many) {
-    return evaluator.confirm(std::span(networks).subspan(first, many),
-                             {.report =
-                                  [&, first, many](double share) {
-                                    constexpr double kRounding = 1e-9;
-                                    const double done = static_cast<double>(first) + share * static_cast<double>(many);
-                                    const auto whole = static_cast<std::size_t>(done + kRounding);
-                                    report(whole, std::max(0.0, done - static_cast<double>(whole)));
-                                  },
-                              .stop = watch.abort});
-  };
-  std::vector<std::optional<Evaluation>> confirmed;
-  if (!entries.empty()) {
-    // The answer first, as far as it is known: a stop leaves that measured.
-    for (PlanEntry& entry : entries) entry.violation = violation_of(entry, problem.requirements);
-    const auto chosen = static_cast<std::ptrdiff_t>(answer(entries, problem));
-    std::rotate(entries.begin(), entries.begin() + chosen, entries.begin() + chosen + 1);
-    std::rotate(networks.begin(), networks.begin() + chosen, networks.begin() + chosen + 1);
-    confirmed = confirm(0, 1);
-    const auto stations = networks.front().size();
-    if (confirmed.front() && watch.seconds_after)
-      watch.seconds_after(stations, seconds_since(start) / static_cast<double>(std::max<std::size_t>(stations, 1)));
-    if (entries.size() > 1) std::ranges::move(confirm(1, entries.size() - 1), std::back_inserter(confirmed));
-  }
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    PlanEntry& entry = entries[k];
-    if (confirmed[k]) {
-      static_cast<Evaluation&>(entry) = std::move(*confirmed[k]);
-      if (!sampled) entry.searched = entry.values;
-    }
-  }
-  report(entries.size(), 0);
+  confirm_entries(entries, found, problem, evaluator, watch);
+  if (!sampled)
+    for (PlanEntry& entry : entries)
+      if (entry.exact) entry.searched = entry.values;
   std::sort(entries.begin(), entries.end(),
             [&](const PlanEntry& a, const PlanEntry& b) { return comes_before(a, b, measures); });
   return front;

@@ -442,7 +442,7 @@ CoverSolution with_other(const FewestChoice& choice, std::size_t at, std::size_t
   return evaluate_cover(problem, std::move(network));
 }
 
-// The network with the station at `at` replaced by a candidate nearby that is not in the way. Among those without more
+// The network with the station at `at` replaced by a candidate nearby that stands well. Among those without more
 // violation it takes the one with the largest gain over `others`, the cover of the other stations.
 std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::size_t at, const PartialCover& others,
                                             const PlacementOracle& oracle) {
@@ -456,7 +456,7 @@ std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::siz
       near.emplace_back(-others.gain(k), k);
   std::ranges::sort(near);
   for (const auto& [gain, k] : near) {
-    if (oracle.in_the_way(stations[k].ground)) continue;
+    if (oracle.better_aside(stations[k].ground)) continue;
     CoverSolution network = with_other(choice, at, k);
     if (network.violation <= choice.network.violation &&
         !leaves_units(choice, choice.stations_of(choice.network), choice.stations_of(network)))
@@ -468,17 +468,17 @@ std::optional<CoverSolution> with_one_aside(const FewestChoice& choice, std::siz
 }  // namespace
 
 bool stand_aside(FewestChoice& choice, const PlacementOracle& oracle, const std::stop_token& stop) {
-  if (!oracle.in_the_way || choice.asked.most_coverage) return false;
+  if (!oracle.better_aside || choice.asked.most_coverage) return false;
   bool any = false;
   for (std::size_t at = choice.asked.existing; at < choice.network.chosen.size() && !stop.stop_requested(); ++at) {
     const std::size_t station = choice.network.chosen[at];
     const PlacedStation placed = choice.table.stations()[station];
-    if (!oracle.in_the_way(placed.ground)) continue;
+    if (!oracle.better_aside(placed.ground)) continue;
     const PartialCover others(choice.table.matrix(), without(choice.network.chosen, at));
     std::optional<CoverSolution> aside = with_one_aside(choice, at, others, oracle);
     if (!aside) {
       std::vector<PlacedStation> around = positions_around(oracle, std::span(&placed, 1), kAsideAround, kAside_m);
-      std::erase_if(around, [&](const PlacedStation& one) { return oracle.in_the_way(one.ground); });
+      std::erase_if(around, [&](const PlacedStation& one) { return oracle.better_aside(one.ground); });
       if (around.empty() || !choice.table.add(around, {.stop = stop})) continue;
       aside = with_one_aside(choice, at, others, oracle);
     }

@@ -143,7 +143,8 @@ std::size_t ties_past_stairs(std::span<const PlacedStation> stations, const Past
 // Returns true if it found a network of hardly more stations. Otherwise the choice is as before, and all links count
 // from now on.
 bool keep_to_stairs(FewestChoice& choice, const std::stop_token& stop);
-// Returns to the network from before `keep_to_stairs`, since the one along stairs does not hold.
+// Lets all links count again, since the network along stairs does not hold, and goes on from the one before
+// `keep_to_stairs`.
 void leave_stairs(FewestChoice& choice, const std::stop_token& stop);
 
 // Adds allowed positions within `radius_m` of the chosen stations, and of the best network of one fewer, to the table,

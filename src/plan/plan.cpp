@@ -49,7 +49,8 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
-// Shares of the time: until candidates are found, and until their other sample is counted. Links take time, too.
+// Shares of a plan's time limit by which candidates are found, and by which the second sample of voxels is counted from
+// them. The rest is for links, the search and what follows.
 constexpr double kCandidatesTimeShare = 0.25, kCountedTimeShare = 0.5;
 // Most candidates of a site without much ground. Later stages add more around the chosen stations.
 constexpr std::size_t kMostCandidates = 4096;
@@ -180,7 +181,7 @@ constexpr double kLittleUnlinked = 0.02;
 // Lowers the required capture to that of the answer, but not below the problem's own. It does so if a limit on stations
 // or on time on site ended the plan before all stations that pay were placed, or if missing links leave out only little
 // that pays.
-void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked) {
+void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked, const Measures& measures) {
   if (!result.pays || result.front.empty()) return;
   const PlanEntry& entry = result.front[answer(result)];
   const bool all_placed = entry.stations.size() - asked.existing.size() >= asked.stations_max;
@@ -193,7 +194,7 @@ void require_no_more_than_answer(PlanResult& result, const SurveyProblem& asked)
     if (Requirement& requirement = result.problem.requirements[k];
         requires_capture(requirement) && requirement.limit > captured)
       requirement.limit = std::max(asked.requirements[k].limit, rounded_down(captured));
-  for (PlanEntry& one : result.front) one.violation = violation_of(one, result.problem.requirements);
+  result.exact_hypervolume = judge_by_every_ray(result.front, result.problem, measures);
 }
 
 // Counts one station with every ray, so that the watch knows how long that takes.
@@ -261,7 +262,7 @@ PlanResult plan(Site& site, const SurveyProblem& asked, const PlanConfig& wanted
   result.candidates = std::move(candidates);
   result.pays = context.pays;
   complete_front(result, context, site, {.stop = watch.abort});
-  require_no_more_than_answer(result, asked);
+  require_no_more_than_answer(result, asked, context.measures());
   result.work = site.work() - before, result.work.choice_steps = 2 * (swaps_made() - swaps);  // one joins, one leaves
   return result;
 }

@@ -182,14 +182,14 @@ void mend_links(FewestChoice& choice, PlanContext& context, Simulator& simulator
 // Order of visiting, by which stations are numbered. It follows sampled links, long before every ray is traced.
 VerifiedNetworks::VisitOrder visit_order(PlanContext& context, const PlanWatch& watch) {
   return [&context, &watch, link = fewest_asked(context.problem()).link](std::span<const PlacedStation> placed) {
-    Evaluation known{.stations = {placed.begin(), placed.end()}, .link = link};
+    std::optional<StationLinks> links;
     if (const std::uint64_t voxels = context.link_voxels(); link > 0 && voxels > 0) {
       const Network network = to_network(placed);
       const auto counts = context.surroundings().evaluate_sampled(
           {&network, 1}, {.voxels = voxels, .count_to = CountTo::one, .groups = false}, {.stop = watch.abort});
-      if (!counts.front().cancelled) known.scan_overlap_matrix = scan_overlap_matrix(counts.front());
+      if (!counts.front().cancelled) links = station_links(scan_overlap_matrix(counts.front()), link, placed);
     }
-    return visit_of(known, context.on_site(), most_minutes(context.problem().requirements)).order;
+    return visit_of(placed, links, context.on_site(), most_minutes(context.problem().requirements)).order;
   };
 }
 

@@ -29,11 +29,11 @@ std::string scanner_text(const Scanner& scanner) {
 }
 
 std::string stations_text(const Evaluation& network) {
-  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::existing);
+  const std::size_t existing = existing_count(network.stations);
   const auto left_out = std::ranges::count_if(network.stations, [](const PlacedStation& s) { return !active(s); });
   std::string text =
       std::to_string(network.stations.size()) + (network.stations.size() == 1 ? " station" : " stations");
-  if (kept > 0) text += ", " + std::to_string(kept) + " of them there already";
+  if (existing > 0) text += ", " + std::to_string(existing) + " of them there already";
   if (left_out > 0) text += ", " + std::to_string(left_out) + " left out for want of a place to stand";
   return text;
 }

@@ -147,10 +147,8 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"stations", stations_json(network)},
                        {"visit", nullptr},
                        {"parts", nullptr}};
-  if (network.visit && !network.visit->order.empty()) {
-    const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
-    json["visit"] = visit_json(network, kept);
-  }
+  if (network.visit && !network.visit->order.empty())
+    json["visit"] = visit_json(network, existing_count(network.stations));
   json["targets"] = targets_json(network.targets);
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
   if (network.registration) json["random_mm"] = 1e3 * network.registration->random_m;

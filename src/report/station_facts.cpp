@@ -167,10 +167,10 @@ std::vector<TargetFacts> target_facts(const Report& report, const Simulator& sim
 }
 
 std::vector<SheetRound> sheet_rounds(const Evaluation& network) {
-  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(network.stations);
   const auto of = [&](const Round& round, std::string name) {
     SheetRound one{.round = &round, .name = std::move(name)};
-    for (const std::size_t station : round.order) one.stations.push_back(kept + station);
+    for (const std::size_t station : round.order) one.stations.push_back(existing + station);
     return one;
   };
   if (!network.visit) return {SheetRound{}};

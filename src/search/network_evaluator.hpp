@@ -48,7 +48,6 @@ class NetworkEvaluator {
 class CachingEvaluator {
  public:
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}
-  std::size_t chunk() const { return evaluator_.chunk(); }
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
                                                            const VoxelWindow& sample, const Progress& progress);
   std::uint64_t simulated() const { return simulated_; }

@@ -36,7 +36,7 @@ struct SearchOutcome {
   // The whole archive if it is re-evaluated (SearchEvaluator::archive): every ray then chooses the front.
   std::vector<ParetoPoint> front;
   SearchEstimates estimates = {};  // of each, by all its samples together; empty if there was one
-  VoxelWindow sample = {};         // sample of the report; no voxels: every ray
+  VoxelWindow sample = {};         // the voxels that `front` and `estimates` are of; none: every ray
   std::vector<PlanIteration> history;
   double hypervolume = 0;
   std::uint64_t evaluations = 0, resumed_evaluations = 0;

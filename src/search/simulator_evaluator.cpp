@@ -148,9 +148,10 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
   std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {
     if (!counted.whole(k) || (share && counted.captured.empty())) continue;
-    all[k] = evaluator_.evaluate(counted.network(k, placed[k]));
-    if (share) all[k]->attainable = attainable_.confirmed->coverage();
-    if (field) all[k]->field = std::move(counted.field);
+    CountedNetwork network = counted.network(k, placed[k]);
+    if (share) network.attainable = attainable_.confirmed->coverage();
+    if (field) network.field = &counted.field;
+    all[k] = evaluator_.evaluate(network);
   }
   return all;
 }

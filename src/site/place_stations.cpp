@@ -17,7 +17,7 @@ PlacementOracle make_placement_oracle(Site& site) {
           .clashes = [&clash](const Vec3& ground, double height_m) { return clash.clashes(ground, height_m); },
           .check_head = [&site](const Vec3& head) { return site.place_head(head).station; },
           .sees = [&clash](const Vec3& a, const Vec3& b) { return clash.sees(a, b); },
-          .in_the_way = [&clash](const Vec3& ground) { return in_the_way(clash, ground); },
+          .better_aside = [&clash](const Vec3& ground) { return better_aside(clash, ground); },
           .height_m = site.scanner().height_m,
           .range_m = site.scanner().max_range_m};
 }

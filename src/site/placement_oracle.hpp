@@ -19,7 +19,7 @@ struct PlacementOracle {
   std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // whether one head sees the other
-  std::function<bool(const Vec3&)> in_the_way = {};       // whether a tripod on a ground point bars a door or a stair
+  std::function<bool(const Vec3&)> better_aside = {};     // of a ground point (placement/in_the_way.hpp)
   double height_m = 0;                                    // of the scanner's head
   double range_m = 0;                                     // of a scanner
   std::vector<std::uint32_t> scanners = {};               // of the site, to choose from; empty: the first

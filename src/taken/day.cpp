@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/part_of.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/taken_scans.hpp"
 
@@ -35,11 +36,8 @@ bool find_changes(Site& site, Day& day, const Progress& progress) {
     day.changes.unknown = unknown_space(site, day.scans);
     return !progress.stopped();
   }
-  const auto part = [&](double from, double to) {
-    return Progress{[&progress, from, to](double done) { progress(from + (to - from) * done); }, progress.stop};
-  };
-  if (!fit_to_model(site, day.scans, day.config.tolerance_m, part(0, 0.4))) return false;
-  day.changes = changes_of(site, day.scans, day.config.tolerance_m, part(0.4, 1));
+  if (!fit_to_model(site, day.scans, day.config.tolerance_m, between(progress, 0, 0.4))) return false;
+  day.changes = changes_of(site, day.scans, day.config.tolerance_m, between(progress, 0.4, 1));
   return !progress.stopped();
 }
 

@@ -8,6 +8,7 @@
 #include "core/first_numbers.hpp"
 #include "core/graph.hpp"
 #include "core/parallel.hpp"
+#include "core/part_of.hpp"
 #include "scene/changed_scene.hpp"
 #include "taken/model_surface.hpp"
 #include "taken/real_counts.hpp"
@@ -70,12 +71,10 @@ void check(const NextConfig& config, std::span<const TakenScan> scans) {
 std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, std::span<const PlacedStation> taken,
                                 std::span<const PlacedStation> planned, const NextConfig& config,
                                 const Progress& progress) {
-  const auto part = [&](double from, double to) {
-    return Progress{[&progress, from, to](double done) { progress(from + (to - from) * done); }, progress.stop};
-  };
-  const Candidates candidates = find_candidates(found, {.sample_voxels = config.sample_voxels}, part(0, 0.6));
+  const Candidates candidates =
+      find_candidates(found, {.sample_voxels = config.sample_voxels}, between(progress, 0, 0.6));
   const SampledCoverage plan =
-      sample_coverage(found.simulator(), planned, candidates.coverage().sample_voxels(), part(0.6, 0.7));
+      sample_coverage(found.simulator(), planned, candidates.coverage().sample_voxels(), between(progress, 0.6, 0.7));
   if (candidates.ended() == "cancelled" || plan.cancelled() || progress.stopped()) return std::nullopt;
 
   Table table{.attainable = candidates.attainable_counts(),
@@ -95,7 +94,8 @@ std::optional<Table> make_table(Site& found, std::span<const TakenScan> scans, s
   for (std::size_t k = 0; k < table.scans + table.planned; ++k)
     for (const CoverageMatrix::Entry& one : table.matrix.column(k)) table.attainable.raise(one.element, one.amount);
   table.matrix.set_goals(table.attainable.counts());
-  if (config.link > 0) table.graph = overlap_graph(found.surroundings(), table.stations, kOverlapVoxels, part(0.7, 1));
+  if (config.link > 0)
+    table.graph = overlap_graph(found.surroundings(), table.stations, kOverlapVoxels, between(progress, 0.7, 1));
   if (progress.stopped()) return std::nullopt;
   return table;
 }

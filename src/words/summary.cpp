@@ -446,7 +446,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (evaluation.visit && !evaluation.visit->not_split.empty())
     to_do({"not split into days: " + evaluation.visit->not_split});
   if (evaluation.visit) {
-    const auto existing = std::ranges::count(evaluation.stations, true, &PlacedStation::existing);
+    const auto existing = static_cast<std::ptrdiff_t>(existing_count(evaluation.stations));
     const std::vector<std::string> placed(names.begin() + existing, names.end());
     to_do(hours_advice(*evaluation.visit, placed));
     to_do(sessions_advice(*evaluation.visit, placed));
@@ -665,8 +665,7 @@ std::vector<SummaryLine> ground_lines(const Scene& scene, const SearchArea& area
 std::vector<SummaryLine> again_lines(const Scene& scene, const Evaluation& evaluation) {
   constexpr std::size_t kNamed = 6;
   if (!evaluation.visit || evaluation.visit->sessions.size() < 2) return {};
-  const auto existing =
-      static_cast<std::size_t>(std::ranges::count(evaluation.stations, true, &PlacedStation::existing));
+  const std::size_t existing = existing_count(evaluation.stations);
   const std::vector<std::vector<std::size_t>> in_rooms = stations_in_rooms(scene.rooms(), evaluation.stations);
   std::size_t again = 0;
   std::string named;

@@ -82,10 +82,10 @@ TEST(StandAside, SwapsAStationThatIsInTheWay) {
   const FewestChoice before = choice;
   ASSERT_EQ(choice.network.violation, 0);
   PlacementOracle oracle = test::toy_site();
-  EXPECT_FALSE(stand_aside(choice, oracle, {})) << "nothing tells what is in the way";
+  EXPECT_FALSE(stand_aside(choice, oracle, {})) << "nothing tells where none should stand";
   const Vec3 door = choice.stations_of(choice.network)[1].ground;
   double near_m = 0.7;
-  oracle.in_the_way = [&](const Vec3& ground) { return test::apart_m(ground, door) < near_m; };
+  oracle.better_aside = [&](const Vec3& ground) { return test::apart_m(ground, door) < near_m; };
   EXPECT_TRUE(stand_aside(choice, oracle, {}));
   EXPECT_EQ(choice.network.violation, 0);
   EXPECT_EQ(choice.network.chosen.size(), before.network.chosen.size());

@@ -75,6 +75,27 @@ TEST_F(SeedNetworks, GreedyAddsToWhatIsThere) {
   EXPECT_NEAR(rest.coverage[1], alone.coverage[2], 1e-12);
 }
 
+TEST_F(SeedNetworks, ExistingStationsAreTracedAsTheyAreSetUp) {
+  const PlacedStation lying{.position = {-2, 0, 0}, .existing = true, .setup = {.tilt = Angle::degrees(90)}};
+  const auto coverage_with = [&](std::span<const PlacedStation> chosen) {
+    std::vector<PlacedStation> all{lying};
+    all.insert(all.end(), chosen.begin(), chosen.end());
+    return coverage(simulator.evaluate(to_network(all)), simulator.goal_density());
+  };
+  const GreedyResult greedy = greedy_network(site, {.stations = 1,
+                                                    .candidates = 12,
+                                                    .sample_voxels = every_voxel,
+                                                    .existing = {lying.position},
+                                                    .existing_setups = {lying.setup}});
+  EXPECT_NEAR(greedy.coverage[0], coverage_with(greedy.stations), 1e-12);
+  const ExactResult exact = exact_network(site, {.stations = 1,
+                                                 .candidates = 12,
+                                                 .sample_voxels = every_voxel,
+                                                 .existing = {lying.position},
+                                                 .existing_setups = {lying.setup}});
+  EXPECT_NEAR(exact.choice.coverage, coverage_with(exact.stations), 1e-12);
+}
+
 TEST_F(SeedNetworks, GreedyKeepsTheNumberAskedThoughNothingIsAdded) {
   const GreedyResult all = greedy_network(site, {.stations = 40, .candidates = 40});
   ASSERT_EQ(all.stations.size(), 40u);

@@ -175,6 +175,16 @@ TEST(WhatPays, ALimitOnTheStationsEndsItAndIsMet) {
   EXPECT_FALSE(met(plan(site, question, config))) << "a share that is asked for stays";
 }
 
+TEST(WhatPays, ALimitOnTheTimeEndsItAndIsMet) {
+  Site site = floor_site();
+  SurveyQuestion question;
+  question.pays_m2 = 0.5, question.link = 0, question.requirements = {"time<=5"};
+  const PlanResult one = plan(site, question, {.iterations = 1, .sample_voxels = 500});
+  EXPECT_EQ(one.front.front().stations.size(), 1u);
+  EXPECT_TRUE(met(one));
+  EXPECT_GT(one.exact_hypervolume, 0) << "judged by the capture that is required in the end";
+}
+
 TEST(WhatPays, EitherItOrAShareDecides) {
   Site site = floor_site();
   const auto code_of = [&](const SurveyQuestion& asked) {
