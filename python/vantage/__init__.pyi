@@ -1297,6 +1297,7 @@ def exact_network(
     apart_m: float = 0.0,
     max_seconds: float = 60.0,
     existing: Sequence[Point] = [],
+    existing_setups: Sequence[StationSetup] = [],
 ) -> ExactResult: ...
 
 class MeasuredNetwork:

@@ -223,6 +223,7 @@ std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::sp
   const double golden = 2 * std::numbers::pi * (2 - std::numbers::phi);
   std::vector<PlacedStation> found;
   for (const PlacedStation& station : stations) {
+    const bool narrow = !site.at_brink || site.at_brink(station.ground);
     for (std::size_t k = 0; k < each; ++k) {
       const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(each);
       const double away = radius_m * std::sqrt(share), turn = golden * static_cast<double>(k);
@@ -231,7 +232,8 @@ std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::sp
       PlacedStation placed = place_station(site, *uv, site.height_m);
       placed.setup = station.setup;
       // Excludes the floor below, where a station would see everything else.
-      if (placed.status == StationStatus::ok && std::abs(placed.ground.z - station.ground.z) <= radius_m)
+      if (placed.status == StationStatus::ok && std::abs(placed.ground.z - station.ground.z) <= radius_m &&
+          (narrow || !site.at_brink(placed.ground)))
         found.push_back(placed);
     }
   }

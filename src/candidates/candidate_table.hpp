@@ -105,7 +105,8 @@ class CandidateTable {
 // The parts of the candidates that links of at least `least` connect.
 Components linked_parts(const StationGraph& graph, double least);
 
-// Allowed positions around each of `stations`, `each` of them within `radius_m`, spread evenly over the disc.
+// Allowed positions around each of `stations`, `each` of them within `radius_m`, spread evenly over the disc; none at a
+// drop, but around a station that is.
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
                                             std::size_t each, double radius_m);
 

@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kPoolPerPosition = 4;
 constexpr std::size_t kTriesPerPosition = 48;  // for sites with mostly forbidden ground
 constexpr std::size_t kTriesAtOnce = 4096;
+constexpr double kStepBack_m = 1.5;  // from a drop
 
 double fraction(double x) { return x - std::floor(x); }
 
@@ -71,6 +72,37 @@ std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const 
   }
   return allowed;
 }
+
+// Finds positions that are not at a drop.
+class StepBack {
+ public:
+  StepBack(const PlacementOracle& site, std::span<const PlacedStation> pool)
+      : site_(site), pool_(pool), known_(pool.size(), Brink::unknown) {}
+
+  // The position of the pool that is nearest to one at a drop, and at none; the same one if it is at none, or no such
+  // is near.
+  std::size_t operator()(std::size_t from) {
+    if (!site_.at_brink || !at_brink(from)) return from;
+    std::vector<std::pair<double, std::size_t>> near;
+    for (std::size_t k = 0; k < pool_.size(); ++k)
+      if (const Vec3 apart = pool_[k].ground - pool_[from].ground; dot(apart, apart) <= kStepBack_m * kStepBack_m)
+        near.emplace_back(dot(apart, apart), k);
+    std::ranges::sort(near);
+    const auto found = std::ranges::find_if(near, [&](const auto& one) { return !at_brink(one.second); });
+    return found == near.end() ? from : found->second;
+  }
+
+ private:
+  enum class Brink : char { unknown, no, yes };
+  bool at_brink(std::size_t k) {
+    if (known_[k] == Brink::unknown) known_[k] = site_.at_brink(pool_[k].ground) ? Brink::yes : Brink::no;
+    return known_[k] == Brink::yes;
+  }
+
+  const PlacementOracle& site_;
+  std::span<const PlacedStation> pool_;
+  std::vector<Brink> known_;
+};
 
 // Positions by squares of the plan, for those near a place.
 class PositionGrid {
@@ -130,17 +162,22 @@ SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& 
   SpreadPositions spread;
   std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken position
   std::vector<char> taken_already(pool.size(), 0);
+  StepBack step_back(site, pool);
   std::size_t next = 0;
   while (spread.stations.size() < std::min(most, pool.size())) {
-    spread.stations.push_back(pool[next]);
-    taken_already[next] = 1;
-    const Vec3 taken = pool[next].position;
-    for (std::size_t k = 0; k < pool.size(); ++k) {
-      const Vec3 apart = pool[k].position - taken;
-      square[k] = std::min(square[k], dot(apart, apart));
+    const std::size_t behind = step_back(next);
+    const bool taken_before = taken_already[behind] != 0;
+    square[next] = 0, taken_already[next] = taken_already[behind] = 1;
+    if (!taken_before) {
+      const Vec3 taken = pool[behind].position;
+      for (std::size_t k = 0; k < pool.size(); ++k) {
+        const Vec3 apart = pool[k].position - taken;
+        square[k] = std::min(square[k], dot(apart, apart));
+      }
+      spread.stations.push_back(pool[behind]);
     }
     next = static_cast<std::size_t>(std::max_element(square.begin(), square.end()) - square.begin());
-    spread.spacing_m.push_back(std::sqrt(square[next]));
+    if (!taken_before) spread.spacing_m.push_back(std::sqrt(square[next]));
     if (square[next] == 0) break;  // all others coincide with taken ones
   }
   for (std::size_t k = 0; k < pool.size(); ++k)

@@ -22,7 +22,8 @@ struct SpreadPositions {
 double ground_area_m2(const SearchMesh& mesh);
 
 // At most `most` positions, out of a pool of several times as many that fills the ground evenly by area. Uses no random
-// numbers; the pool depends on `most`. Fewer if the pool has no more allowed positions.
+// numbers; the pool depends on `most`. Fewer if the pool has no more allowed positions. One at a drop gives way to the
+// nearest that is not, if one is a step or two away.
 SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                  std::size_t most);
 

@@ -78,6 +78,11 @@ bool on_steps(const ClashChecker& clash, const Vec3& ground) {
   return false;
 }
 
+bool in_the_way(const ClashChecker& clash, const Vec3& ground) {
+  const Vec3 at = ground + Vec3{0, 0, kDoor_m};
+  return on_steps(clash, ground) || in_passage(clash, at) || in_swing(clash, at);
+}
+
 bool at_brink(const ClashChecker& clash, const Vec3& ground) {
   constexpr int kWays = 16;
   const Vec3 over = ground + Vec3{0, 0, kOver_m};
@@ -85,6 +90,7 @@ bool at_brink(const ClashChecker& clash, const Vec3& ground) {
     const std::optional<Vec3> found = clash.ground_below(there, kOver_m + kLargestDrop_m);
     return found && ground.z - found->z > kDrop_m;
   };
+  if (!clash.ground_below(over, kOver_m + kDrop_m)) return false;  // ground that is marked, and no surface of the model
   for (int k = 0; k < kWays; ++k) {
     const Vec3 way = level_way(2 * std::numbers::pi * k / kWays);
     const Vec3 foot = over + way * kFoot_m, beyond = over + way * (kFoot_m + kGap_m);
@@ -94,8 +100,7 @@ bool at_brink(const ClashChecker& clash, const Vec3& ground) {
 }
 
 bool better_aside(const ClashChecker& clash, const Vec3& ground) {
-  const Vec3 at = ground + Vec3{0, 0, kDoor_m};
-  return on_steps(clash, ground) || at_brink(clash, ground) || in_passage(clash, at) || in_swing(clash, at);
+  return at_brink(clash, ground) || in_the_way(clash, ground);
 }
 
 }  // namespace vantage

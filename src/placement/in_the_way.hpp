@@ -15,11 +15,14 @@ bool in_swing(const ClashChecker& clash, const Vec3& at);
 // Returns true if a point of the ground lies on a stair or by its top step, where the ground falls by steps.
 bool on_steps(const ClashChecker& clash, const Vec3& ground);
 
+// Returns true if a tripod on a point of the ground blocks a door or a stair.
+bool in_the_way(const ClashChecker& clash, const Vec3& ground);
+
 // Returns true if a foot of a tripod on a point of the ground may come to stand over a drop without a rail, as at the
 // edge of a platform or a loft. Ground that ends where the model ends is no drop.
 bool at_brink(const ClashChecker& clash, const Vec3& ground);
 
-// Returns true if a tripod on a point of the ground blocks a door or a stair, or stands at a drop.
+// Returns true if either holds.
 bool better_aside(const ClashChecker& clash, const Vec3& ground);
 
 }  // namespace vantage

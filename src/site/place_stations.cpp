@@ -18,6 +18,7 @@ PlacementOracle make_placement_oracle(Site& site) {
           .check_head = [&site](const Vec3& head) { return site.place_head(head).station; },
           .sees = [&clash](const Vec3& a, const Vec3& b) { return clash.sees(a, b); },
           .better_aside = [&clash](const Vec3& ground) { return better_aside(clash, ground); },
+          .at_brink = [&clash](const Vec3& ground) { return at_brink(clash, ground); },
           .height_m = site.scanner().height_m,
           .range_m = site.scanner().max_range_m};
 }

@@ -19,10 +19,11 @@ struct PlacementOracle {
   std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // whether one head sees the other
-  std::function<bool(const Vec3&)> better_aside = {};     // of a ground point (placement/in_the_way.hpp)
-  double height_m = 0;                                    // of the scanner's head
-  double range_m = 0;                                     // of a scanner
-  std::vector<std::uint32_t> scanners = {};               // of the site, to choose from; empty: the first
+  // Of ground points (placement/in_the_way.hpp); empty: of none.
+  std::function<bool(const Vec3&)> better_aside = {}, at_brink = {};
+  double height_m = 0;                       // of the scanner's head
+  double range_m = 0;                        // of a scanner
+  std::vector<std::uint32_t> scanners = {};  // of the site, to choose from; empty: the first
 };
 
 // Borrows the site. Heights and range are the first scanner's.

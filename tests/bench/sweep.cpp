@@ -190,7 +190,7 @@ void judge_ground(const SweptSite& swept, Site& site, const PlanEntry& entry, Sc
   for (const ClosedPart& part : site.area().not_entered())
     if (part.to_decide() && part.kind != ClosedKind::hollow) score.closed = std::max(score.closed, part.share);
   score.in_the_way = static_cast<std::size_t>(std::ranges::count_if(
-      entry.stations, [&](const PlacedStation& station) { return better_aside(site.clash(), station.ground); }));
+      entry.stations, [&](const PlacedStation& station) { return in_the_way(site.clash(), station.ground); }));
   if (!swept.truth) return;
   std::vector<Place> unvisited;
   for (const Place& place : rooms) {

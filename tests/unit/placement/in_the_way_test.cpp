@@ -28,12 +28,12 @@ TEST(InTheWay, ADoorwayAndWhereItsLeafSwings) {
     const ClashChecker door = wall_with_opening(0.9, thick);
     EXPECT_TRUE(in_passage(door, origin + Vec3{0, 0, 1.5}));
     EXPECT_FALSE(in_passage(door, origin + Vec3{0, 0.9, 1.5}));
-    EXPECT_TRUE(better_aside(door, origin + Vec3{0, 0, 0}));
-    EXPECT_TRUE(better_aside(door, origin + Vec3{0.2, 0.8, 0})) << thick;
-    EXPECT_TRUE(better_aside(door, origin + Vec3{-0.2, -0.8, 0})) << thick;
-    EXPECT_FALSE(better_aside(door, origin + Vec3{0, 1.4, 0})) << thick;
-    EXPECT_FALSE(better_aside(door, origin + Vec3{3, 0.7, 0})) << "beside a wall";
-    EXPECT_FALSE(better_aside(wall_with_opening(2.4, thick), origin + Vec3{0, 0.8, 0})) << "too wide for a leaf";
+    EXPECT_TRUE(in_the_way(door, origin + Vec3{0, 0, 0}));
+    EXPECT_TRUE(in_the_way(door, origin + Vec3{0.2, 0.8, 0})) << thick;
+    EXPECT_TRUE(in_the_way(door, origin + Vec3{-0.2, -0.8, 0})) << thick;
+    EXPECT_FALSE(in_the_way(door, origin + Vec3{0, 1.4, 0})) << thick;
+    EXPECT_FALSE(in_the_way(door, origin + Vec3{3, 0.7, 0})) << "beside a wall";
+    EXPECT_FALSE(in_the_way(wall_with_opening(2.4, thick), origin + Vec3{0, 0.8, 0})) << "too wide for a leaf";
   }
 }
 
@@ -49,7 +49,7 @@ TEST(InTheWay, AStairAndItsTopStep) {
   EXPECT_FALSE(on_steps(stair, origin + Vec3{-1.2, 0, 0}));
   EXPECT_FALSE(on_steps(stair, origin + Vec3{-0.2, 2, 0})) << "by an edge of the landing";
   EXPECT_FALSE(on_steps(stair, origin + Vec3{3, 0, -0.18 * 9})) << "at its foot";
-  EXPECT_TRUE(better_aside(stair, origin + Vec3{-0.2, 0, 0}));
+  EXPECT_TRUE(in_the_way(stair, origin + Vec3{-0.2, 0, 0}));
 }
 
 // A loft 3 m over a floor, with a rail along half of its edge at x = 0.
@@ -58,10 +58,12 @@ TEST(InTheWay, TheEdgeOfALoftUnlessARailIsThere) {
       test::Builder().floor(-6, -6, 6, 6, 0).box({-6, -6, 2.8}, {0, 6, 3}).box({-0.05, 0, 3}, {0, 6, 4}).scene());
   EXPECT_TRUE(at_brink(loft, origin + Vec3{-0.3, -3, 3}));
   EXPECT_TRUE(better_aside(loft, origin + Vec3{-0.3, -3, 3}));
+  EXPECT_FALSE(in_the_way(loft, origin + Vec3{-0.3, -3, 3}));
   EXPECT_FALSE(at_brink(loft, origin + Vec3{-0.5, -3, 3}));
   EXPECT_FALSE(at_brink(loft, origin + Vec3{-0.3, 3, 3})) << "a rail";
   EXPECT_FALSE(at_brink(loft, origin + Vec3{1, -3, 0})) << "below it";
   EXPECT_FALSE(at_brink(loft, origin + Vec3{5.8, 3, 0})) << "the model ends";
+  EXPECT_FALSE(at_brink(loft, origin + Vec3{3, -3, 2})) << "ground that is none of the model's";
 }
 
 TEST(InTheWay, AGapInTheFloorAndAHighStepAreNoDrop) {

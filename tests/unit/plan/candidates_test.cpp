@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stop_token>
 
+#include "candidates/candidate_table.hpp"
 #include "candidates/spread_positions.hpp"
 #include "support/quad_scene.hpp"
 #include "support/site_of.hpp"
@@ -191,6 +192,33 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
     EXPECT_LT(spread.spacing_m[n - 1], 1.6 * std::sqrt(800.0 / static_cast<double>(n))) << n;
   }
   EXPECT_NEAR(spread.stations.front().position.z, spread.stations.front().position.x <= 30 ? 1.5 : 6.5, 1e-9);
+}
+
+// A loft over a floor, 4 m by 6 m, whose edge at x = 0 falls by 3 m; and a walkway of 0.6 m that goes on from it.
+TEST(SpreadPositions, KeepFromADropUnlessTheGroundIsNarrow) {
+  SearchMesh mesh;
+  add_ground(mesh, {-4, 0, 3}, 4, 6, {0, 0}, {0.5, 1});
+  add_ground(mesh, {0, 2.7, 3}, 5, 0.6, {0.6, 0}, {1, 0.2});
+  const Scene scene = QuadScene()
+                          .quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0})
+                          .quad({-4, 0, 3}, {4, 0, 0}, {0, 6, 0})
+                          .quad({0, 2.7, 3}, {5, 0, 0}, {0, 0.6, 0})
+                          .scene();
+  Site site = test::site_of(Simulator(scene, coarse_scanner(), config()), SearchArea::from_mesh(mesh));
+  const PlacementOracle oracle = make_placement_oracle(site);
+  const SpreadPositions spread = spread_positions(oracle, site.area().mesh(), 1.5, 128);
+  std::size_t on_loft = 0, on_walkway = 0;
+  for (const PlacedStation& station : spread.stations) {
+    const bool loft = station.ground.x < -0.6;
+    (loft ? on_loft : on_walkway) += 1;
+    EXPECT_FALSE(loft && oracle.at_brink(station.ground)) << station.ground.x << " " << station.ground.y;
+  }
+  EXPECT_GT(on_loft, 60u);
+  EXPECT_GT(on_walkway, 5u);
+  EXPECT_EQ(spread.spacing_m.size(), spread.stations.size());
+  const PlacedStation by_edge{.ground = {-1, 4.5, 3}};
+  for (const PlacedStation& station : positions_around(oracle, std::span(&by_edge, 1), 32, 2))
+    EXPECT_FALSE(oracle.at_brink(station.ground)) << station.ground.x << " " << station.ground.y;
 }
 
 // Two equal walls, one behind the other and out of sight from all of the ground.
