@@ -17,9 +17,8 @@ Options<OnSiteOptions> on_site_options() {
       .add("detour", &OnSiteOptions::detour,
            "Length over straight line of paths that the search area does not connect.")
       .add("entrance", &OnSiteOptions::entrance,
-           "Ground (x, y, z) where people enter and leave; None: at the station nearest to where the area is entered, "
-           "if that is "
-           "known,\nelse at the first.")
+           "Ground (x, y, z) where people enter and leave; None: at the station nearest to where the area is entered,\n"
+           "if that is known, else at the first.")
       .add("day_min", &OnSiteOptions::day_min,
            "Minutes of the longest session; a longer round is split. None: it is not.")
       .add("crews", &OnSiteOptions::crews, "Crews that work side by side, a session each, every day.")

@@ -198,9 +198,10 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
   const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
   LongCall call(std::move(progress));
   call.run([&] {
-    VoxelField field = chosen.field;
-    if (field.count.empty())
-      site.simulator().evaluate(to_network(chosen.stations), {.field = &field}, call.progress(0, 0.3));
+    VoxelField counted;
+    const bool kept = !chosen.field.count.empty();
+    if (!kept) site.simulator().evaluate(to_network(chosen.stations), {.field = &counted}, call.progress(0, 0.3));
+    const VoxelField& field = kept ? chosen.field : counted;
     MissedVoxels missed;
     if (!call.stop().stop_requested()) missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
     if (!call.stop().stop_requested())
@@ -289,12 +290,11 @@ void add_results(py::module_& m) {
           "write", &write_folder, py::arg("folder"), py::kw_only(), py::arg("title") = py::none(),
           py::arg("reports") = true, py::arg("max_seconds") = py::none(), py::arg("doubles") = false,
           py::arg("progress") = py::none(),
-          "Writes the result folder, all that `vantage plan` writes of a plan: tables, drawings, pictures, captured "
-          "and "
-          "missed\nsurface, reports (docs/files.md). Counts the answer with every ray, unless its points were kept. "
-          "Returns the names of files "
-          "that were left out\nsince `max_seconds` were over, or progress returned False. title: of the reports; None: "
-          "the site's name.\ndoubles: as for `write_point_cloud`. Raises\nError: io, invalid_argument.")
+          "Writes the result folder, all that `vantage plan` writes of a plan: tables, drawings, pictures, captured\n"
+          "and missed surface, reports (docs/files.md). Counts the answer with every ray, unless its points were kept. "
+          "Returns the names of\nfiles that were left out since `max_seconds` were over, or progress returned False. "
+          "title: of the reports; None: the\nsite's name. doubles: as for `write_point_cloud`. Raises Error: io, "
+          "invalid_argument.")
       .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = py::none(),
            py::arg("progress") = py::none(),
            "Writes report.html or report.pdf by the file's extension, with the surfaces that the answer captures and "
