@@ -50,6 +50,20 @@ bool abandoned(const std::filesystem::path& temporary) {
   return free;
 }
 
+// Returns true for what no file may replace: a device, a pipe, a socket, or a link to an open one, as /dev/stdout is.
+bool leads_elsewhere(const std::filesystem::path& file) {
+  std::error_code none;
+  switch (std::filesystem::symlink_status(file, none).type()) {
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character:
+    case std::filesystem::file_type::fifo:
+    case std::filesystem::file_type::socket: return true;
+    case std::filesystem::file_type::symlink:
+      return std::filesystem::read_symlink(file, none).string().starts_with("/proc/");
+    default: return false;
+  }
+}
+
 void remove_temporaries(const std::filesystem::path& folder, const std::string& prefix) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
@@ -65,6 +79,9 @@ AtomicFile::AtomicFile(std::filesystem::path file, unsigned mode) : file_(std::m
   std::error_code unknown;
   if (!file_.has_filename() || std::filesystem::is_directory(file_, unknown))
     throw Error(Errc::io, "cannot write " + file_.string() + ": it names a folder; give a file name");
+  if (leads_elsewhere(file_))
+    throw Error(Errc::io, "cannot write " + file_.string() +
+                              ": it is a device, a pipe or a socket, whose place a file would take; give a file name");
   static std::atomic<unsigned> serial{0};
   const std::string name = temporary_prefix(file_) + std::to_string(getpid()) + "-" + std::to_string(serial++);
   temporary_ = file_.parent_path() / (name + std::string(kSuffix));

@@ -13,7 +13,7 @@ namespace vantage {
 class AtomicFile {
  public:
   // Opens a temporary in the folder of `file`, so that the rename stays on one file system. `mode`: its permissions,
-  // less the process's mask. Throws Error io.
+  // less the process's mask. Throws Error io, for a device, a pipe or a socket too.
   explicit AtomicFile(std::filesystem::path file, unsigned mode = 0666);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

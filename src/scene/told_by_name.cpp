@@ -95,10 +95,19 @@ constexpr auto kWater = std::to_array<std::string_view>({"water",
                                                          "вода",
                                                          "река",
                                                          "озеро",
+                                                         "Вода",
+                                                         "Река",
+                                                         "Озеро",
+                                                         "Étang",
                                                          "水",
                                                          "水面"});
+// Words that mean water alone, but not beside others: a sea container, a stream of goods.
+constexpr auto kAlone = std::to_array<std::string_view>(
+    {"sea",   "ocean",  "lagoon",   "stream", "creek",  "brook",  "meer", "ozean",  "bach",   "stausee", "mer",
+     "océan", "lagune", "ruisseau", "mar",    "océano", "oceano", "mare", "laguna", "arroyo", "zee",     "oceaan",
+     "hav",   "havet",  "meri",     "morze",  "moře",   "море",   "Море", "океан",  "Океан",  "海",      "海面"});
 constexpr auto kBesideWater = std::to_array<std::string_view>(
-    {"m", "mat", "material", "mtl", "site", "surface", "plane", "pool", "clear", "deep", "blue"});
+    {"m", "mat", "material", "mtl", "site", "surface", "plane", "level", "pool", "clear", "deep", "blue"});
 
 }  // namespace
 
@@ -131,13 +140,14 @@ bool names_a_ceiling(const std::string& name) {
          !words.has({"above", "slab"});
 }
 
-bool names_water(const std::string& name) { return Words(name).has_whole(kWater); }
+bool names_water(const std::string& name) { return Words(name).has_whole(kWater) || is_water(name); }
 
 // Rocks, tiles and paints are also named after rivers and lakes.
 bool is_water(const std::string& material) {
   bool any = false;
   for (const std::string& word : Words(material).all()) {
-    const bool water = std::ranges::find(kWater, word) != std::end(kWater);
+    const bool water =
+        std::ranges::find(kWater, word) != std::end(kWater) || std::ranges::find(kAlone, word) != std::end(kAlone);
     any = any || water;
     if (!water && std::ranges::find(kBesideWater, word) == std::end(kBesideWater)) return false;
   }

@@ -194,21 +194,22 @@ class TextSource final : public PointSource {
     std::array<double, 2> astray{};
     std::array<std::vector<double>, 2> distances;
     std::size_t pairs = 0;
-    std::optional<Eigen::Vector3d> last;
+    Eigen::Vector3d last = Eigen::Vector3d::Zero();
+    bool follows = false;  // `last` is in the same column
     for (std::uint64_t k = 0; k < std::min(columns * rows, kMost); ++k) {
-      if (k % rows == 0) last.reset();
+      follows = follows && k % rows != 0;
       Eigen::Vector3d p;
       if (!read_point(columns * rows, p)) continue;
-      pairs += last.has_value();
+      pairs += follows;
       for (std::size_t from = 0; from < 2; ++from) {
         const Eigen::Vector3d b = p - from * head;
         distances[from].push_back(b.norm());
-        if (!last) continue;
-        const Eigen::Vector3d a = *last - from * head;
+        if (!follows) continue;
+        const Eigen::Vector3d a = last - from * head;
         const double longer = std::max(a.head<2>().norm(), b.head<2>().norm());
         if (longer > 0) astray[from] += std::abs(a.x() * b.y() - a.y() * b.x()) / longer;
       }
-      last = p;
+      last = p, follows = true;
     }
     if (pairs >= kLeast) return astray[1] < astray[0];
     if (distances[0].empty()) return false;

@@ -60,7 +60,8 @@ double XmlElement::number(std::initializer_list<std::string_view> path, double m
   for (const std::string_view step : path) {
     element = element->child(step);
     if (!element) return missing;
-    where += (where.empty() ? "" : "/") + std::string(step);
+    if (!where.empty()) where += '/';
+    where += step;
   }
   const std::string_view value = trimmed(element->text);
   if (value.empty()) return missing;

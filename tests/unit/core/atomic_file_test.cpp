@@ -2,6 +2,7 @@
 #include "core/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
@@ -81,6 +82,25 @@ TEST(AtomicFile, TakesTheLinksPlaceAndFollowsNone) {
   EXPECT_EQ(content(file), "new");
   EXPECT_EQ(content(elsewhere), "kept");
   EXPECT_TRUE(std::filesystem::is_symlink(folder / ".front.json.1-0.partial"));
+}
+
+// As root, a file would take the place of /dev/null.
+TEST(AtomicFile, TakesTheirPlaceFromNoPipeAndNoOpenFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/proc/self/fd/1", folder / "stdout");
+  for (const char* name : {"pipe", "stdout"}) {
+    try {
+      write_atomically(folder / name, "x");
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::io);
+      EXPECT_NE(std::string(error.what()).find("give a file name"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "stdout"));
+  EXPECT_EQ(entries(folder.path()), 2u);
 }
 
 TEST(AtomicFile, RemovesOnlyItsOwnLeftovers) {

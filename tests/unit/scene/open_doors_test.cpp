@@ -238,12 +238,16 @@ TEST(OpenDoors, AGrilleIsAGateByItsName) {
 }
 
 TEST(ToldByName, WaterIsWaterAndNoPaint) {
-  for (const char* name : {"Water", "M_Water_01", "Site - Water", "Wasser", "WaterSurface", "MAT_acqua"})
+  for (const char* name :
+       {"Water", "M_Water_01", "Site - Water", "Wasser", "WaterSurface", "MAT_acqua", "Sea", "sea level 2", "Море"})
     EXPECT_TRUE(is_water(name)) << name;
-  for (const char* name : {"River Rock", "Lake blue paint", "Waterproof board", "pond liner", "", "Water pipe"})
+  for (const char* name : {"River Rock", "Lake blue paint", "Waterproof board", "pond liner", "", "Water pipe",
+                           "Sea container", "Seabed", "stream of parts"})
     EXPECT_FALSE(is_water(name)) << name;
   EXPECT_TRUE(names_water("Wateroppervlak"));
+  EXPECT_TRUE(names_water("Sea_01"));
   EXPECT_FALSE(names_water("Watercolour"));
+  EXPECT_FALSE(names_water("SeaContainer_20ft"));
 }
 
 TEST(ToldByName, CeilingsThatHangAreNoSlabs) {
