@@ -202,8 +202,8 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
     const bool kept = !chosen.field.count.empty();
     if (!kept) site.simulator().evaluate(to_network(chosen.stations), {.field = &counted}, call.progress(0, 0.3));
     const VoxelField& field = kept ? chosen.field : counted;
-    MissedVoxels missed;
-    if (!call.stop().stop_requested()) missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
+    if (call.stop().stop_requested()) return 0;
+    const MissedVoxels missed = missed_voxels(site, field, {}, call.progress(0.3, 0.6));
     if (!call.stop().stop_requested())
       write_report(file, plan.result, site, {.title = title.value_or(""), .field = &field, .missed = &missed},
                    call.progress(0.6, 1));

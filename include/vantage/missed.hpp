@@ -13,7 +13,6 @@
 #include "vantage/candidates.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
-#include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/site.hpp"
 #include "vantage/types.hpp"

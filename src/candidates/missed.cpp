@@ -8,7 +8,6 @@
 #include "candidates/rooms.hpp"
 #include "candidates/why_missed.hpp"
 #include "core/parallel.hpp"
-#include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "scan/captured_share.hpp"
 #include "scene/meshes_by_name.hpp"

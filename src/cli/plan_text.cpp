@@ -7,8 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "plan/answer.hpp"
-
 namespace vantage::cli {
 namespace {
 

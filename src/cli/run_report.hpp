@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What commands with results share: their duration and engine, and the folder.
+// Commands with results share these: duration, engine and folder.
 #pragma once
 
 #include <chrono>

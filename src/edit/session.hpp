@@ -60,7 +60,7 @@ class EditSession {
   EditSession(const EditSession&) = delete;
   EditSession& operator=(const EditSession&) = delete;
 
-  // What a page fetches once: `site_json`, and the ground where stations may stand.
+  // Returns `site_json` and the ground where stations may stand, which a page fetches once.
   nlohmann::ordered_json site() const;
   // version, network (as in a report), ids, locked, coverage and only (colours of cells), hidden (cells of which no
   // position captures anything; null: not known), busy{what, done}, undo, redo, exact, message.

@@ -121,11 +121,12 @@ std::vector<PlacedNetwork> networks_of(std::span<const PlanEntry> entries) {
 std::vector<PlanEntry> searched_entries(const SearchOutcome& found, const DecisionSpace& space,
                                         const SurveyProblem& problem, const Measures& measures) {
   std::vector<PlanEntry> entries;
+  const EvaluationOptions options = evaluation_options(problem);
   for (const ParetoPoint& point : found.front) {
     PlanEntry& entry = entries.emplace_back();
     entry.x = point.x;
     entry.stations = space.decode(point.x);
-    take_options(entry, evaluation_options(problem));
+    take_options(entry, options);
     for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
     take_objectives(entry, point, problem);
     take_by_positions(entry, problem, measures);

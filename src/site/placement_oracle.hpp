@@ -19,7 +19,7 @@ struct PlacementOracle {
   std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // whether one head sees the other
-  // Of ground points (placement/in_the_way.hpp); empty: of none.
+  // These judge ground points (placement/in_the_way.hpp); an empty one judges none.
   std::function<bool(const Vec3&)> better_aside = {}, at_brink = {};
   double height_m = 0;                       // of the scanner's head
   double range_m = 0;                        // of a scanner
